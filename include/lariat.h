@@ -155,7 +155,9 @@ typedef struct lar_material_info {
     int32_t viscous_terms;              /* 0: elastic */
     double instant_shear_modulus;       /* when it is strained at once [Pa] */
     const char *fibres;                 /* their law, as in scenes: "exp-pow", ...; "": none */
-    double fibre_modulus;               /* d(tension)/d(stretch) of fibres that begin to pull [Pa] */
+    double fibre_modulus; /* d(tension)/d(stretch) of fibres that begin to pull [Pa] */
+    double active_along, active_across; /* stress that fibres develop when all of them are active,
+                                           along and across them [Pa] */
 } lar_material_info;
 
 /* One named set of the mesh or the scene. */
@@ -609,6 +611,12 @@ LAR_API lar_status lar_simulation_set_damping(lar_simulation *simulation, double
 #define LAR_STIFFNESS_MAX 4.0
 LAR_API lar_status lar_simulation_set_stiffness(lar_simulation *simulation, int32_t material,
                                                 double factor, lar_error *error);
+/* How active a material is, from 0 to 1 (it starts at 1): times what its model says at that time by
+ * a curve or a wave, and times its active stress; material -1: all that have one. The 64th material
+ * and all after it share a value. LAR_ERROR_ARGUMENT for other values and for a material without
+ * active stress. Steps stay as long as they are; a call looks at every active element. */
+LAR_API lar_status lar_simulation_activate(lar_simulation *simulation, int32_t material,
+                                           double value, lar_error *error);
 /* Forces that can be set at a time; one on a set counts once. */
 enum { LAR_FORCES_MAX = 128 };
 /* A constant force on a node [N], besides the model's loads and what is set on sets that it is in;
@@ -620,10 +628,12 @@ LAR_API lar_status lar_simulation_set_force(lar_simulation *simulation, int32_t 
 /* The same on every node of a set of nodes (lar_model_set): so much on each of them. */
 LAR_API lar_status lar_simulation_set_force_on(lar_simulation *simulation, const char *set,
                                                const double force[3], lar_error *error);
-/* As they are now. The stiffness of a material that does not exist is 0. */
+/* As they are now. The stiffness and the activation of a material that does not exist are 0. */
 LAR_API void lar_simulation_gravity(const lar_simulation *simulation, double gravity[3]);
 LAR_API double lar_simulation_damping(const lar_simulation *simulation);
 LAR_API double lar_simulation_stiffness(const lar_simulation *simulation, int32_t material);
+/* What was set, without curve and wave. */
+LAR_API double lar_simulation_activation(const lar_simulation *simulation, int32_t material);
 /* What was set on a node and on sets that it is in, together [N]; 0 for no such node. */
 LAR_API void lar_simulation_force(const lar_simulation *simulation, int32_t node, double force[3]);
 
@@ -914,6 +924,8 @@ LAR_API lar_status lar_session_set_gravity(lar_session *session, const double gr
 LAR_API lar_status lar_session_set_damping(lar_session *session, double damping, lar_error *error);
 LAR_API lar_status lar_session_set_stiffness(lar_session *session, int32_t material, double factor,
                                              lar_error *error);
+LAR_API lar_status lar_session_activate(lar_session *session, int32_t material, double value,
+                                        lar_error *error);
 LAR_API lar_status lar_session_set_force(lar_session *session, int32_t node, const double force[3],
                                          lar_error *error);
 LAR_API lar_status lar_session_set_force_on(lar_session *session, const char *set,
@@ -922,6 +934,7 @@ LAR_API lar_status lar_session_set_force_on(lar_session *session, const char *se
 LAR_API void lar_session_gravity(const lar_session *session, double gravity[3]);
 LAR_API double lar_session_damping(const lar_session *session);
 LAR_API double lar_session_stiffness(const lar_session *session, int32_t material);
+LAR_API double lar_session_activation(const lar_session *session, int32_t material);
 
 /* As lar_simulation_add_tool and lar_simulation_remove_tool, likewise. A tool that has a device is
  * not removed. What was added stays when a run goes back to a sound state by itself, and comes to

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes the meshes of the scenes in this folder: blocks.inp and strip.inp (millimetres)."""
+"""Writes the meshes of the scenes in this folder (millimetres)."""
 from math import cos, pi, radians, sin
 
 
@@ -7,17 +7,18 @@ class Mesh:
     def __init__(self):
         self.nodes, self.elements = [], []
 
-    def grid(self, counts, place, name):
-        """A block of counts[0] x [1] x [2] hexahedra; place(u, v, w), each 0..1, is a point."""
+    def grid(self, counts, place, name, closed=False):
+        """A block of counts[0] x [1] x [2] hexahedra; place(u, v, w), each 0..1, is a point.
+        closed: u = 1 is where u = 0 is."""
         nx, ny, nz = counts
-        first = len(self.nodes)
+        first, row = len(self.nodes), nx if closed else nx + 1
         for k in range(nz + 1):
             for j in range(ny + 1):
-                for i in range(nx + 1):
+                for i in range(row):
                     self.nodes.append(place(i / nx, j / ny, k / nz))
 
         def node(i, j, k):
-            return first + 1 + i + (nx + 1) * (j + (ny + 1) * k)
+            return first + 1 + i % row + row * (j + (ny + 1) * k)
 
         corners = [(0, 0), (1, 0), (1, 1), (0, 1)]
         for k in range(nz):
@@ -72,5 +73,37 @@ def strip():
     mesh.write("strip.inp", "A strip bent to a C")
 
 
+def bar():
+    """A muscle of 30 x 8 x 8 mm along x."""
+    mesh = Mesh()
+    mesh.grid((9, 3, 3), lambda u, v, w: (30 * u, 8 * v, 8 * w), "muscle")
+    mesh.write("bar.inp", "A bar")
+
+
+def cup():
+    """A thick half of an egg, open at z = 0, with a small hole at its lower end."""
+    def place(u, v, w):
+        side, down = 2 * pi * u, radians(82 * w)
+        radius, depth = 10 + 5 * v, 20 + 5 * v
+        return (radius * cos(down) * cos(side), radius * cos(down) * sin(side),
+                -depth * sin(down))
+    mesh = Mesh()
+    mesh.grid((12, 2, 6), place, "wall", closed=True)
+    mesh.write("cup.inp", "A cup with a thick wall")
+
+
+def tube():
+    """A tube of 60 mm along z."""
+    def place(u, v, w):
+        radius = 4 + 2 * v
+        return radius * cos(2 * pi * u), -radius * sin(2 * pi * u), 60 * w
+    mesh = Mesh()
+    mesh.grid((12, 1, 30), place, "wall", closed=True)
+    mesh.write("tube.inp", "A tube")
+
+
 blocks()
 strip()
+bar()
+cup()
+tube()

@@ -120,6 +120,14 @@ LAR_INLINE lar_lane lar_fibre_stress(int kind, const lar_lane F[9], const lar_fi
     return sum;
 }
 
+/* What an active stress has for a potential, 0 at rest. */
+LAR_INLINE lar_lane lar_active_potential(const lar_lane F[9], const lar_fibre_lane *c) {
+    lar_lane g[3], one = lar_lane_set(1);
+    lar_lane along = (c->along - c->across) * (lar_fibre_push(F, c->direction, g) - one);
+    lar_lane all = c->across * (lar_lane_square_sum(F) - lar_lane_set(3));
+    return lar_lane_set(0.5) * (along + all);
+}
+
 /* Adds what is active: P += (along - across) g (x) a + across F. Returns the square of its size. */
 LAR_INLINE lar_lane lar_active_stress(const lar_lane F[9], const lar_fibre_lane *c, lar_lane P[9]) {
     lar_lane g[3], sum = lar_lane_set(0), pull = c->along - c->across;

@@ -149,6 +149,13 @@ static inline size_t lar_run_stride(const lar_block_run *run) {
     return run->rest ? sizeof(lar_lean_block) : lar_block_size(run->shape);
 }
 
+/* How much of a run's active stress is there now. */
+typedef struct lar_active_step {
+    const double *now; /* [8 for each block] from 0 to 1 */
+    double *energy;    /* [8 for each block] becomes what all of it would store, times the
+                          scale [J]; 0 without an element */
+} lar_active_step;
+
 /* What an element may do before a run is stopped. */
 typedef struct lar_hex8_limits {
     double min_volume;       /* det F must stay above this */
@@ -183,10 +190,12 @@ typedef struct lar_hex8_monitor {
 typedef int64_t (*lar_hex8_recover)(const lar_block_run *run, const double *u, int64_t *force,
                                     const lar_hex8_limits *limits, lar_hex8_monitor *monitor);
 
-/* The same of a run that has fibres, or is viscous: else `step` is NULL. */
+/* The same of a run that has fibres, or is viscous: else `step` is NULL. `active` NULL: all of the
+ * active stress is there. */
 typedef int64_t (*lar_hex8_recover_more)(const lar_block_run *run, const lar_viscous_step *step,
-                                         const double *u, int64_t *force,
-                                         const lar_hex8_limits *limits, lar_hex8_monitor *monitor);
+                                         const lar_active_step *active, const double *u,
+                                         int64_t *force, const lar_hex8_limits *limits,
+                                         lar_hex8_monitor *monitor);
 
 /* Makes block `block` of a lean run whole. */
 typedef void (*lar_hex8_expand)(const lar_block_run *run, int32_t block, lar_hex8_block *whole);

@@ -23,12 +23,18 @@ LAR_INLINE unsigned fibre_lanes(const lar_fibre_block *block, int lane, int kind
     return lar_lane_not_greater(lar_lane_set(limit), size);
 }
 
+/* `now` and `energy`: of these lanes (lar_active_step), or NULL. */
 LAR_INLINE unsigned active_lanes(const lar_fibre_block *block, int lane, const lar_lane F[9],
-                                 double limit, lar_lane P[9]) {
+                                 const double *now, double *energy, double limit, lar_lane P[9]) {
     lar_fibre_lane c;
     for (int i = 0; i < 3; i++) c.direction[i] = lar_lane_load(&block->direction[i][lane]);
     c.along = lar_lane_load(&block->along[lane]);
     c.across = lar_lane_load(&block->across[lane]);
+    if (now) {
+        lar_lane_store(energy, lar_active_potential(F, &c));
+        c.along = c.along * lar_lane_load(now);
+        c.across = c.across * lar_lane_load(now);
+    }
     return lar_lane_not_greater(lar_lane_set(limit), lar_active_stress(F, &c, P));
 }
 

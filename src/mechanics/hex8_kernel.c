@@ -365,11 +365,12 @@ static void list_strained(lar_hex8_monitor *monitor, int32_t b, unsigned straine
 
 #ifdef LAR_KERNEL_ELASTIC
 typedef struct lar_viscous_step lar_viscous_step;
+typedef struct lar_active_step lar_active_step;
 enum { SOFTER = 1 };
 #define softer_of(run)                                                      ((void)(run), SOFTER)
 #define relax(run, step, b, count, limits, gradient, record)                0U
 #define stretch(run, b, count, limits, limit, gradient, record, strain, of) 0U
-#define contract(run, b, count, limits, gradient, record)                   0U
+#define contract(run, active, b, count, limits, gradient, record)           ((void)(active), 0U)
 #else
 #define softer_of(run) (run)->softer
 
@@ -411,16 +412,20 @@ static unsigned stretch(const lar_block_run *run, int32_t b, size_t count,
 }
 
 /* What is active, behind all that relaxes. */
-static unsigned contract(const lar_block_run *run, int32_t b, size_t count,
-                         const lar_hex8_limits *limits, lar_lane gradient[][9],
+static unsigned contract(const lar_block_run *run, const lar_active_step *active, int32_t b,
+                         size_t count, const lar_hex8_limits *limits, lar_lane gradient[][9],
                          lane_record *record) {
     unsigned beyond = 0;
     size_t part = 0;
     for (size_t i = (size_t)b; i < (size_t)b + count; i++)
-        for (int lane = 0; lane < LAR_BLOCK; lane += LAR_LANES, part++)
-            beyond |= active_lanes(&run->fibres[i], lane, gradient[part], limits->stress_square,
-                                   record[part].F)
-                      << part * LAR_LANES;
+        for (int lane = 0; lane < LAR_BLOCK; lane += LAR_LANES, part++) {
+            size_t at = LAR_BLOCK * i + (size_t)lane;
+            beyond |=
+                active_lanes(&run->fibres[i], lane, gradient[part],
+                             active ? active->now + at : NULL, active ? active->energy + at : NULL,
+                             limits->stress_square, record[part].F)
+                << part * LAR_LANES;
+        }
     return beyond;
 }
 #endif
@@ -428,8 +433,8 @@ static unsigned contract(const lar_block_run *run, int32_t b, size_t count,
 /* `fibrous` is a constant 0 and `step` NULL for what is elastic alone, and then none of this is
  * there. */
 LAR_INLINE int64_t recover_form(const lar_block_run *run, int fibrous, const lar_viscous_step *step,
-                                const double *u, int64_t *force, const lar_hex8_limits *limits,
-                                lar_hex8_monitor *monitor) {
+                                const lar_active_step *active, const double *u, int64_t *force,
+                                const lar_hex8_limits *limits, lar_hex8_monitor *monitor) {
     lar_lane gradient[CHUNK * PARTS][9];
     double share = step ? STRAINED_SHEAR * softer_of(run) : STRAINED_SHEAR;
     lane_record record[CHUNK * PARTS];
@@ -459,7 +464,7 @@ LAR_INLINE int64_t recover_form(const lar_block_run *run, int fibrous, const lar
         if (fibrous)
             beyond |= stretch(run, b, count, limits, limit, gradient, record, strains, &strained);
         if (step) beyond |= relax(run, step, b, count, limits, gradient, record);
-        if (fibrous) beyond |= contract(run, b, count, limits, gradient, record);
+        if (fibrous) beyond |= contract(run, active, b, count, limits, gradient, record);
         forces(blocks, count, run->turn, record, force);
         if (__builtin_expect(strained != 0, 0)) list_strained(monitor, b, strained, strains);
         if (__builtin_expect(beyond != 0 && first < 0, 0)) {
@@ -472,14 +477,14 @@ LAR_INLINE int64_t recover_form(const lar_block_run *run, int fibrous, const lar
 
 static int64_t recover(const lar_block_run *run, const double *u, int64_t *force,
                        const lar_hex8_limits *limits, lar_hex8_monitor *monitor) {
-    return recover_form(run, 0, NULL, u, force, limits, monitor);
+    return recover_form(run, 0, NULL, NULL, u, force, limits, monitor);
 }
 
 #ifndef LAR_KERNEL_ELASTIC
-static int64_t recover_more(const lar_block_run *run, const lar_viscous_step *step, const double *u,
-                            int64_t *force, const lar_hex8_limits *limits,
-                            lar_hex8_monitor *monitor) {
-    return recover_form(run, run->fibrous, step, u, force, limits, monitor);
+static int64_t recover_more(const lar_block_run *run, const lar_viscous_step *step,
+                            const lar_active_step *active, const double *u, int64_t *force,
+                            const lar_hex8_limits *limits, lar_hex8_monitor *monitor) {
+    return recover_form(run, run->fibrous, step, active, u, force, limits, monitor);
 }
 #endif
 

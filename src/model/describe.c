@@ -69,7 +69,9 @@ lar_status lar_model_material(const lar_model *model, int32_t index, lar_materia
                                 .viscous_terms = material->viscosity.terms,
                                 .instant_shear_modulus = lar_material_instant_shear(material),
                                 .fibres = lar_fibre_law_name[material->fibre.law],
-                                .fibre_modulus = lar_fibre_modulus(&material->fibre)};
+                                .fibre_modulus = lar_fibre_modulus(&material->fibre),
+                                .active_along = material->fibre.along,
+                                .active_across = material->fibre.across};
     for (int32_t e = 0; e < model->mesh.element_count; e++)
         info->elements += model->element_material[e] == index;
     return LAR_OK;

@@ -6,6 +6,7 @@
 #include "law/fibre.h"
 #include "law/law.h"
 #include "law/viscosity.h"
+#include "model/activation.h"
 
 typedef struct lar_material {
     char *name; /* for messages; may be NULL */
@@ -15,6 +16,7 @@ typedef struct lar_material {
                                              ones 0 */
     lar_viscosity viscosity;
     lar_fibre fibre;
+    lar_activation activation; /* of what is active */
 } lar_material;
 
 /* What scenes call the laws of fibres; "" for none. */

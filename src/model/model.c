@@ -193,6 +193,53 @@ static lar_status check_curves(const lar_model *model, lar_error *error) {
     return LAR_OK;
 }
 
+/* ---- activation ----------------------------------------------------------------------------- */
+
+/* Where the elements of material m are on the way of its wave. */
+static void place_wave(lar_model *model, int m) {
+    lar_wave *wave = &model->material[m].activation.wave;
+    double first = INFINITY, last = -INFINITY;
+    for (int32_t e = 0; e < model->mesh.element_count; e++) {
+        double corner[8][3];
+        if (model->element_material[e] != m) continue;
+        lar_mesh_corners(&model->mesh, e, corner);
+        double place = lar_wave_place(wave, (const double(*)[3])corner);
+        first = fmin(first, place);
+        last = fmax(last, place);
+    }
+    wave->start = first <= last ? first : 0;
+    wave->span = first <= last ? last - first : 0;
+}
+
+/* From 0 to 1: the stable step counts all of the active stress. */
+static bool is_share(const lar_curve *curve) {
+    bool good = true;
+    for (int p = 0; p < curve->count; p++)
+        good = good && curve->point[p][1] >= 0 && curve->point[p][1] <= 1;
+    return good;
+}
+
+static lar_status check_activation(lar_model *model, lar_error *error) {
+    for (int m = 0; m < model->material_count; m++) {
+        const lar_material *material = &model->material[m];
+        const lar_activation *a = &material->activation;
+        const char *wrong = NULL;
+        if (a->curve < 0 || a->curve > model->curve_count)
+            wrong = "names a curve that does not exist";
+        else if (a->curve > 0 && !is_share(&model->curve[a->curve - 1]))
+            wrong = "follows a curve with values below 0 or above 1; give the largest stress as "
+                    "along and across, and the curve as parts of it";
+        else if (model->until_rest && a->wave.every > 0)
+            wrong = "has waves again and again, so the body never rests; leave out every, or give "
+                    "the duration in seconds";
+        if (wrong)
+            return lar_fail(error, LAR_ERROR_MODEL, "%s:%d: the active stress %s",
+                            lar_model_source(model), material->fibre.line, wrong);
+        if (a->wave.speed > 0) place_wave(model, m);
+    }
+    return LAR_OK;
+}
+
 static lar_status check_list(const lar_model *model, const char *what, int entry,
                              const int32_t *index, int32_t count, int64_t limit, lar_error *error) {
     if (count < 0 || (count > 0 && !index))
@@ -396,6 +443,7 @@ lar_status lar_model_check(lar_model *model, lar_error *error) {
     if (!status) status = check_fibres(model, error);
     if (!status) status = check_numbers(model, error);
     if (!status) status = check_curves(model, error);
+    if (!status) status = check_activation(model, error);
     if (!status) status = check_supports(model, error);
     if (!status) status = check_loads(model, error);
     if (!status) status = check_conflicts(model, error);

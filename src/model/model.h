@@ -175,6 +175,13 @@ static inline const lar_material *lar_model_fibrous(const lar_model *model) {
     return NULL;
 }
 
+/* The first material with an active stress; NULL: there is none. */
+static inline const lar_material *lar_model_active(const lar_model *model) {
+    for (int i = 0; i < model->material_count; i++)
+        if (lar_fibre_active(&model->material[i].fibre)) return &model->material[i];
+    return NULL;
+}
+
 /* The unit vector along the fibres of element e; zero where it has none. */
 static inline const double *lar_model_fibre(const lar_model *model, lar_gid e) {
     static const double none[3] = {0};

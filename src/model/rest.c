@@ -30,5 +30,10 @@ double lar_model_slow_period(const lar_model *model) {
 double lar_model_loads_end(const lar_model *model) {
     double end = 0.0;
     for (int i = 0; i < model->curve_count; i++) end = fmax(end, lar_curve_end(&model->curve[i]));
+    for (int i = 0; i < model->material_count; i++) {
+        const lar_wave *wave = &model->material[i].activation.wave;
+        if (wave->speed > 0 && !(wave->every > 0))
+            end = fmax(end, (wave->span + wave->length) / wave->speed);
+    }
     return end;
 }

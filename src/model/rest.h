@@ -18,7 +18,8 @@ double lar_model_rest_damping(const lar_model *model);
 /* The period of that motion, 2 pi / omega [s]; 1 when there is no such number. */
 double lar_model_slow_period(const lar_model *model);
 
-/* Time after which no load and no prescribed value changes [s], at least 0. */
+/* Time after which no load, no prescribed value and no activation changes [s], at least 0; of waves
+ * that come again and again it knows nothing. */
 double lar_model_loads_end(const lar_model *model);
 
 #endif

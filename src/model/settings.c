@@ -23,6 +23,7 @@ int lar_settings_good(const lar_settings *settings, double time_step) {
                lar_damping_fits(settings->damping, time_step);
     for (int i = 0; i < LAR_FACTORS_MAX; i++)
         good = good && settings->factor[i] >= LAR_STIFFNESS_MIN &&
-               settings->factor[i] <= LAR_STIFFNESS_MAX;
+               settings->factor[i] <= LAR_STIFFNESS_MAX && settings->activation[i] >= 0 &&
+               settings->activation[i] <= 1;
     return good;
 }

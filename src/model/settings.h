@@ -4,6 +4,7 @@
  *     gravity, may follow a curve   <----  gravity, constant
  *     damping                       <----  damping
  *     parameters of a material      <----  times its factor: laws are linear in them
+ *     activation of a material      <----  times what was set
  *
  * Plain numbers without pointers: they travel with the tools (contact/tools.h) to all processors,
  * are in checkpoints, and change between steps only.
@@ -25,11 +26,19 @@ typedef struct lar_settings {
     double gravity[3];                /* [m/s^2] */
     double damping;                   /* [1/s] */
     double factor[LAR_FACTORS_MAX];   /* of the stiffness of materials */
+    double activation[LAR_FACTORS_MAX];
 } lar_settings;
 
 static inline void lar_settings_reset(lar_settings *settings) {
     *settings = (lar_settings){.gravity_set = 0};
-    for (int i = 0; i < LAR_FACTORS_MAX; i++) settings->factor[i] = 1;
+    for (int i = 0; i < LAR_FACTORS_MAX; i++) settings->factor[i] = settings->activation[i] = 1;
+}
+
+/* Whether somebody has set an activation. */
+static inline int lar_settings_activate(const lar_settings *settings) {
+    int any = 0;
+    for (int i = 0; i < LAR_FACTORS_MAX; i++) any = any || settings->activation[i] != 1;
+    return any;
 }
 
 /* The factor that is a material's. */

@@ -326,7 +326,8 @@ static void take_settings(lar_computer *computer) {
     uint64_t interval = lar_interval_length(computer->whole, computer->tools);
     for (int32_t i = 0; i < computer->hosted; i++)
         computer->processor[i].domain.interval = interval;
-    if (memcmp(domain->factor, settings->factor, sizeof domain->factor) != 0)
+    if (memcmp(domain->factor, settings->factor, sizeof domain->factor) != 0 ||
+        memcmp(domain->activation, settings->activation, sizeof domain->activation) != 0)
         lar_thread_pool_run(computer->pool, stiffen_on_thread, computer);
 }
 

@@ -192,6 +192,13 @@ lar_status lar_session_set_stiffness(lar_session *session, int32_t material, dou
                NULL, error);
 }
 
+lar_status lar_session_activate(lar_session *session, int32_t material, double value,
+                                lar_error *error) {
+    return set(session,
+               (lar_setting){.kind = LAR_SETTING_ACTIVATION, .of = material, .value = {value}},
+               NULL, error);
+}
+
 static lar_setting force_of(lar_setting_kind kind, int32_t of, const double force[3]) {
     lar_setting setting = {.kind = kind, .of = of};
     if (force) memcpy(setting.value, force, sizeof setting.value);

@@ -37,6 +37,7 @@ typedef struct lar_session_view {
     lar_session_status status;
     double gravity[3], damping;     /* [m/s^2] [1/s] */
     double factor[LAR_FACTORS_MAX]; /* of the stiffness of materials */
+    double activation[LAR_FACTORS_MAX];
     struct {
         lar_tool_info info;
         lar_tool_pose pose;

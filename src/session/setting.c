@@ -29,6 +29,8 @@ lar_status lar_setting_apply(const lar_setting *setting, lar_simulation *simulat
                                         setting->of < 0 ? NULL : setting->value, error);
     case LAR_SETTING_FORCE_ON:
         return lar_simulation_set_force_at(simulation, setting->of, setting->value, error);
+    case LAR_SETTING_ACTIVATION:
+        return lar_simulation_activate(simulation, setting->of, setting->value[0], error);
     default:
         return lar_simulation_set_stiffness(simulation, setting->of, setting->value[0], error);
     }

@@ -36,6 +36,8 @@ void lar_session_publish(lar_session *session, bool quantiles) {
     lar_simulation_gravity(session->simulation, view->gravity);
     view->damping = lar_simulation_damping(session->simulation);
     memcpy(view->factor, session->simulation->tools.settings.factor, sizeof view->factor);
+    memcpy(view->activation, session->simulation->tools.settings.activation,
+           sizeof view->activation);
     for (int32_t i = 0; i < session->tools; i++) {
         view->tool[i].info = session->tool[i].info;
         view->tool[i].pose = session->tool[i].place;

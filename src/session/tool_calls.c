@@ -162,6 +162,14 @@ double lar_session_stiffness(const lar_session *session, int32_t material) {
     return factor;
 }
 
+double lar_session_activation(const lar_session *session, int32_t material) {
+    if (!session || material < 0 || material >= session->simulation->domain.model->material_count)
+        return 0;
+    double value = look_at_view(session)->activation[lar_factor_of(material)];
+    end_look(session);
+    return value;
+}
+
 int32_t lar_session_force_history(const lar_session *session, int32_t tool, uint64_t after,
                                   int32_t max, float (*force)[3], uint64_t *last) {
     uint64_t ignored;

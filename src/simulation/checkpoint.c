@@ -21,8 +21,9 @@
 
 /* Version 3 had no settings: neither them nor what they take of a step. Up to version 5 a step had
  * 32 shares. A state with added tools has an odd version from 5 on, any other one an even one. One
- * with forces that were set on nodes has version 8 or 9; others are written as they always were. */
-enum { BEFORE_SETTINGS = 3, BEFORE_THIRDS = 5, VERSION = 6, FORCES = 8, NEWEST = 9 };
+ * with forces that were set on nodes has version 8 or 9, one with an activation that was set 10 or
+ * 11, with forces or without; others are written as they always were. */
+enum { BEFORE_SETTINGS = 3, BEFORE_THIRDS = 5, VERSION = 6, FORCES = 8, ACTIVE = 10, NEWEST = 11 };
 enum { BYTE_ORDER_MARK = 0x01020304 };
 
 typedef struct file_head {
@@ -41,7 +42,8 @@ _Static_assert(sizeof(lar_model_identity) == 72, "part of the format");
 _Static_assert(sizeof(file_head) == 144, "the format");
 _Static_assert(sizeof(lar_step_division) == 56, "the format");
 _Static_assert(offsetof(lar_step_division, base) == 48, "of version 3: until there");
-_Static_assert(sizeof(lar_settings) == 552, "the format");
+_Static_assert(sizeof(lar_settings) == 1064 && offsetof(lar_settings, activation) == 552,
+               "the format");
 _Static_assert(sizeof(lar_tool_motion) == 152 && sizeof(lar_grasp) == 72, "the format");
 _Static_assert(sizeof(lar_tool_follower) == 240, "the format");
 _Static_assert(LAR_NODE_VALUES == 7, "the format");
@@ -60,10 +62,16 @@ static bool has_added(uint32_t version) {
     return version >= BEFORE_THIRDS && version % 2 == 1;
 }
 
+/* What was set, without spares and forces. */
+static size_t set_bytes(uint32_t version) {
+    if (version == BEFORE_SETTINGS) return 0;
+    return version < ACTIVE ? offsetof(lar_settings, activation) : sizeof(lar_settings);
+}
+
 static size_t settings_bytes(uint32_t version) {
     size_t spares = has_added(version) ? LAR_SPARES_MAX * sizeof(lar_spare_tool) : 0;
     return version == BEFORE_SETTINGS ? offsetof(lar_step_division, base)
-                                      : sizeof(lar_step_division) + sizeof(lar_settings) + spares;
+                                      : sizeof(lar_step_division) + set_bytes(version) + spares;
 }
 
 /* Their number, and they. */
@@ -125,7 +133,9 @@ static unsigned char *append(unsigned char *at, const void *from, size_t bytes) 
 static file_shape shape_of(const lar_domain *whole, const lar_tools *tools) {
     const lar_tool_list *list = whole->surroundings.list;
     int32_t spares = lar_spares_needed(tools->spare);
-    uint32_t version = tools->forces.count > 0 ? FORCES : VERSION;
+    uint32_t version = lar_settings_activate(&tools->settings) ? ACTIVE
+                       : tools->forces.count > 0               ? FORCES
+                                                               : VERSION;
     return (file_shape){.version = version + (spares > 0),
                         .forces = tools->forces.count,
                         .tools = (list ? lar_spares_first(list) : 0) + spares,
@@ -138,7 +148,7 @@ static unsigned char *fill_tools(unsigned char *at, const file_shape *shape,
                                  const lar_tools *tools) {
     size_t count = (size_t)shape->tools, grasps = (size_t)shape->grasps;
     at = append(at, &tools->division, sizeof tools->division);
-    at = append(at, &tools->settings, sizeof tools->settings);
+    at = append(at, &tools->settings, set_bytes(shape->version));
     if (has_added(shape->version)) at = append(at, tools->spare, sizeof tools->spare);
     at = append(at, &tools->forces, forces_bytes(shape));
     at = append(at, tools->motion, count * sizeof tools->motion[0]);
@@ -247,7 +257,8 @@ lar_status lar_checkpoint_read(const char *path, lar_bytes *bytes, lar_error *er
 /* They stand behind the settings. */
 static void look_at_spares(const file_head *head, const lar_bytes *bytes,
                            lar_spare_tool spare[LAR_SPARES_MAX]) {
-    size_t at = sizeof *head + settings_bytes(VERSION), size = LAR_SPARES_MAX * sizeof *spare;
+    size_t at = sizeof *head + settings_bytes(head->version - 1),
+           size = LAR_SPARES_MAX * sizeof *spare;
     if (has_added(head->version) && bytes->size >= at + size) memcpy(spare, bytes->data + at, size);
 }
 
@@ -424,7 +435,7 @@ static bool take_tools(const file_head *head, const file_shape *shape, const lar
     lar_settings_reset(&tools->settings);
     *at = extract(*at, &tools->division,
                   settings ? sizeof tools->division : offsetof(lar_step_division, base));
-    if (settings) *at = extract(*at, &tools->settings, sizeof tools->settings);
+    *at = extract(*at, &tools->settings, set_bytes(head->version));
     if (has_added(head->version)) *at = extract(*at, tools->spare, sizeof tools->spare);
     *at = extract(*at, &tools->forces, forces_bytes(shape));
     *at = extract(*at, tools->motion, count * sizeof tools->motion[0]);

@@ -112,7 +112,14 @@ void lar_simulation_limit_tools(lar_simulation *simulation) {
     simulation->domain.interval = lar_interval_length(&simulation->domain, &simulation->tools);
 }
 
+/* For those who look from other threads. */
+static void note_time(lar_simulation *simulation) {
+    double now = lar_simulation_time(simulation);
+    __atomic_store(&simulation->domain.now, &now, __ATOMIC_RELAXED);
+}
+
 void lar_simulation_settle(lar_simulation *simulation) {
+    note_time(simulation);
     bool tissue = lar_domain_stiffen(&simulation->domain, &simulation->tools.settings);
     bool tools = lar_spares_take(&simulation->tools, &simulation->list);
     if (tissue || tools) lar_simulation_limit_tools(simulation);
@@ -345,6 +352,7 @@ lar_status lar_simulation_compute(lar_simulation *simulation, uint64_t steps,
         status = advance(simulation, before + steps, callback, context, error);
         simulation->report_steps = lar_simulation_steps(simulation) - before;
     }
+    note_time(simulation);
     if (!status) lar_fault_attribute(&simulation->domain, &simulation->tools, fault);
     return status ? status : lar_fault_report(&simulation->domain, fault, error);
 }

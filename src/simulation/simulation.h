@@ -77,6 +77,9 @@ void lar_simulation_set_start(lar_simulation *simulation);
  * the tissues bear. */
 void lar_simulation_settle(lar_simulation *simulation);
 
+/* External work that a change between steps does [J]; the state is whole. */
+void lar_simulation_add_external(lar_simulation *simulation, double work);
+
 /* What every tool bears, and how often is decided about tools: after these have changed. */
 void lar_simulation_limit_tools(lar_simulation *simulation);
 

@@ -26,7 +26,7 @@ static double length_of_step(const lar_simulation *simulation) {
 }
 
 /* The state is whole. Of several processors the first one keeps what belongs to nobody. */
-static void add_external(lar_simulation *simulation, double work) {
+void lar_simulation_add_external(lar_simulation *simulation, double work) {
     lar_computer *computer = simulation->computer;
     simulation->state.external += work;
     if (computer) computer->processor[0].worker[0].state.external += work;
@@ -66,7 +66,7 @@ lar_status lar_simulation_set_gravity(lar_simulation *simulation, const double g
     status = lar_simulation_gather(simulation, error);
     if (status) return status;
     double before = gravity_account(simulation, &simulation->tools.settings);
-    add_external(simulation, gravity_account(simulation, &wanted) - before);
+    lar_simulation_add_external(simulation, gravity_account(simulation, &wanted) - before);
     simulation->tools.settings = wanted;
     if (simulation->computer) simulation->computer->tools_sent = false;
     return LAR_OK;
@@ -140,8 +140,10 @@ static double viscous_account(const lar_simulation *simulation, const body_eleme
 static double element_account(const lar_simulation *simulation, const body_element *element,
                               double half) {
     const lar_domain *domain = &simulation->domain;
-    const lar_material *material = lar_domain_material(domain, element->e);
+    lar_material passive = *lar_domain_material(domain, element->e);
+    const lar_material *material = &passive;
     const lar_state *state = &simulation->state;
+    passive.fibre.along = passive.fibre.across = 0; /* what is active stays as it is */
     double u[8][3], v[8][3], force[8][3], hourglass = 0, account;
     if (element->hex8) {
         const lar_gid *node = domain->layout.corner[element->e];
@@ -212,7 +214,7 @@ lar_status lar_simulation_set_stiffness(lar_simulation *simulation, int32_t mate
     if (memcmp(&wanted, &simulation->tools.settings, sizeof wanted) == 0) return LAR_OK;
     status = lar_simulation_gather(simulation, error);
     if (status) return status;
-    add_external(simulation, stiffening(simulation, &wanted));
+    lar_simulation_add_external(simulation, stiffening(simulation, &wanted));
     simulation->tools.settings = wanted;
     simulation->tools.division.due = 1;
     lar_simulation_settle(simulation);

@@ -8,6 +8,7 @@
 #include "contact/tool_body.h"
 #include "mechanics/hex8_full.h"
 #include "mechanics/hex8_guard.h"
+#include "step/activation.h"
 #include "step/beside.h"
 #include "step/viscous_history.h"
 
@@ -351,7 +352,13 @@ lar_material lar_domain_material_copy(const lar_domain *domain, lar_gid e, doubl
     double now;
     __atomic_load(&domain->factor[lar_factor_of(material)], &now, __ATOMIC_RELAXED);
     if (factor) *factor = now;
-    return times(&domain->model->material[material], now);
+    lar_material made = times(&domain->model->material[material], now);
+    if (!lar_fibre_active(&made.fibre)) return made;
+    __atomic_load(&domain->now, &now, __ATOMIC_RELAXED);
+    double activation = lar_activation_at(domain, e, now);
+    made.fibre.along *= activation;
+    made.fibre.across *= activation;
+    return made;
 }
 
 /* Elements whose material has changed. */
@@ -375,6 +382,7 @@ static void fill_changed(lar_domain *domain, const bool changed[LAR_FACTORS_MAX]
 bool lar_domain_stiffen(lar_domain *domain, const lar_settings *settings) {
     const lar_model *model = domain->model;
     bool changed[LAR_FACTORS_MAX], any = false;
+    lar_activation_take(domain, settings);
     for (int i = 0; i < LAR_FACTORS_MAX; i++) {
         changed[i] = settings->factor[i] != domain->factor[i];
         any = any || changed[i];
@@ -498,6 +506,7 @@ lar_status lar_domain_create_styled(const lar_model *model, const lar_options *o
         choose_scale(domain);
         prepare_motion(domain);
         status = lar_viscous_plan(domain, error);
+        if (!status) status = lar_activation_plan(domain, error);
         if (!status && domain->kind == LAR_ELEMENT_HEX8) status = build_blocks(domain, error);
     }
     if (!status)
@@ -554,6 +563,7 @@ lar_status lar_domain_create_part(const lar_domain *whole, const lar_part *part,
     if (!status) status = copy_nodes(whole, counted, domain, error);
     if (!status) status = list_runs(domain, run_max, error);
     if (!status) status = lar_viscous_plan(domain, error);
+    if (!status) status = lar_activation_plan(domain, error);
     if (!status && domain->kind == LAR_ELEMENT_HEX8) status = build_blocks(domain, error);
     domain->limits = whole->limits; /* a run stops for the same reason on any grid */
     if (status) lar_domain_destroy(domain);
@@ -569,6 +579,7 @@ void lar_domain_destroy(lar_domain *domain) {
     free(domain->more);
     free(domain->fibres);
     lar_viscous_unplan(domain);
+    lar_activation_unplan(domain);
     free(domain->material);
     free(domain->base);
     free(domain->corner_limit);

@@ -44,9 +44,14 @@ typedef struct lar_domain {
     bool lean;              /* general ones are lean */
     lar_lane_base *base;    /* [8 for each block] */
     lar_material *material; /* [materials of the model] as stiff as they are now; names are lent */
-    double factor[LAR_FACTORS_MAX];  /* of their stiffness (model/settings.h); atomic */
-    double fastest[LAR_FACTORS_MAX]; /* square of the highest frequency at rest among the
-                                         elements of these materials [1/s^2]; a whole's */
+    double factor[LAR_FACTORS_MAX];     /* of their stiffness (model/settings.h); atomic */
+    double activation[LAR_FACTORS_MAX]; /* what was set of their activation, likewise */
+    bool activates;                     /* activation is not 1 everywhere at all times */
+    double now;                         /* time of the last state [s], of a whole; atomic */
+    double *place;                      /* [8 for each block] on the way of waves [m]; NULL: there
+                                           are none */
+    double fastest[LAR_FACTORS_MAX];    /* square of the highest frequency at rest among the
+                                            elements of these materials [1/s^2]; a whole's */
     double *corner_limit;   /* [8 for each block] lar_hex8_corner_limit, in squared force units */
     double *rest;           /* [layout.node_padded][4] where nodes are at rest [m] */
     lar_element_rate *rate; /* [elements of the model] */
@@ -116,14 +121,14 @@ static inline const lar_material *lar_domain_material(const lar_domain *domain, 
     return &domain->material[domain->model->element_material[e]];
 }
 
-/* The same for threads that do not advance the simulation: a copy; *factor (may be NULL) is how
- * many times as stiff it is as the model says. */
+/* The same for threads that do not advance the simulation: a copy, as active as it is now; *factor
+ * (may be NULL) is how many times as stiff it is as the model says. */
 lar_material lar_domain_material_copy(const lar_domain *domain, lar_gid e, double *factor);
 
 /* Between steps: makes materials as stiff as `settings` ask. Stresses, hourglass forces and
  * barriers become what they would have been if the model had had these materials: the element's
  * numbers are made anew, so that it does not matter how stiff it was before. True when something
- * changed. */
+ * changed. What is active becomes as active as they ask, which costs nothing and is not told. */
 bool lar_domain_stiffen(lar_domain *domain, const lar_settings *settings);
 
 /* The element in a lane of block `b` (of layout.block), as stiff as it is now; hex8 only. */

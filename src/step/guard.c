@@ -24,8 +24,13 @@ lar_status lar_strained_create(const lar_domain *domain, lar_strained *strained,
                                .strain = lar_calloc(lanes, sizeof *strained->strain),
                                .damped = lar_calloc(lanes, sizeof *strained->damped),
                                .damped_count = lar_calloc(runs, sizeof *strained->damped_count)};
+    bool active = lar_model_active(domain->model) != NULL;
+    if (active) {
+        strained->activation = lar_calloc_aligned(lanes, sizeof *strained->activation);
+        strained->active_energy = lar_calloc_aligned(lanes, sizeof *strained->active_energy);
+    }
     if (strained->lane && strained->count && strained->strain && strained->damped &&
-        strained->damped_count)
+        strained->damped_count && (!active || (strained->activation && strained->active_energy)))
         return LAR_OK;
     lar_strained_destroy(strained);
     size_t each = sizeof *strained->lane + sizeof *strained->strain + sizeof *strained->damped;
@@ -38,6 +43,8 @@ void lar_strained_destroy(lar_strained *strained) {
     free(strained->strain);
     free(strained->damped);
     free(strained->damped_count);
+    free(strained->activation);
+    free(strained->active_energy);
     *strained = (lar_strained){0};
 }
 

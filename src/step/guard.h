@@ -29,6 +29,8 @@ struct lar_strained {
     float (*strain)[LAR_STRAIN_NUMBERS]; /* [8 for each block] scratch of a monitor */
     lar_damped *damped;                  /* [8 for each block] with half of their work to come */
     int32_t *damped_count;               /* [run_count] of these, as above */
+    double *activation;                  /* [8 for each block] scratch (step/activation.h), */
+    double *active_energy;               /* likewise; NULL where nothing is active */
 };
 
 lar_status lar_strained_create(const lar_domain *domain, lar_strained *strained, lar_error *error);

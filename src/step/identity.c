@@ -73,6 +73,22 @@ static uint64_t hash_mesh(const lar_mesh *mesh) {
     return hash;
 }
 
+/* What is active all the time has the hash that it always had. */
+static uint64_t hash_activation(uint64_t hash, const lar_model *model) {
+    for (int i = 0; i < model->material_count; i++) {
+        const lar_activation *a = &model->material[i].activation;
+        if (!lar_activation_varies(a)) continue;
+        hash = lar_hash_word(hash, (uint64_t)i);
+        if (a->curve > 0) hash = hash_curve(hash, &model->curve[a->curve - 1]);
+        hash = hash_doubles(hash, a->wave.direction, 3);
+        hash = hash_doubles(hash,
+                            (const double[]){a->wave.speed, a->wave.length, a->wave.every,
+                                             a->wave.rest, a->wave.start},
+                            5);
+    }
+    return hash;
+}
+
 /* What is without fibres has the hash that it always had. */
 static uint64_t hash_fibres(uint64_t hash, const lar_model *model) {
     if (!lar_model_fibrous(model)) return hash;
@@ -85,7 +101,7 @@ static uint64_t hash_fibres(uint64_t hash, const lar_model *model) {
     for (lar_gid e = 0; e < model->mesh.element_count; e++)
         if (lar_fibre_directed(&lar_model_material_of(model, e)->fibre))
             hash = hash_doubles(hash, lar_model_fibre(model, e), 3);
-    return hash;
+    return hash_activation(hash, model);
 }
 
 static uint64_t hash_materials(const lar_model *model) {

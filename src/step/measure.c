@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "step/activation.h"
 #include "step/guard.h"
 #include "step/viscous_history.h"
 #include "mechanics/hex8_full.h"
@@ -18,8 +19,20 @@ static double element_energy(const lar_domain *domain, const lar_state *state, l
     lar_hex8 hex8;
     lar_hex8_prepare(corner, lar_domain_material(domain, e), &hex8);
     memcpy(hex8.fibre, lar_model_fibre(domain->model, e), sizeof hex8.fibre);
-    return lar_hex8_energy(&hex8, lar_domain_material(domain, e), u, hourglass) +
-           lar_guard_energy(domain, state, e);
+    const lar_material now = lar_activation_material(domain, e, lar_state_time(domain, state));
+    return lar_hex8_energy(&hex8, &now, u, hourglass) + lar_guard_energy(domain, state, e);
+}
+
+/* What the present change of an element's activation does until now. */
+static double pending_work(const lar_domain *domain, const lar_state *state, lar_gid e) {
+    double corner[8][3], u[8][3], F[3][3];
+    if (!domain->activates || !lar_fibre_active(&lar_domain_material(domain, e)->fibre)) return 0;
+    lar_hex8 hex8;
+    lar_mesh_corners(&domain->model->mesh, e, corner);
+    lar_domain_corners(domain, state->u, e, u);
+    lar_hex8_prepare(corner, lar_domain_material(domain, e), &hex8);
+    lar_hex8_gradient(&hex8, u, F);
+    return lar_activation_pending(domain, state, e, hex8.volume, F);
 }
 
 /* What a viscous element remembers, taken on to the time of the state: returns the stress P. */
@@ -27,8 +40,9 @@ static void look_at_history(const lar_domain *domain, const lar_state *state, la
                             const double F[3][3], double history[LAR_HISTORY_MAX], double P[3][3]) {
     double factor = domain->factor[lar_factor_of(domain->model->element_material[e])];
     lar_viscous_read(domain, state, e, history);
-    lar_viscous_stress_at(lar_domain_material(domain, e), factor, state->past,
-                          lar_model_fibre(domain->model, e), F, history, P);
+    const lar_material now = lar_activation_material(domain, e, lar_state_time(domain, state));
+    lar_viscous_stress_at(&now, factor, state->past, lar_model_fibre(domain->model, e), F, history,
+                          P);
 }
 
 /* What the viscous terms of an element have taken. */
@@ -240,6 +254,7 @@ void lar_measure_energy(const lar_domain *domain, lar_measure_scratch *scratch,
         energy->strain += element_energy(domain, state, e, &hourglass);
         energy->hourglass += hourglass;
         energy->viscous += viscous_work(domain, &l.state, e);
+        energy->external += pending_work(domain, &l.state, e);
     }
 }
 
@@ -267,7 +282,8 @@ double lar_measure_element_energy(const lar_domain *domain, const lar_state *sta
 double lar_measure_stress(const lar_domain *domain, const lar_state *state, lar_gid e,
                           double cauchy[6]) {
     double corner[8][3], u[8][3];
-    const lar_material *material = lar_domain_material(domain, e);
+    const lar_material now = lar_activation_material(domain, e, lar_state_time(domain, state));
+    const lar_material *material = &now;
     lar_mesh_corners(&domain->model->mesh, e, corner);
     lar_domain_corners(domain, state->u, e, u);
     if (domain->kind != LAR_ELEMENT_HEX8) {

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "contact/tool_friction.h"
+#include "step/activation.h"
 #include "step/guard.h"
 #include "step/viscous_history.h"
 #include "mechanics/hex8_full.h"
@@ -24,15 +25,22 @@ static int64_t recover_run(const lar_domain *domain, int32_t r, bool keeps,
     if (!run->viscous && !run->fibrous)
         return domain->kernels->recover(run, state->u, state->force, &domain->limits, monitor);
     lar_viscous_step step = {.length = state->past, .keep = keeps};
+    lar_active_step active;
+    bool activates = lar_activation_begin(domain, r, state, &active);
     if (run->viscous) step.history = state->history + domain->run_history[r];
-    return domain->kernels->recover_more(run, run->viscous ? &step : NULL, state->u, state->force,
-                                         &domain->limits, monitor);
+    int64_t found =
+        domain->kernels->recover_more(run, run->viscous ? &step : NULL, activates ? &active : NULL,
+                                      state->u, state->force, &domain->limits, monitor);
+    if (activates && keeps) state->external += lar_activation_change(domain, r, &active, state);
+    return found;
 }
 
 /* A run has elements beyond the limits, the first of them in the block that `found` says. Forces
  * no longer count. */
 static void fault_run(const lar_domain *domain, int32_t r, int64_t found, lar_state *state,
                       lar_fault *fault) {
+    lar_active_step active;
+    bool activates = lar_activation_begin(domain, r, state, &active);
     lar_block_run one = domain->run[r];
     size_t size = lar_run_stride(&one);
     one.count = 1;
@@ -41,9 +49,12 @@ static void fault_run(const lar_domain *domain, int32_t r, int64_t found, lar_st
         one.more = domain->run[r].more ? domain->run[r].more + b : NULL;
         one.viscous = 0; /* the elastic stress says enough, and what is remembered has gone on */
         if (one.fibrous) one.fibres = domain->run[r].fibres + b;
+        lar_active_step now =
+            activates ? (lar_active_step){active.now + LAR_BLOCK * b, active.energy + LAR_BLOCK * b}
+                      : (lar_active_step){0};
         found = one.fibrous
-                    ? domain->kernels->recover_more(&one, NULL, state->u, state->force,
-                                                    &domain->limits, NULL)
+                    ? domain->kernels->recover_more(&one, NULL, activates ? &now : NULL, state->u,
+                                                    state->force, &domain->limits, NULL)
                     : domain->kernels->recover(&one, state->u, state->force, &domain->limits, NULL);
         const lar_lanes *lanes = &domain->layout.block[domain->run_first[r] + b];
         for (int lane = 0; lane < LAR_BLOCK; lane++)

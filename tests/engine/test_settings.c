@@ -465,7 +465,15 @@ static void settings_that_change_nothing_change_no_bit(void **unused) {
 
 /* ---- files of before ------------------------------------------------------------------------ */
 
-enum { HEAD = 144, TOOLS = 136, DAMPED = 112, DIVISION = 56, MOTION = 152, FOLLOWER = 240 };
+enum {
+    HEAD = 144,
+    TOOLS = 136,
+    DAMPED = 112,
+    DIVISION = 56,
+    SETTINGS = 552,
+    MOTION = 152,
+    FOLLOWER = 240
+};
 
 static void cut(lar_bytes *bytes, size_t at, size_t count) {
     memmove(bytes->data + at, bytes->data + at + count, bytes->size - at - count);
@@ -477,7 +485,7 @@ static void cut(lar_bytes *bytes, size_t at, size_t count) {
 static void make_older(lar_bytes *bytes, uint32_t version, double damping) {
     int32_t tools;
     memcpy(&tools, bytes->data + TOOLS, sizeof tools);
-    size_t first = HEAD + DIVISION + sizeof(lar_settings) + MOTION * (size_t)tools;
+    size_t first = HEAD + DIVISION + SETTINGS + MOTION * (size_t)tools;
     for (int32_t t = 0; t < tools; t++) {
         size_t at = first + FOLLOWER * (size_t)t;
         for (size_t i = 0; i < 7; i++) {
@@ -493,7 +501,7 @@ static void make_older(lar_bytes *bytes, uint32_t version, double damping) {
         memcpy(&damped, bytes->data + DAMPED, 8);
         damped /= damping;
         memcpy(bytes->data + DAMPED, &damped, 8);
-        cut(bytes, HEAD + DIVISION - 8, 8 + sizeof(lar_settings));
+        cut(bytes, HEAD + DIVISION - 8, 8 + SETTINGS);
     }
     uint64_t size = bytes->size;
     memcpy(bytes->data + 8, &version, 4);

@@ -59,7 +59,7 @@ static void repair(lar_bytes *bytes) {
     memcpy(counts, bytes->data + AT_COUNTS, sizeof counts);
     size_t offsets = (size_t)NODES * 8, values = 6 * (size_t)NODES * 8, last = bytes->size - 8;
     if (counts[0] == 3 && counts[1] >= 0 && counts[1] <= LAR_GRASPS_MAX &&
-        last == AT_DIVISION + sizeof(lar_step_division) + sizeof(lar_settings) +
+        last == AT_DIVISION + sizeof(lar_step_division) + offsetof(lar_settings, activation) +
                     3 * (sizeof(lar_tool_motion) + sizeof(lar_tool_follower)) +
                     (size_t)counts[1] * sizeof(lar_grasp) + offsets + values) {
         uint64_t hash = lar_hash_word(0, word_at(bytes, AT_STEP));

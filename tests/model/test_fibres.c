@@ -67,6 +67,24 @@ static void scenes_say_what_is_active(void **state) {
     lar_model_destroy(model);
 }
 
+static void scenes_say_when_it_is_active(void **state) {
+    (void)state;
+    lar_model *model = scene(
+        SCENE("active: {along: 2e3, curve: {points: [[0, 0], [0.1, 1]]}, wave: {direction: [0, 0, "
+              "2], speed: 0.5, length: 0.02, every: 0.1, rest: 0.2}}, direction: {axis: [0, 0, "
+              "1]}"));
+    const lar_activation *a = &model->material[0].activation;
+    assert_int_equal(a->curve, 1);
+    assert_int_equal(model->curve[0].count, 2);
+    assert_true(a->wave.speed == 0.5 && a->wave.length == 0.02 && a->wave.every == 0.1);
+    assert_true(a->wave.rest == 0.2 && a->wave.direction[2] == 1);
+    lar_model_destroy(model);
+    model = scene(SCENE("active: {along: 2e3, over: 0.3}, direction: {axis: [0, 0, 1]}"));
+    assert_int_equal(model->material[0].activation.curve, 1);
+    assert_true(model->curve[0].over == 0.3 && lar_model_duration(model) == 0.3);
+    lar_model_destroy(model);
+}
+
 static void the_last_material_has_its_own_rule(void **state) {
     (void)state;
     lar_model *model =
@@ -80,6 +98,7 @@ static void the_last_material_has_its_own_rule(void **state) {
     lar_model_destroy(model);
 }
 
+#define WAVE "direction: mesh, active: {along: 1, wave: {direction: [1, 0, 0], "
 static void scenes_say_what_is_wrong(void **state) {
     (void)state;
     static const char *const wrong[][2] = {
@@ -96,6 +115,26 @@ static void scenes_say_what_is_wrong(void **state) {
         {SCENE("active: {along: 1}, ksi: 3, direction: mesh"),
          "ksi is no parameter of the law none"},
         {SCENE("active: {along: 1, curve: 2}, direction: mesh"), "curve"},
+        {SCENE("active: {along: 1, over: 1, curve: {points: [[0, 0]]}}, direction: mesh"),
+         "say the same thing in two ways"},
+        {SCENE("active: {along: 1, curve: {points: [[0, 0], [1, 2]]}}, direction: {axis: [1, 0, "
+               "0]}"),
+         "follows a curve with values below 0 or above 1"},
+        {SCENE("active: {along: 1, curve: {points: [[0, .nan]]}}, direction: mesh"),
+         "not a finite number"},
+        {SCENE("active: {along: 1, wave: {}}, direction: mesh"), "needs the key \"direction\""},
+        {SCENE("active: {along: 1, wave: 3}, direction: mesh"), "a wave"},
+        {SCENE(WAVE "speed: 1, length: 0}}"), "length is 0"},
+        {SCENE(WAVE "speed: 1, length: -1}}"), "length is -1"},
+        {SCENE(WAVE "speed: 0, length: 1}}"), "speed is 0"},
+        {SCENE(WAVE "speed: -1, length: 1}}"), "speed is -1"},
+        {SCENE(WAVE "speed: .nan, length: 1}}"), "not a finite number"},
+        {SCENE(WAVE "speed: 1, length: 1, every: 0.5}}"), "pulses do not overlap"},
+        {SCENE(WAVE "speed: 1, length: 1, rest: 1.5}}"), "rest: 1.5"},
+        {SCENE(WAVE "speed: 1, length: 1, turns: 2}}"), "turns"},
+        {SCENE("direction: mesh, active: {along: 1, wave: {direction: [0, 0, 0], speed: 1, "
+               "length: 1}}"),
+         "direction"},
         {SCENE(POW "twist: 1, direction: mesh"), "twist"},
         {SCENE(POW "direction: mesh"), "no mesh has directions"},
         {SCENE(POW "direction: {}"), "direction: expected mesh, {axis: [x, y, z]}"},
@@ -243,6 +282,28 @@ static void decks_say_laws_and_directions(void **state) {
     lar_model_destroy(model);
 }
 
+#define CONTRACTS(lc)                                                                              \
+    SOLID "<solid type=\"prescribed uniaxial active contraction\"><T0" lc ">200</T0>" ALONG        \
+          "</solid>"
+#define CURVE(points)                                                                              \
+    "</MeshData><LoadData><load_controller id=\"3\" type=\"loadcurve\"><interpolate>LINEAR"        \
+    "</interpolate><points>" points "</points></load_controller></LoadData><MeshData>"
+
+/* A curve above 1 makes the stress larger, and the curve a part of it. */
+static void decks_say_when_it_is_active(void **state) {
+    (void)state;
+    lar_model *model = deck(DECK("solid mixture", CONTRACTS(" lc=\"3\""),
+                                 CURVE("<pt>0,0</pt><pt>1,5</pt><pt>2,1</pt>")));
+    const lar_material *m = &model->material[0];
+    assert_true(m->fibre.along == 1000 && m->activation.curve > 0);
+    const lar_curve *curve = &model->curve[m->activation.curve - 1];
+    assert_true(lar_curve_value(curve, 1) == 1 && lar_curve_value(curve, 2) == 0.2);
+    lar_model_destroy(model);
+    model = deck(DECK("solid mixture", CONTRACTS(""), ""));
+    assert_true(model->material[0].fibre.along == 200 && model->material[0].activation.curve == 0);
+    lar_model_destroy(model);
+}
+
 static void decks_say_what_is_wrong(void **state) {
     (void)state;
 #define OF(material, data) DECK("trans iso Mooney-Rivlin", material, data)
@@ -256,6 +317,9 @@ static void decks_say_what_is_wrong(void **state) {
         {OF(ISO "<fiber type=\"local\">1,9</fiber>", ""), "one corner to another, of 1 to 8"},
         {OF(ISO ALONG "<active_contraction/>", ""), "<active_contraction> of a material"},
         {OF("<k>9</k><c1>1</c1><c3>1</c3>" ALONG, ""), "no parameter <c4>"},
+        {DECK("solid mixture", CONTRACTS(" lc=\"3\""), CURVE("<pt>0,0</pt><pt>1,-1</pt>")),
+         "has values below 0"},
+        {DECK("solid mixture", CONTRACTS(" lc=\"3\""), ""), "names the load controller 3"},
         {OF(ISO ALONG, "<ElementData type=\"fiber\" elem_set=\"none\"/>"),
          "names the element set 'none'"},
         {OF(ISO ALONG,
@@ -289,10 +353,12 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(scenes_say_laws_and_directions),
         cmocka_unit_test(scenes_say_what_is_active),
+        cmocka_unit_test(scenes_say_when_it_is_active),
         cmocka_unit_test(the_last_material_has_its_own_rule),
         cmocka_unit_test(scenes_say_what_is_wrong),
         cmocka_unit_test(meshes_bring_directions),
         cmocka_unit_test(decks_say_laws_and_directions),
+        cmocka_unit_test(decks_say_when_it_is_active),
         cmocka_unit_test(decks_say_what_is_wrong),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

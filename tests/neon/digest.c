@@ -156,10 +156,10 @@ static bool shake(const lar_kernels *kernels, lar_law law, const lar_fibre *fibr
     for (int step = 0; step < STEPS && good; step++) {
         lar_hex8_monitor monitor = {.limit = limit, .lane = lane, .strain = strain};
         lar_hex8_monitor *looks = step % 10 == 0 ? &monitor : NULL;
-        int64_t beyond =
-            run.fibrous
-                ? kernels->recover_more(&run, NULL, &w->u[0][0], &w->force[0][0], &limits, looks)
-                : kernels->recover(&run, &w->u[0][0], &w->force[0][0], &limits, looks);
+        int64_t beyond = run.fibrous
+                             ? kernels->recover_more(&run, NULL, NULL, &w->u[0][0], &w->force[0][0],
+                                                     &limits, looks)
+                             : kernels->recover(&run, &w->u[0][0], &w->force[0][0], &limits, looks);
         good = beyond < 0 &&
                kernels->update(&leapfrog, 0, NODES, &w->u[0][0], &w->v[0][0], &w->force[0][0],
                                w->push, step % 10 ? NULL : w->mass, &damped, &fastest);

@@ -1,5 +1,5 @@
-/* Forces on nodes and points of contact in a session: done between two ticks, recorded, replayed on
- * another grid, and refused where settings are. */
+/* Forces on nodes, activation and points of contact in a session: done between two ticks, recorded,
+ * replayed on another grid, and refused where settings are. */
 #include "session/session_test.h"
 
 #define PATH LAR_TEST_BUILD "/calls.recording"
@@ -72,6 +72,61 @@ static void forces_are_played(void **unused) {
     close_bench(&b);
 }
 
+/* The block as a muscle that shortens along the axis on which it hangs. */
+static lar_model *muscle(void) {
+    lar_model *model = named_block();
+    lar_mesh *mesh = &model->mesh;
+    mesh->fibre = lar_calloc((size_t)mesh->element_count, sizeof *mesh->fibre);
+    assert_non_null(mesh->fibre);
+    for (int32_t e = 0; e < mesh->element_count; e++) mesh->fibre[e][0] = 1;
+    model->material[0].fibre.along = 800;
+    model->material[0].activation.wave =
+        (lar_wave){.speed = 1, .direction = {1, 0, 0}, .length = 0.02, .every = 0.05, .rest = 0.3};
+    DONE(lar_model_check(model, &failure));
+    return model;
+}
+
+/* At random, once in a few ticks; saved and taken up again on the way. */
+static void activations_are_played(void **unused) {
+    (void)unused;
+    lar_session_options options = lar_session_options_default();
+    lar_saved *saved = NULL;
+    options.record = PATH;
+    options.hash_every = 20;
+    bench b = open_bench_of(muscle(), "2x1x1", 1, &options);
+    DONE(lar_saved_create(b.simulation, &saved, &failure));
+    DONE(lar_session_activate(b.session, 0, 0, &failure)); /* before the start */
+    DONE(lar_session_start(b.session, &failure));
+    for (int i = 0; i < 60; i++) {
+        wait_steps(&b, 5);
+        DONE(lar_session_activate(b.session, i % 2 - 1, (i * 37 % 50) / 49.0, &failure));
+        if (i == 20) DONE(lar_session_save_to(b.session, saved, &failure));
+        if (i == 40) DONE(lar_session_load_from(b.session, saved, &failure));
+    }
+    DONE(lar_session_activate(b.session, 0, 0.5, &failure));
+    wait_steps(&b, 50);
+    assert_true(lar_session_activation(b.session, 0) == 0.5);
+    assert_true(lar_session_activation(b.session, 1) == 0);
+    assert_int_equal(lar_session_activate(b.session, 0, NAN, &failure), LAR_ERROR_ARGUMENT);
+    assert_int_equal(lar_session_activate(b.session, 0, -1, &failure), LAR_ERROR_ARGUMENT);
+    assert_int_equal(lar_session_activate(b.session, 7, 1, &failure), LAR_ERROR_ARGUMENT);
+    lar_saved_destroy(saved);
+    close_bench(&b);
+    for (int grid = 0; grid < 3; grid++) {
+        static const char *const grids[] = {NULL, "2x2x1", "2x1x1"};
+        lar_replay_report report;
+        lar_model *model = muscle();
+        lar_simulation *simulation = NULL;
+        const lar_options divided = block_options(grids[grid], 1);
+        DONE(lar_simulation_create(model, &divided, &simulation, &failure));
+        DONE(lar_replay(simulation, PATH, NULL, NULL, &report, &failure));
+        assert_true(report.hashes > 5 && report.different == UINT64_MAX);
+        assert_true(lar_simulation_activation(simulation, 0) == 0.5);
+        lar_simulation_destroy(simulation);
+        lar_model_destroy(model);
+    }
+}
+
 static void touches_are_told_between_ticks(void **unused) {
     (void)unused;
     static lar_touch touch[300];
@@ -98,7 +153,8 @@ static void touches_are_told_between_ticks(void **unused) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(forces_are_played),
+    const struct CMUnitTest tests[] = {cmocka_unit_test(activations_are_played),
+                                       cmocka_unit_test(forces_are_played),
                                        cmocka_unit_test(touches_are_told_between_ticks)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

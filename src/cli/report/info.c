@@ -99,6 +99,8 @@ void info_report_json(const info_report *report) {
         lar_json_number(&json, "instant_shear_modulus", material.instant_shear_modulus);
         lar_json_text(&json, "fibres", material.fibres);
         lar_json_number(&json, "fibre_modulus", material.fibre_modulus);
+        lar_json_number(&json, "active_along", material.active_along);
+        lar_json_number(&json, "active_across", material.active_across);
         lar_json_close(&json);
     }
     lar_json_close(&json);
@@ -134,6 +136,9 @@ static void print_materials(const lar_model *model) {
         if (*m.fibres)
             printf(", fibres (%s, modulus where they begin to pull %.4g Pa)", m.fibres,
                    m.fibre_modulus);
+        if (m.active_along > 0 || m.active_across > 0)
+            printf(", active (up to %.4g Pa along fibres and %.4g Pa across)", m.active_along,
+                   m.active_across);
         putchar('\n');
     }
 }

@@ -8,6 +8,7 @@
  *           scene_material.c  materials
  *           scene_tissue.c    a material in a file of its own
  *           scene_fibre.c     fibres of materials
+ *           scene_active.c    what is active of them, and when
  *           scene_motion.c    fix, move, load, initial, curves
  *           scene_contact.c   contact
  *           scene_tools.c     tools
@@ -164,8 +165,15 @@ lar_status lar_scene_read_tissue(lar_scene *scene, const lar_yaml *entry,
                                  lar_scene_material_reader *read, lar_material *material);
 /* The fibres of a material; and, when all elements have their materials, the directions of those of
  * one (scene_fibre.c). */
-lar_status lar_scene_read_fibres(const lar_scene *scene, const lar_yaml *node, lar_fibre *fibre);
+lar_status lar_scene_read_fibres(const lar_scene *scene, const lar_yaml *node,
+                                 lar_material *material);
 lar_status lar_scene_lay_fibres(lar_scene *scene, const lar_yaml *node, int material);
+/* The key `active` of these (scene_active.c). */
+lar_status lar_scene_read_active(const lar_scene *scene, const lar_yaml *node,
+                                 lar_material *material);
+/* `over` or `curve` of an entry; *index stays where neither is there. */
+lar_status lar_scene_read_course(const lar_scene *scene, const lar_yaml *entry, bool motion,
+                                 int *index);
 lar_status lar_scene_read_fix(lar_scene *scene, const lar_yaml *node);
 lar_status lar_scene_read_move(lar_scene *scene, const lar_yaml *node);
 lar_status lar_scene_read_load(lar_scene *scene, const lar_yaml *node);

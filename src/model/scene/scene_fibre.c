@@ -54,27 +54,13 @@ static lar_status read_parameters(const lar_scene *scene, const lar_yaml *node, 
     return status;
 }
 
-/* A stress that is there from the start and stays. */
-static lar_status read_active(const lar_scene *scene, const lar_yaml *node, lar_fibre *fibre) {
-    static const char *const keys[] = {"along", "across", NULL};
-    lar_status status = lar_scene_keys(scene, node, "active", keys);
-    const lar_yaml *along = status ? NULL : lar_yaml_get(node, "along");
-    const lar_yaml *across = status ? NULL : lar_yaml_get(node, "across");
-    if (!status && !along && !across)
-        return lar_scene_fail(scene, node, LAR_ERROR_FORMAT,
-                              "active: give \"along\" or \"across\" the fibres, or both, for "
-                              "example {along: 2.0e3}");
-    if (along) status = lar_scene_not_negative(scene, along, LAR_IN_PASCAL, &fibre->along);
-    if (!status && across)
-        status = lar_scene_not_negative(scene, across, LAR_IN_PASCAL, &fibre->across);
-    return status;
-}
-
-lar_status lar_scene_read_fibres(const lar_scene *scene, const lar_yaml *node, lar_fibre *fibre) {
+lar_status lar_scene_read_fibres(const lar_scene *scene, const lar_yaml *node,
+                                 lar_material *material) {
     static const char *const keys[] = {"law",  "part", "direction", "active", "ksi",     "alpha",
                                        "beta", "c3",   "c4",        "c5",     "lam_max", NULL};
     static const char what[] = "fibres";
     const lar_yaml *law = NULL, *part = NULL, *direction = NULL;
+    lar_fibre *fibre = &material->fibre;
     lar_status status = lar_scene_keys(scene, node, what, keys);
     const lar_yaml *active = status ? NULL : lar_yaml_get(node, "active");
     bool passive = !active || lar_yaml_get(node, "law") || lar_yaml_get(node, "part");
@@ -87,7 +73,7 @@ lar_status lar_scene_read_fibres(const lar_scene *scene, const lar_yaml *node, l
     if (!status && passive) status = read_law(scene, law, fibre);
     if (!status && passive) status = read_part(scene, part, &fibre->isochoric);
     fibre->line = node->line;
-    if (!status && active) status = read_active(scene, active, fibre);
+    if (!status && active) status = lar_scene_read_active(scene, active, material);
     return status ? status : read_parameters(scene, node, fibre);
 }
 

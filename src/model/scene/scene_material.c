@@ -269,7 +269,7 @@ static lar_status read_material(lar_scene *scene, const lar_yaml *node) {
     else if (!status)
         status = read_tissue(scene, node, material);
     fibres = lar_yaml_get(node, "fibres");
-    if (!status && fibres) status = lar_scene_read_fibres(scene, fibres, &material->fibre);
+    if (!status && fibres) status = lar_scene_read_fibres(scene, fibres, material);
     if (status) return status;
     char where[512];
     snprintf(where, sizeof where, "%s:%d:%d", scene->path, node->line, node->column);

@@ -89,9 +89,8 @@ static lar_status check_no_jump(const lar_scene *scene, const lar_yaml *node,
     return why ? lar_scene_fail(scene, node, LAR_ERROR_MODEL, "%s", why) : LAR_OK;
 }
 
-/* Reads `over` or `curve` of an entry. */
-static lar_status read_course(const lar_scene *scene, const lar_yaml *entry, bool motion,
-                              int *index) {
+lar_status lar_scene_read_course(const lar_scene *scene, const lar_yaml *entry, bool motion,
+                                 int *index) {
     const lar_yaml *over = lar_yaml_get(entry, "over"), *table = lar_yaml_get(entry, "curve");
     lar_curve *curve;
     if (over && table)
@@ -181,7 +180,7 @@ static lar_status read_move_entry(lar_scene *scene, const lar_yaml *entry) {
     if (!move) return lar_scene_no_memory(scene, sizeof *move);
     status = read_axes(scene, axes, &move->axes);
     if (!status) status = lar_scene_number(scene, by, LAR_IN_METRES, &move->by);
-    if (!status) status = read_course(scene, entry, true, &move->curve);
+    if (!status) status = lar_scene_read_course(scene, entry, true, &move->curve);
     if (!status) status = lar_scene_select_nodes(scene, nodes, &move->nodes);
     return status ? status : claim_axes(scene, entry, &move->nodes, move->axes, true);
 }
@@ -198,7 +197,7 @@ static lar_status read_force(lar_scene *scene, const lar_yaml *entry, const lar_
     lar_nodal_load *load = LAR_MODEL_APPEND(scene->model, load);
     if (!load) return lar_scene_no_memory(scene, sizeof *load);
     lar_status status = lar_scene_vector(scene, total ? total : each, LAR_IN_NEWTON, load->force);
-    if (!status) status = read_course(scene, entry, false, &load->curve);
+    if (!status) status = lar_scene_read_course(scene, entry, false, &load->curve);
     if (!status) status = lar_scene_select_nodes(scene, nodes, &load->nodes);
     for (int axis = 0; !status && total && axis < 3; axis++) load->force[axis] /= load->nodes.count;
     return status;
@@ -212,7 +211,7 @@ static lar_status read_pressure(lar_scene *scene, const lar_yaml *entry, const l
     lar_pressure_load *load = LAR_MODEL_APPEND(scene->model, pressure);
     if (!load) return lar_scene_no_memory(scene, sizeof *load);
     status = lar_scene_number(scene, pressure, LAR_IN_PASCAL, &load->pressure);
-    if (!status) status = read_course(scene, entry, false, &load->curve);
+    if (!status) status = lar_scene_read_course(scene, entry, false, &load->curve);
     if (!status)
         status = lar_scene_select(scene, faces, LAR_SET_FACES, false, &load->face, &load->count);
     return status;

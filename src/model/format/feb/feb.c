@@ -220,6 +220,7 @@ static lar_status read_model(lar_feb *feb) {
     if (!status) status = damp_static(feb, control);
     if (!status) status = notice_solver_damping(feb, control);
     if (!status) status = lar_feb_read_curves(feb);
+    if (!status) status = lar_feb_read_activation(feb);
     if (!status) status = read_sections(feb, feb->root);
     if (!status && step) status = read_sections(feb, step);
     hold_loads(feb->model);

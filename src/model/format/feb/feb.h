@@ -142,10 +142,12 @@ bool lar_feb_is_fibre(const char *type);
 lar_status lar_feb_read_fibre(lar_feb *feb, const xmlNode *node, const char *type,
                               lar_fibre *fibre);
 lar_status lar_feb_read_trans_iso(lar_feb *feb, const xmlNode *node, lar_fibre *fibre);
-/* The same of what contracts by a constant stress. */
+/* The same of what contracts; a curve that its stress follows is looked up when there are curves
+ * (lar_feb_read_activation). */
 bool lar_feb_is_active(const char *type);
 lar_status lar_feb_read_active(lar_feb *feb, const xmlNode *node, const char *type,
                                lar_fibre *fibre);
+lar_status lar_feb_read_activation(lar_feb *feb);
 /* Gives all elements with fibres their directions; the materials are assigned. */
 lar_status lar_feb_lay_fibres(lar_feb *feb);
 /* Whether an entry of <MeshData> says directions. */

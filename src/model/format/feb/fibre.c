@@ -71,12 +71,77 @@ lar_status lar_feb_read_active(lar_feb *feb, const xmlNode *node, const char *ty
     static const char *const known[] = {"density",  "k", "pressure_model", "T0", "fiber",
                                         "mat_axis", NULL};
     const struct active_type *active = find_active(type);
+    const xmlNode *value = lar_feb_child(node, "T0");
     double stress = 0;
-    lar_status status = lar_feb_parameter(feb, node, "T0", true, &stress);
+    lar_status status = value && lar_feb_attribute(feb, value, "lc")
+                            ? lar_feb_doubles(feb, value, &stress, 1)
+                            : lar_feb_parameter(feb, node, "T0", true, &stress);
     fibre->along = active->along * stress;
     fibre->across = active->across * stress;
     if (!fibre->line) fibre->line = lar_feb_line(node);
     return status ? status : lar_feb_notice_others(feb, node, known);
+}
+
+/* ---- T0 with a load curve -------------------------------------------------------------------- */
+
+/* <T0> of what contracts within a material of any depth, NULL: there is none. */
+static const xmlNode *find_stress(lar_feb *feb, const xmlNode *node) {
+    const char *type = lar_feb_attribute(feb, node, "type");
+    const xmlNode *found = type && find_active(type) ? lar_feb_child(node, "T0") : NULL;
+    for (const xmlNode *inner = lar_feb_first(node); inner && !found; inner = lar_feb_next(inner))
+        if (lar_feb_is(inner, "solid") || lar_feb_is(inner, "elastic"))
+            found = find_stress(feb, inner);
+    return found;
+}
+
+/* A copy of a curve of which 1 is the largest value; NULL without memory. */
+static lar_curve *share_of_curve(lar_feb *feb, int index, double largest) {
+    lar_curve *copy = LAR_MODEL_APPEND(feb->model, curve);
+    if (!copy) return NULL;
+    const lar_curve *from = &feb->model->curve[index];
+    double(*point)[2] = lar_calloc((size_t)from->count, sizeof *point);
+    if (!point) return NULL;
+    *copy = *from;
+    copy->point = point;
+    for (int p = 0; p < copy->count; p++) {
+        copy->point[p][0] = from->point[p][0];
+        copy->point[p][1] = from->point[p][1] / largest;
+    }
+    return copy;
+}
+
+/* FEBio multiplies T0 by a curve of any values; here the stress is the largest one, and the curve
+ * its parts. */
+static lar_status follow(lar_feb *feb, const xmlNode *stress, int index, lar_material *material) {
+    const lar_curve *curve = &feb->model->curve[index];
+    double largest = 0;
+    for (int p = 0; p < curve->count; p++) {
+        largest = fmax(largest, curve->point[p][1]);
+        if (!(curve->point[p][1] >= 0))
+            return lar_feb_fail(feb, stress, LAR_ERROR_UNSUPPORTED,
+                                "the load curve of <T0> has values below 0, so that muscle would "
+                                "push; Lariat's pulls, give the curve values from 0 on");
+    }
+    material->activation.curve = index + 1;
+    if (largest <= 1) return LAR_OK;
+    material->fibre.along *= largest;
+    material->fibre.across *= largest;
+    if (!share_of_curve(feb, index, largest)) return lar_feb_no_memory(feb, "a load curve");
+    material->activation.curve = feb->model->curve_count;
+    return LAR_OK;
+}
+
+lar_status lar_feb_read_activation(lar_feb *feb) {
+    lar_status status = LAR_OK;
+    for (int i = 0; i < feb->material_count && !status; i++) {
+        const lar_feb_material *entry = &feb->material[i];
+        const xmlNode *stress = entry->index < 0 ? NULL : find_stress(feb, entry->node);
+        int curve;
+        if (!stress || !lar_feb_attribute(feb, stress, "lc")) continue;
+        status = lar_feb_curve_of(feb, stress, &curve);
+        if (!status) status = follow(feb, stress, curve, &feb->model->material[entry->index]);
+    }
+    return status;
 }
 
 /* What would change the answer and is not read. */

@@ -1,0 +1,129 @@
+/* The scenes of examples/scenes that contract, beat and squeeze: what they must do. */
+#include "engine/engine_test.h"
+#include "mechanics/stress.h"
+
+static lar_simulation *open_scene(const char *name, lar_model **model) {
+    char path[512];
+    lar_error error;
+    lar_simulation *simulation = NULL;
+    snprintf(path, sizeof path, "%s/scenes/%s.yaml", LAR_TEST_EXAMPLES, name);
+    if (lar_model_open(path, model, &error)) fail_msg("%s", error.message);
+    assert_int_equal((*model)->notice_count, 0);
+    const lar_options options = lar_options_default();
+    if (lar_simulation_create(*model, &options, &simulation, &error)) fail_msg("%s", error.message);
+    return simulation;
+}
+
+static void run_to(lar_simulation *simulation, double time) {
+    double left = time - lar_simulation_time(simulation);
+    advance(simulation, (uint64_t)(left / lar_simulation_time_step(simulation)));
+}
+
+static const double *moved(const lar_simulation *simulation, int32_t node) {
+    return lar_simulation_state(simulation)->u + 4 * simulation->domain.layout.local[node];
+}
+
+/* Law and active stress along and across are in balance: Newton, one after the other. */
+static double length_at_rest(const lar_material *material) {
+    double L = 0.8, t = 1.1, P[3][3], h = 1e-6;
+    const double a[3] = {1, 0, 0};
+    for (int i = 0; i < 400; i++) {
+        double *of[2] = {&L, &t};
+        for (int k = 0; k < 2; k++) {
+            double value[2];
+            for (int side = 0; side < 2; side++) {
+                *of[k] += side ? 2 * h : -h;
+                const double F[3][3] = {{L, 0, 0}, {0, t, 0}, {0, 0, t}};
+                lar_material_stress(material, a, F, P);
+                value[side] = P[k][k];
+            }
+            *of[k] -= h + 0.5 * (value[0] + value[1]) / (value[1] - value[0]) * 2 * h;
+        }
+    }
+    return L;
+}
+
+static void a_muscle_gets_shorter(void **unused) {
+    (void)unused;
+    lar_model *model;
+    lar_simulation *simulation = open_scene("contracting", &model);
+    run_to(simulation, model->duration);
+    int32_t end = -1;
+    for (int32_t n = 0; n < model->mesh.node_count; n++)
+        if (model->mesh.position[n][0] > 0.0299) end = n;
+    double now = 1 + moved(simulation, end)[0] / 0.03, wanted = length_at_rest(model->material);
+    print_message("contracting: %.5f of its length, %.5f by the formula\n", now, wanted);
+    assert_below(fabs(now - wanted), 1e-3);
+    assert_true(wanted < 0.85);
+    finish(simulation, model);
+}
+
+/* Mean distance of some nodes from the axis z. */
+static double mean_radius(const lar_simulation *simulation, const lar_model *model, double z,
+                          double within, double inner) {
+    double sum = 0;
+    int count = 0;
+    for (int32_t n = 0; n < model->mesh.node_count; n++) {
+        const double *x = model->mesh.position[n], *u = moved(simulation, n);
+        if (fabs(x[2] - z) > within || hypot(x[0], x[1]) > inner) continue;
+        sum += hypot(x[0] + u[0], x[1] + u[1]);
+        count++;
+    }
+    assert_true(count > 0);
+    return sum / count;
+}
+
+static void a_cup_beats_twice(void **unused) {
+    (void)unused;
+    lar_model *model;
+    lar_simulation *simulation = open_scene("beating", &model);
+    static const double times[5] = {0.01, 0.28, 0.59, 0.88, 1.19};
+    double radius[5];
+    for (int i = 0; i < 5; i++) {
+        run_to(simulation, times[i]);
+        radius[i] = 1e3 * mean_radius(simulation, model, 0, 1e-6, 0.0101);
+        print_message("beating: rim %.3f mm wide at %.2f s\n", radius[i], times[i]);
+    }
+    for (int i = 1; i < 5; i += 2) assert_true(radius[i] < 0.9 * radius[i - 1]);
+    assert_below(fabs(radius[4] / radius[0] - 1), 0.03);
+    assert_below(fabs(radius[3] / radius[1] - 1), 0.01);
+    finish(simulation, model);
+}
+
+/* Where the tube is narrowest, by a parabola through three rings. */
+static double narrowest(const lar_simulation *simulation, const lar_model *model) {
+    double radius[31];
+    int least = 1;
+    for (int k = 0; k < 31; k++) {
+        radius[k] = mean_radius(simulation, model, 0.002 * k, 1e-5, 0.0041);
+        if (k < 30 && radius[k] < radius[least]) least = k;
+    }
+    double before = radius[least - 1], here = radius[least], after = radius[least + 1];
+    print_message("peristalsis: %.2f mm narrow at %.3f s\n", 1e3 * here,
+                  lar_simulation_time(simulation));
+    assert_true(here < 0.0035);
+    return 0.002 * (least + 0.5 * (before - after) / (before - 2 * here + after));
+}
+
+static void a_wave_runs_along_a_tube(void **unused) {
+    (void)unused;
+    lar_model *model;
+    lar_simulation *simulation = open_scene("peristalsis", &model);
+    run_to(simulation, 0.35);
+    double first = narrowest(simulation, model);
+    run_to(simulation, 0.55);
+    double speed = (narrowest(simulation, model) - first) / 0.2;
+    print_message("peristalsis: from %.4f m on at %.4f m/s\n", first, speed);
+    assert_below(fabs(speed / 0.1 - 1), 0.05);
+    assert_below(fabs(first - 0.02), 0.004);
+    finish(simulation, model);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_muscle_gets_shorter),
+        cmocka_unit_test(a_cup_beats_twice),
+        cmocka_unit_test(a_wave_runs_along_a_tube),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
