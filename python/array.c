@@ -226,6 +226,20 @@ static bool take_row(PyObject *row, const char *name, Py_ssize_t number, int cou
     return ok;
 }
 
+/* Python's own words do not say where. */
+static bool blame(const char *name, Py_ssize_t number, size_t item) {
+    const char *kind = item == 8 ? "number" : "whole number";
+    if (PyErr_ExceptionMatches(PyExc_TypeError)) {
+        PyErr_Clear();
+        return python_refuse_type("%s: row %zd has something that is no %s", name, number, kind);
+    }
+    if (PyErr_ExceptionMatches(PyExc_OverflowError)) {
+        PyErr_Clear();
+        return python_refuse("%s: row %zd has a %s that is too large", name, number, kind);
+    }
+    return false;
+}
+
 /* Lists of lists, for whoever has no arrays. */
 static bool take_sequence(PyObject *source, const char *name, int columns, size_t item,
                           take_number *take, python_rows *out) {
@@ -246,6 +260,7 @@ static bool take_sequence(PyObject *source, const char *name, int columns, size_
         char *place = (char *)out->own + (size_t)i * width;
         PyObject *row = PyTuple_GetItem(list, i);
         ok = columns > 0 ? take_row(row, name, i, columns, item, take, place) : take(row, place);
+        if (!ok) blame(name, i, item);
     }
     Py_DECREF(list);
     out->data = out->own;

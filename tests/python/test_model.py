@@ -106,7 +106,9 @@ class Arrays(unittest.TestCase):
         self.refuses(TypeError, r"nodes: expected", nodes="abc")
         self.refuses(ValueError, r"\[n, 3\].*format 'd' of shape \[3\]",
                      nodes=array.array("d", [1, 2, 3]))
-        self.refuses(TypeError, "integer|interpreted", hexahedra=[[0.5] * 8])
+        self.refuses(TypeError, "hexahedra: row 0 .* no whole number", hexahedra=[[0.5] * 8])
+        self.refuses(TypeError, "nodes: row 1 .* no number", nodes=[[0, 0, 0], [0, "x", 0]])
+        self.refuses(ValueError, "hexahedra: row 0 .* too large", hexahedra=[[2**70] * 8])
         self.refuses(ValueError, "32-bit", hexahedra=[[2**40] * 8])
         self.refuses(lariat.ModelError, "node", hexahedra=hexahedra + [[9999] * 8])
         self.refuses(ValueError, "tags: expected one row for each of 90", tags=[1, 2])
