@@ -5,8 +5,8 @@
 
 It needs what the library needs to be built (tools/setup.sh), python3-dev's headers, and of Python
 its standard library only, so that it works in an empty virtual environment without network. The
-library is inside the extension; libxml2, libyaml and the like are the system's. LARIAT_CMAKE_ARGS: further
-arguments for CMake.
+library is inside the extension; libxml2, libyaml and the like are the system's. LARIAT_CMAKE_ARGS:
+further arguments for CMake.
 """
 
 import base64
