@@ -11,7 +11,7 @@ all: setup configure
 	@tools/build.sh products $(JOBS)
 
 setup:
-	@tools/setup.sh build scan fit web
+	@tools/setup.sh build scan fit web python
 
 configure:
 	@cmake --preset release --log-level=NOTICE >/dev/null
@@ -23,15 +23,15 @@ demo: setup configure
 	@tools/demo.sh $(DEMO_SECONDS)
 
 check:
-	@tools/setup.sh build scan fit web check
+	@tools/setup.sh build scan fit web python check
 	@JOBS=$(JOBS) tools/check.sh
 
 check-long:
-	@tools/setup.sh build scan fit web check
+	@tools/setup.sh build scan fit web python check
 	@JOBS=$(JOBS) tools/check.sh --long
 
 report:
-	@tools/setup.sh build scan fit web check report
+	@tools/setup.sh build scan fit web python check report
 	cmake --preset release --log-level=NOTICE
 	cmake --build --preset release -j $(JOBS)
 	tools/report/run.sh

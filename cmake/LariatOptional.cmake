@@ -7,7 +7,7 @@
 # Debian brings halves along: openmpi-bin has mpicc without mpi.h, a library comes without its
 # -dev package. Everything is asked again at every configuration, so that what was installed or
 # removed meanwhile is seen; a try takes some hundredths of a second, which try_compile does not.
-set(LARIAT_OPTIONAL_NAMES cminpack hwloc libwebsockets metis mpi nifti petsc sdl2 ucx)
+set(LARIAT_OPTIONAL_NAMES cminpack hwloc libwebsockets metis mpi nifti petsc python sdl2 ucx)
 set(LARIAT_WITHOUT "" CACHE STRING "Optional libraries to leave out: a list of ${LARIAT_OPTIONAL_NAMES}")
 foreach(name ${LARIAT_WITHOUT})
   if(NOT name IN_LIST LARIAT_OPTIONAL_NAMES)
@@ -145,3 +145,28 @@ lariat_optional(petsc CALLED PETSc PACKAGE petsc-dev
   SIGNS "${PETSC_FOUND}" INCLUDES ${LARIAT_PETSC_INCLUDES} LIBRARIES ${PETSC_LINK_LIBRARIES}
   SOURCE "#include <petscksp.h>
 int main(void) { return PetscInitializeNoArguments() != 0; }")
+
+# `import lariat`. Headers of CPython 3.11 or later, of the interpreter that is there or of another;
+# no library: the interpreter brings what the module calls.
+find_program(PYTHON3 python3 NO_CACHE)
+set(PYTHON_INCLUDE ${PYTHON_INCLUDE_FIRST})
+if(PYTHON3 AND NOT EXISTS "${PYTHON_INCLUDE}/Python.h")
+  execute_process(COMMAND ${PYTHON3} -c "import sysconfig; print(sysconfig.get_path('include'))"
+    OUTPUT_VARIABLE PYTHON_INCLUDE ERROR_QUIET OUTPUT_STRIP_TRAILING_WHITESPACE)
+endif()
+if(NOT EXISTS "${PYTHON_INCLUDE}/Python.h")
+  file(GLOB LARIAT_PYTHON_HEADERS "/usr/include/python3.*/Python.h")
+  list(SORT LARIAT_PYTHON_HEADERS COMPARE NATURAL ORDER DESCENDING)
+  list(APPEND LARIAT_PYTHON_HEADERS "")
+  list(GET LARIAT_PYTHON_HEADERS 0 PYTHON_INCLUDE)
+  string(REGEX REPLACE "/Python.h$" "" PYTHON_INCLUDE "${PYTHON_INCLUDE}")
+endif()
+lariat_optional(python CALLED "Python headers" PACKAGE python3-dev
+  WITHOUT "the Python module is not built"
+  SIGNS "${PYTHON_INCLUDE}" INCLUDES ${PYTHON_INCLUDE}
+  SOURCE "#define Py_LIMITED_API 0x030b0000
+#include <Python.h>
+#if PY_VERSION_HEX < 0x030b0000
+#error too old
+#endif
+int main(void) { return sizeof(PyObject) == 0; }")

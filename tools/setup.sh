@@ -2,19 +2,21 @@
 # Brings a Debian machine to where Lariat builds: asks dpkg what is there and installs only what
 # is missing. On a machine that is set up it needs no network, no privilege and no time.
 #
-#   tools/setup.sh [build] [scan] [fit] [web] [check] [fuzz] [report]   default: build scan fit web
+#   tools/setup.sh [build] [scan] [fit] [web] [python] [check] [fuzz] [report]
+#                                                    default: build scan fit web python
 #
 #   build   what the library and the command need; an error when it cannot be had
 #   scan    what scans are read with: libnifti
 #   fit     what `lariat fit` finds parameters with: cminpack
 #   web     what people look through: libwebsockets for the server, Node.js and npm for the page
+#   python  what the Python module is built with: Python and its headers, and what `pip install .` needs
 #   check   what the tests need: cmocka; and what widens them: a second compiler, METIS, hwloc, UCX,
 #           MPI, SDL2, PETSc, the cross compiler and emulator for NEON
 #   fuzz    clang with libFuzzer
 #   report  what writes and draws the figures of `make report`
 #
-# The default does everything that README.md shows. What belongs to `scan`, `fit` and `web`, and what widens
-# the tests, is optional: without it a sentence says what is left out.
+# The default does everything that README.md shows. What belongs to `scan`, `fit`, `web` and `python`,
+# and what widens the tests, is optional: without it a sentence says what is left out.
 set -euo pipefail
 
 # One line each: package, then how to see the same thing when it came from somewhere else than
@@ -35,6 +37,11 @@ libwebsockets-dev m:libwebsockets"
 NODE_PACKAGES="
 nodejs            c:node
 npm               c:npm"
+PYTHON_PACKAGES="
+python3-dev       -
+python3-venv      -"
+NUMPY_PACKAGES="
+python3-numpy     -"
 BROWSER_PACKAGES="
 chromium          c:chromium"
 CLANG_PACKAGES="
@@ -179,7 +186,7 @@ want_clang() {
     want "libclang-rt-$version-dev -" "$consequence" || true
 }
 
-[ $# -gt 0 ] || set -- build scan fit web
+[ $# -gt 0 ] || set -- build scan fit web python
 for group in "$@"; do
     case $group in
     build) need "$BUILD_PACKAGES" ;;
@@ -189,6 +196,7 @@ for group in "$@"; do
         want "$LWS_PACKAGES" "lariat view is built without its server" || true
         want "$NODE_PACKAGES" "the viewer's page is not built" || true
         ;;
+    python) want "$PYTHON_PACKAGES" "import lariat is not built" || true ;;
     check)
         need "$TEST_PACKAGES"
         want_clang "the sanitizers run with gcc instead of clang"
@@ -201,6 +209,7 @@ for group in "$@"; do
         want "$NEON_PACKAGES" "the NEON tests are left out" || true
         want "$BROWSER_PACKAGES" "the viewer is not tested in a browser" || true
         want "$REPORT_PACKAGES" "the report is not tested" || true
+        want "$NUMPY_PACKAGES" "the Python module is not tested with numpy" || true
         ;;
     fuzz)
         need "$TEST_PACKAGES"
@@ -211,7 +220,7 @@ for group in "$@"; do
         want_clang "the report has no second compiler"
         ;;
     *)
-        say "unknown group '$group'; use build, scan, fit, web, check, fuzz or report"
+        say "unknown group '$group'; use build, scan, fit, web, python, check, fuzz or report"
         exit 2
         ;;
     esac

@@ -35,6 +35,12 @@ static const bool server = true;
 static const bool server = false;
 #endif
 
+#ifdef LAR_HAVE_PYTHON
+static const bool python = true;
+#else
+static const bool python = false;
+#endif
+
 /* Built with its headers, loaded when the first controller is opened. It stays loaded: what its own
  * libraries keep would look like leaks. */
 static bool controllers(void) {
@@ -82,7 +88,9 @@ void lar_features_look(lar_feature feature[LAR_FEATURES]) {
         {"mpich", "processors that MPICH's mpirun starts",
          "apt-get install mpich libmpich-dev, then make", lar_mpi_module("mpich")},
         {"petsc", "lariat bench implicit --solver cg and bcgs",
-         "apt-get install petsc-dev, then make", lar_linear_solver_petsc()}};
+         "apt-get install petsc-dev, then make", lar_linear_solver_petsc()},
+        {"python", "import lariat, the Python module", "apt-get install python3-dev, then make",
+         python}};
     memcpy(feature, found, sizeof found);
 }
 

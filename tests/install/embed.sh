@@ -8,6 +8,7 @@
 # moved. 3. Both programs run on the example beam and agree. 4. The command finds the modules for
 # MPI, and has its man pages and completion. 5. examples/session.c holds the beam in real time.
 # 6. examples/tries.c makes its model of arrays, loads it, and goes back to a state a thousand times.
+# 7. `import lariat` finds the library from where it lies, and agrees with the programs.
 set -eu
 source=$1 build=$2 scratch=$3
 cc=${CC:-cc}
@@ -90,6 +91,18 @@ echo "$first"
 # The beam is fixed at one end and must hang down at the other.
 echo "$first" | grep -q '^tip  *-[0-9.]*[1-9]' || fail "the tip did not sink"
 echo "$first" | grep -Eq '^hash [0-9a-f]{16}$' || fail "no hash was printed"
+
+# The Python module, where it was built and an interpreter can load it.
+module=$(find "$prefix" -name '_lariat.abi3.so')
+if [ -n "$module" ] && python3 -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null; then
+    packages=$(dirname "$(dirname "$module")")
+    third=$(env -u LD_LIBRARY_PATH PYTHONPATH="$packages" python3 -B -c '
+import lariat, sys
+sim = lariat.Simulation(lariat.Model(sys.argv[1]))
+sim.advance(int(0.1 / sim.time_step))
+print(f"hash {sim.hash():016x}")' "$source/examples/beam.yaml") || fail "import lariat failed"
+    [ "$third" = "$(echo "$first" | grep '^hash')" ] || fail "Python says $third"
+fi
 
 if "$scratch/embed-pkg-config" "$source/examples/none.yaml" 2>"$scratch/stderr"; then
     fail "a missing scene was not reported"

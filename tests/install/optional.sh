@@ -51,6 +51,7 @@ half libwebsockets 4.1.6
 half PETSc 3.18.5
 half cminpack 1.3.6
 echo '#include <this_header_is_not_there.h>' >"$scratch/include/metis.h"
+echo '#include <this_header_is_not_there.h>' >"$scratch/include/Python.h"
 
 # configure FOLDER OPTION...
 configure() {
@@ -87,22 +88,22 @@ no_target() {
     ! grep -q "$2" "$scratch/$1/build.ninja" || fail "$1: $2 is built"
 }
 
-configure half -DMETIS_INCLUDE="$scratch/include" -DNIFTI_INCLUDE=/nowhere
+configure half -DPYTHON_INCLUDE_FIRST="$scratch/include" -DMETIS_INCLUDE="$scratch/include" -DNIFTI_INCLUDE=/nowhere
 compile half
-for name in 'Open MPI' MPICH cminpack hwloc METIS libnifti UCX SDL2 libwebsockets PETSc; do
+for name in 'Open MPI' MPICH cminpack hwloc METIS libnifti UCX SDL2 libwebsockets PETSc 'Python headers'; do
     says_once half "^$name is only half installed and not used: .*(apt-get install [a-z0-9-]*)$"
 done
-for target in liblariat-mpi-openmpi liblariat-mpi-mpich liblariat-petsc of-nowhere; do
+for target in liblariat-mpi-openmpi liblariat-mpi-mpich liblariat-petsc _lariat.abi3.so of-nowhere; do
     no_target half $target
 done
 
 # The same by wish; nothing is looked for then.
-configure without '-DLARIAT_WITHOUT=cminpack;hwloc;metis;nifti;ucx;sdl2;libwebsockets;petsc;mpi'
+configure without '-DLARIAT_WITHOUT=cminpack;hwloc;metis;nifti;ucx;sdl2;libwebsockets;petsc;mpi;python'
 compile without
-for name in cminpack hwloc METIS libnifti UCX SDL2 libwebsockets PETSc MPI; do
+for name in cminpack hwloc METIS libnifti UCX SDL2 libwebsockets PETSc MPI 'Python headers'; do
     says_once without "^-- $name left out"
 done
-for target in liblariat-mpi liblariat-petsc of-nowhere nifti2; do
+for target in liblariat-mpi liblariat-petsc _lariat.abi3.so of-nowhere nifti2; do
     no_target without $target
 done
 

@@ -50,7 +50,7 @@ groups=$(sed -n 's/^\t@tools\/setup.sh //p' "$source/Makefile" | head -n 1)
 # shellcheck disable=SC2086
 asked $groups
 for package in build-essential cmake ninja-build libyaml-dev libxml2-dev zlib1g-dev \
-    libnifti-dev libwebsockets-dev nodejs npm; do
+    libnifti-dev libwebsockets-dev nodejs npm python3-dev python3-venv; do
     wants $package
 done
 wants_no libcmocka-dev
@@ -74,6 +74,7 @@ make_command apt-get "printf '%s\n' \"\$@\" >>'$scratch/asked'"
 asked check
 wants libcmocka-dev
 wants libopenmpi-dev
+wants python3-numpy
 wants_no libmpich-dev
 
 # Without the right to install: one sentence with the command, and an error where it is needed.

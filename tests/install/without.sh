@@ -57,6 +57,7 @@ tests_of() {
     metis) echo 'divide/distribution|cli/partition' ;;
     mpi | ucx) echo 'comm/|cli/processes' ;;
     nifti) echo 'meshing/image|fuzz/nifti|cli/mesh$' ;;
+    python) echo 'python/|layers/' ;;
     petsc) echo 'study/implicit|cli/bench' ;;
     sdl2) echo 'session/device_gamepad' ;;
     *) echo '' ;;

@@ -7,7 +7,8 @@
 # Rules: a file includes only from its own folder or from a folder of a lower layer; the viewers'
 # server includes only lariat.h, base and its own, the command study besides; files do not include
 # each other in a circle; vector intrinsics stay in simd.h and the kernels; no library file ends the
-# process or prints. And what docs/architecture.md calls a file of a room is there.
+# process or prints. The Python module (python/) includes lariat.h, Python.h, the C library's headers
+# and its own module.h. And what docs/architecture.md calls a file of a room is there.
 set -eu
 
 check_tree() {
@@ -16,7 +17,23 @@ check_tree() {
     set -- $(cd "$root" && find src -name '*.[ch]' | LC_ALL=C sort)
     [ $# -gt 0 ] || { echo "layers: no sources below $root/src"; return 1; }
     (cd "$root" && awk -f "$here/rooms.awk" -f "$here/rules.awk" "$@") || return 1
+    check_python "$root" || return 1
     check_page "$root"
+}
+
+# The room outside src: what a program like any other sees.
+check_python() {
+    [ -d "$1/python" ] || return 0
+    (cd "$1" && find python -name '*.[ch]' | LC_ALL=C sort | xargs awk '
+        /^[ \t]*#[ \t]*include/ && !/include[ \t]*("module\.h"|<lariat\.h>|<Python\.h>|<(sys\/)?[a-z]+\.h>)/ {
+            printf "%s:%d: python sees lariat.h and its own module.h only: %s\n", FILENAME, FNR, $0
+            failed = 1
+        }
+        /(^|[^a-zA-Z_0-9])(exit|abort|printf|puts|stdout|stderr)([^a-zA-Z_0-9]|$)/ && !/^[ \t]*(\/?\*|")/ {
+            printf "%s:%d: a module neither ends the process nor prints: %s\n", FILENAME, FNR, $0
+            failed = 1
+        }
+        END { exit failed }')
 }
 
 # Every `room/file.c` of the page.
@@ -87,6 +104,18 @@ self_test() {
     expect mechanics/a.h 'static void g(void) { /* x */ printf("%d", 1); }' 'printf'
     expect base/a.h 'static void g(void) { fprintf(stderr, "x"); }' 'stderr'
     expect comm/a.h 'static void g(void) { abort(); }' 'abort'
+
+    # The Python module, which sees no room.
+    for line in '#include "base/a.h"' '#include "../src/base/a.h"' '#include <model/a.h>' \
+        'void g(void) { exit(1); }' 'void g(void) { printf("x"); }'; do
+        fresh
+        mkdir -p "$scratch/tree/python"
+        printf '#include "module.h"\n%s\n' "$line" >"$scratch/tree/python/a.c"
+        if check_tree "$scratch/tree" >/dev/null; then
+            echo "self-test: not found in python/: $line"
+            failures=$((failures + 1))
+        fi
+    done
 
     # A walk on the page to a file that has moved.
     fresh

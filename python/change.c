@@ -1,0 +1,250 @@
+/* Gravity, damping, stiffness and forces on nodes, of a simulation and of a session: the same words
+ * for both, because the library has the same calls for both. */
+#include "module.h"
+
+/* What a class has: how it is taken, and the library's calls with a plain pointer. */
+typedef struct changes {
+    void *(*take)(PyObject *me, const char *call);
+    void *(*look)(PyObject *me, const char *call);
+    void (*give)(PyObject *me);
+    const lar_model *(*model)(PyObject *me);
+    lar_status (*set_gravity)(void *it, const double gravity[3], lar_error *error);
+    lar_status (*set_damping)(void *it, double damping, lar_error *error);
+    lar_status (*set_stiffness)(void *it, int32_t material, double factor, lar_error *error);
+    lar_status (*set_force)(void *it, int32_t node, const double force[3], lar_error *error);
+    lar_status (*set_force_on)(void *it, const char *set, const double force[3], lar_error *error);
+    void (*gravity)(const void *it, double gravity[3]);
+    double (*damping)(const void *it);
+    double (*stiffness)(const void *it, int32_t material);
+} changes;
+
+/* ---- the two of them ------------------------------------------------------------------------ */
+
+#define ROWS(kind)                                                                                 \
+    static lar_status kind##_set_gravity(void *it, const double gravity[3], lar_error *error) {    \
+        return lar_##kind##_set_gravity(it, gravity, error);                                       \
+    }                                                                                              \
+    static lar_status kind##_set_damping(void *it, double damping, lar_error *error) {             \
+        return lar_##kind##_set_damping(it, damping, error);                                       \
+    }                                                                                              \
+    static lar_status kind##_set_stiffness(void *it, int32_t material, double factor,              \
+                                           lar_error *error) {                                     \
+        return lar_##kind##_set_stiffness(it, material, factor, error);                            \
+    }                                                                                              \
+    static lar_status kind##_set_force(void *it, int32_t node, const double force[3],              \
+                                       lar_error *error) {                                         \
+        return lar_##kind##_set_force(it, node, force, error);                                     \
+    }                                                                                              \
+    static lar_status kind##_set_force_on(void *it, const char *set, const double force[3],        \
+                                          lar_error *error) {                                      \
+        return lar_##kind##_set_force_on(it, set, force, error);                                   \
+    }                                                                                              \
+    static void kind##_gravity(const void *it, double gravity[3]) {                                \
+        lar_##kind##_gravity(it, gravity);                                                         \
+    }                                                                                              \
+    static double kind##_damping(const void *it) {                                                 \
+        return lar_##kind##_damping(it);                                                           \
+    }                                                                                              \
+    static double kind##_stiffness(const void *it, int32_t material) {                             \
+        return lar_##kind##_stiffness(it, material);                                               \
+    }                                                                                              \
+    static void *kind##_take(PyObject *me, const char *call) {                                     \
+        return python_##kind##_take((python_##kind *)me, call);                                    \
+    }                                                                                              \
+    static void *kind##_look(PyObject *me, const char *call) {                                     \
+        return python_##kind##_look((python_##kind *)me, call);                                    \
+    }                                                                                              \
+    static void kind##_give(PyObject *me) {                                                        \
+        python_##kind##_give((python_##kind *)me);                                                 \
+    }                                                                                              \
+    static const changes kind##_changes = {                                                        \
+        kind##_take,         kind##_look,        kind##_give,          kind##_model,               \
+        kind##_set_gravity,  kind##_set_damping, kind##_set_stiffness, kind##_set_force,           \
+        kind##_set_force_on, kind##_gravity,     kind##_damping,       kind##_stiffness};
+
+static const lar_model *simulation_model(PyObject *me) {
+    return ((python_simulation *)me)->model->model;
+}
+static const lar_model *session_model(PyObject *me) {
+    return ((python_session *)me)->simulation->model->model;
+}
+ROWS(simulation)
+ROWS(session)
+
+static const changes *changes_of(PyObject *me) {
+    return Py_TYPE(me) == python_session_type ? &session_changes : &simulation_changes;
+}
+
+/* Ends a call that took `me`. */
+static PyObject *done(PyObject *me, const changes *c, lar_status status, const lar_error *error) {
+    c->give(me);
+    if (status) return python_raise(error);
+    Py_RETURN_NONE;
+}
+
+/* ---- the calls ------------------------------------------------------------------------------ */
+
+static int assign_gravity(PyObject *me, PyObject *value, void *unused) {
+    (void)unused;
+    const changes *c = changes_of(me);
+    double gravity[3];
+    bool given = value && value != Py_None;
+    if (given && !python_vector(value, "gravity", 3, gravity)) return -1;
+    void *it = c->take(me, "gravity");
+    if (!it) return -1;
+    lar_error error;
+    lar_status status;
+    PYTHON_UNLOCKED(status = c->set_gravity(it, given ? gravity : NULL, &error));
+    PyObject *answer = done(me, c, status, &error);
+    Py_XDECREF(answer);
+    return answer ? 0 : -1;
+}
+
+static int assign_damping(PyObject *me, PyObject *value, void *unused) {
+    (void)unused;
+    const changes *c = changes_of(me);
+    double damping;
+    if (!value) {
+        python_refuse_type("damping: it cannot be deleted");
+        return -1;
+    }
+    if (!python_number(value, "damping", &damping)) return -1;
+    void *it = c->take(me, "damping");
+    if (!it) return -1;
+    lar_error error;
+    lar_status status;
+    PYTHON_UNLOCKED(status = c->set_damping(it, damping, &error));
+    PyObject *answer = done(me, c, status, &error);
+    Py_XDECREF(answer);
+    return answer ? 0 : -1;
+}
+
+static PyObject *get_gravity(PyObject *me, void *unused) {
+    (void)unused;
+    double gravity[3];
+    void *it = changes_of(me)->look(me, "gravity");
+    if (!it) return NULL;
+    changes_of(me)->gravity(it, gravity);
+    return python_tuple(gravity, 3);
+}
+
+static PyObject *get_damping(PyObject *me, void *unused) {
+    (void)unused;
+    void *it = changes_of(me)->look(me, "damping");
+    return it ? PyFloat_FromDouble(changes_of(me)->damping(it)) : NULL;
+}
+
+static PyObject *set_stiffness(PyObject *me, PyObject *args, PyObject *keywords) {
+    static char *names[] = {"factor", "material", NULL};
+    const changes *c = changes_of(me);
+    PyObject *factor, *material = Py_None;
+    double number;
+    int32_t index;
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, "O|O:set_stiffness", names, &factor,
+                                     &material) ||
+        !python_number(factor, "factor", &number) ||
+        !python_material(c->model(me), material, &index))
+        return NULL;
+    void *it = c->take(me, "set_stiffness");
+    if (!it) return NULL;
+    lar_error error;
+    lar_status status;
+    PYTHON_UNLOCKED(status = c->set_stiffness(it, index, number, &error));
+    return done(me, c, status, &error);
+}
+
+static PyObject *stiffness(PyObject *me, PyObject *args, PyObject *keywords) {
+    static char *names[] = {"material", NULL};
+    const changes *c = changes_of(me);
+    PyObject *material;
+    int32_t index;
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, "O:stiffness", names, &material) ||
+        !python_material(c->model(me), material, &index))
+        return NULL;
+    if (index < 0 || index >= lar_model_material_count(c->model(me))) {
+        python_refuse("material: there is no material %R", material);
+        return NULL;
+    }
+    void *it = c->look(me, "stiffness");
+    return it ? PyFloat_FromDouble(c->stiffness(it, index)) : NULL;
+}
+
+static PyObject *set_force(PyObject *me, PyObject *args, PyObject *keywords) {
+    const changes *c = changes_of(me);
+    python_force_call call;
+    if (!python_force_parse(args, keywords, &call)) return NULL;
+    void *it = c->take(me, "set_force");
+    if (!it) return NULL;
+    lar_error error;
+    lar_status status;
+    PYTHON_UNLOCKED(status = call.set ? c->set_force_on(it, call.set, call.force, &error)
+                                      : c->set_force(it, call.node, call.force, &error));
+    return done(me, c, status, &error);
+}
+
+static PyObject *clear_forces(PyObject *me, PyObject *nothing) {
+    (void)nothing;
+    const changes *c = changes_of(me);
+    void *it = c->take(me, "clear_forces");
+    if (!it) return NULL;
+    lar_error error;
+    lar_status status;
+    PYTHON_UNLOCKED(status = c->set_force(it, -1, NULL, &error));
+    return done(me, c, status, &error);
+}
+
+static PyObject *force(PyObject *me, PyObject *args, PyObject *keywords) {
+    static char *names[] = {"node", NULL};
+    int node;
+    double out[3];
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, "i:force", names, &node)) return NULL;
+    lar_simulation *simulation = python_simulation_look((python_simulation *)me, "force");
+    if (!simulation) return NULL;
+    if (node < 0 || node >= lar_model_node_count(simulation_model(me))) {
+        python_refuse("node: there is no node %d", node);
+        return NULL;
+    }
+    lar_simulation_force(simulation, node, out);
+    return python_tuple(out, 3);
+}
+
+#define FUNCTION(f) ((PyCFunction)(void (*)(void))(f))
+#define SHARED_METHODS                                                                             \
+    {"set_stiffness", FUNCTION(set_stiffness), METH_VARARGS | METH_KEYWORDS,                       \
+     "set_stiffness($self, factor, material=None)\n--\n\nHow many times as stiff a material is "   \
+     "as "                                                                                         \
+     "the model says, 0.1 to 4; by index or name, None: all. While one is stiffer, steps may be "  \
+     "divided."},                                                                                  \
+        {"stiffness", FUNCTION(stiffness), METH_VARARGS | METH_KEYWORDS,                           \
+         "stiffness($self, material)\n--\n\nThat factor now; material by index or name."},         \
+        {"set_force", FUNCTION(set_force), METH_VARARGS | METH_KEYWORDS,                           \
+         "set_force($self, where, force=None)\n--\n\nA constant force [N], three numbers, on a "   \
+         "node "                                                                                   \
+         "(an int), or on every node of a set (its name), so much on each; None: none any more. "  \
+         "128 "                                                                                    \
+         "can be set at a time."},                                                                 \
+    {                                                                                              \
+        "clear_forces", clear_forces, METH_NOARGS,                                                 \
+            "clear_forces($self)\n--\n\nAll forces that were set are gone."                        \
+    }
+
+PyMethodDef python_change_methods[] = {
+    SHARED_METHODS,
+    {"force", FUNCTION(force), METH_VARARGS | METH_KEYWORDS,
+     "force($self, node)\n--\n\nWhat was set on a node and on sets that it is in, together [N], a "
+     "tuple."},
+    {NULL, NULL, 0, NULL}};
+PyMethodDef python_session_change_methods[] = {SHARED_METHODS, {NULL, NULL, 0, NULL}};
+
+#define SHARED_PROPERTIES                                                                          \
+    {"gravity", get_gravity, assign_gravity,                                                       \
+     "Gravity [m/s^2], three numbers. Can be set, at most 1000 long; None: as the model says.",    \
+     NULL},                                                                                        \
+    {                                                                                              \
+        "damping", get_damping, assign_damping,                                                    \
+            "Damping in proportion to mass [1/s]. Can be set, 0 or more.", NULL                    \
+    }
+
+PyGetSetDef python_change_properties[] = {SHARED_PROPERTIES, {NULL, NULL, NULL, NULL, NULL}};
+PyGetSetDef python_session_change_properties[] = {SHARED_PROPERTIES,
+                                                  {NULL, NULL, NULL, NULL, NULL}};

@@ -1,0 +1,243 @@
+/* Numbers, vectors, texts and poses between Python and the library. */
+#include <math.h>
+
+#include "module.h"
+
+bool python_steps(PyObject *source, const char *name, unsigned long long *steps) {
+    PyObject *index = PyNumber_Index(source);
+    if (!index) {
+        PyErr_Clear();
+        return python_refuse_type("%s: expected a whole number, got %R", name,
+                                  (PyObject *)Py_TYPE(source));
+    }
+    *steps = PyLong_AsUnsignedLongLong(index);
+    Py_DECREF(index);
+    if (*steps != (unsigned long long)-1 || !PyErr_Occurred()) return true;
+    PyErr_Clear();
+    return python_refuse("%s: expected a whole number from 0 on, got %R", name, source);
+}
+
+bool python_number(PyObject *source, const char *name, double *number) {
+    *number = PyFloat_AsDouble(source);
+    if (*number == -1.0 && PyErr_Occurred()) {
+        PyErr_Clear();
+        return python_refuse_type("%s: expected a number, got %R", name,
+                                  (PyObject *)Py_TYPE(source));
+    }
+    return isfinite(*number) || python_refuse("%s: expected a finite number, got %R", name, source);
+}
+
+bool python_vector(PyObject *source, const char *name, int count, double *out) {
+    PyObject *list =
+        PySequence_Check(source) && !PyUnicode_Check(source) ? PySequence_Tuple(source) : NULL;
+    bool ok = list && PyTuple_Size(list) == count;
+    for (int i = 0; i < count && ok; i++) {
+        out[i] = PyFloat_AsDouble(PyTuple_GetItem(list, i));
+        ok = !PyErr_Occurred() && isfinite(out[i]);
+    }
+    Py_XDECREF(list);
+    if (ok) return true;
+    PyErr_Clear();
+    if (PySequence_Check(source) && !PyUnicode_Check(source))
+        return python_refuse("%s: expected %d finite numbers, got %R", name, count, source);
+    return python_refuse_type("%s: expected a sequence of %d numbers, got %R", name, count,
+                              (PyObject *)Py_TYPE(source));
+}
+
+PyObject *python_tuple(const double *value, int count) {
+    PyObject *tuple = PyTuple_New(count);
+    for (int i = 0; tuple && i < count; i++) {
+        PyObject *number = PyFloat_FromDouble(value[i]);
+        if (!number || PyTuple_SetItem(tuple, i, number)) Py_CLEAR(tuple);
+    }
+    return tuple;
+}
+
+PyObject *python_path(PyObject *source, const char *name) {
+    PyObject *path = NULL;
+    if (PyUnicode_FSConverter(source, &path)) return path;
+    if (!PyErr_ExceptionMatches(PyExc_TypeError)) return NULL;
+    PyErr_Clear();
+    python_refuse_type("%s: expected a path, got %R", name, (PyObject *)Py_TYPE(source));
+    return NULL;
+}
+
+/* ---- scenes --------------------------------------------------------------------------------- */
+
+/* What json asks for values that it does not know: numpy's scalars and arrays have a tolist. */
+static PyObject *plain_value(PyObject *module, PyObject *value) {
+    (void)module;
+    PyObject *plain = PyObject_CallMethod(value, "tolist", NULL);
+    if (plain) return plain;
+    PyErr_Clear();
+    python_refuse_type("scene: a value of %R is nothing that scenes have",
+                       (PyObject *)Py_TYPE(value));
+    return NULL;
+}
+static PyMethodDef plain_method = {"_plain_value", plain_value, METH_O, NULL};
+
+/* In scenes `all` is a word, and "all" in quotes the name of a set; JSON has quotes only. Nobody
+ * who writes a dict means that set. */
+static PyObject *unquote_all(PyObject *text) {
+    PyObject *re = PyImport_ImportModule("re");
+    PyObject *plain =
+        re ? PyObject_CallMethod(re, "sub", "ssO", "(?<!\\\\)\"all\"(?!:)", "all", text) : NULL;
+    Py_XDECREF(re);
+    Py_DECREF(text);
+    return plain;
+}
+
+PyObject *python_scene_text(PyObject *scene) {
+    if (PyUnicode_Check(scene)) {
+        Py_INCREF(scene);
+        return scene;
+    }
+    if (!PyDict_Check(scene)) {
+        python_refuse_type("scene: expected a str (YAML) or a dict, got %R",
+                           (PyObject *)Py_TYPE(scene));
+        return NULL;
+    }
+    PyObject *json = PyImport_ImportModule("json"), *text = NULL;
+    PyObject *dumps = json ? PyObject_GetAttrString(json, "dumps") : NULL;
+    PyObject *plain = dumps ? PyCFunction_New(&plain_method, NULL) : NULL;
+    /* libyaml knows no pairs of surrogates, so characters stay themselves. */
+    PyObject *keywords = plain
+                             ? Py_BuildValue("{s:O,s:O,s:O,s:i}", "default", plain, "ensure_ascii",
+                                             Py_False, "allow_nan", Py_False, "indent", 1)
+                             : NULL;
+    PyObject *args = keywords ? PyTuple_Pack(1, scene) : NULL;
+    if (args) text = PyObject_Call(dumps, args, keywords);
+    Py_XDECREF(args);
+    Py_XDECREF(keywords);
+    Py_XDECREF(plain);
+    Py_XDECREF(dumps);
+    Py_XDECREF(json);
+    return text ? unquote_all(text) : NULL;
+}
+
+/* ---- tools ---------------------------------------------------------------------------------- */
+
+bool python_pose(PyObject *position, PyObject *orientation, PyObject *opening,
+                 const python_asked *asked, const lar_tool_pose *now, lar_tool_pose *pose) {
+    const double *kept = isnan(asked->orientation[0]) ? now->orientation : asked->orientation;
+    memcpy(pose->orientation, kept, sizeof pose->orientation);
+    pose->opening = isnan(asked->opening) ? now->opening : asked->opening;
+    return python_vector(position, "position", 3, pose->position) &&
+           (!orientation || orientation == Py_None ||
+            python_vector(orientation, "orientation", 4, pose->orientation)) &&
+           (!opening || opening == Py_None || python_number(opening, "opening", &pose->opening));
+}
+
+void python_asked_set(python_asked *asked, const lar_tool_pose *pose) {
+    memcpy(asked->orientation, pose->orientation, sizeof asked->orientation);
+    asked->opening = pose->opening;
+}
+
+void python_asked_forget(python_asked asked[LAR_TOOLS_MAX]) {
+    for (int i = 0; i < LAR_TOOLS_MAX; i++) asked[i].orientation[0] = asked[i].opening = NAN;
+}
+
+PyObject *python_pose_dict(const lar_tool_pose *pose) {
+    return Py_BuildValue("{s:N,s:N,s:d}", "position", python_tuple(pose->position, 3),
+                         "orientation", python_tuple(pose->orientation, 4), "opening",
+                         pose->opening);
+}
+
+PyObject *python_force_dict(const lar_tool_force *f) {
+    return Py_BuildValue("{s:N,s:N,s:i,s:i,s:d,s:d,s:d,s:N,s:d}", "force",
+                         python_tuple(f->force, 3), "torque", python_tuple(f->torque, 3),
+                         "touching", (int)f->touching, "held", (int)f->held, "limit", f->limit,
+                         "depth", f->depth, "apart", f->apart, "limited",
+                         PyBool_FromLong(f->limited), "grasp_force", f->grasp_force);
+}
+
+PyObject *python_wrench(const lar_tool_force *f) {
+    const double wrench[6] = {f->force[0],  f->force[1],  f->force[2],
+                              f->torque[0], f->torque[1], f->torque[2]};
+    return python_tuple(wrench, 6);
+}
+
+static PyObject *touch_dict(const lar_touch *t) {
+    static const char *const kind[] = {"pressed", "held", "rubbed"};
+    return Py_BuildValue(
+        "{s:N,s:N,s:N,s:d,s:s,s:i,s:i,s:(iiii),s:N}", "place", python_tuple(t->place, 3), "normal",
+        python_tuple(t->normal, 3), "force", python_tuple(t->force, 3), "depth", t->depth, "kind",
+        kind[t->kind], "jaw", (int)t->jaw, "face", (int)t->face, "nodes", (int)t->node[0],
+        (int)t->node[1], (int)t->node[2], (int)t->node[3], "weights", python_tuple(t->weight, 4));
+}
+
+PyObject *python_touch_list(const lar_touch *touch, int32_t count) {
+    PyObject *list = PyList_New(count);
+    for (int32_t i = 0; list && i < count; i++) {
+        PyObject *dict = touch_dict(&touch[i]);
+        if (!dict || PyList_SetItem(list, i, dict)) Py_CLEAR(list);
+    }
+    return list;
+}
+
+static const char *const shape_name[] = {"sphere", "capsule", "grasper", "hand", "none"};
+
+PyObject *python_tool_dict(const lar_tool_info *t) {
+    return Py_BuildValue("{s:s,s:s,s:d,s:d,s:d,s:d,s:N,s:i}", "name", t->name, "shape",
+                         shape_name[t->shape], "radius", t->radius, "length", t->length, "spread",
+                         t->spread, "friction", t->friction, "rest", python_pose_dict(&t->rest),
+                         "serial", (int)t->serial);
+}
+
+bool python_tool_wanted(PyObject *args, PyObject *keywords, lar_tool_info *info) {
+    static char *names[] = {"shape", "radius", "length", "spread", NULL};
+    const char *shape;
+    *info = (lar_tool_info){.name = ""};
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, "sd|dd:add_tool", names, &shape, &info->radius,
+                                     &info->length, &info->spread))
+        return false;
+    for (int i = LAR_TOOL_SPHERE; i <= LAR_TOOL_GRASPER; i++)
+        if (strcmp(shape, shape_name[i]) == 0) {
+            info->shape = (lar_tool_shape)i;
+            return true;
+        }
+    return python_refuse("shape: expected \"sphere\", \"capsule\" or \"grasper\", got \"%s\"",
+                         shape);
+}
+
+/* ---- materials and forces ------------------------------------------------------------------- */
+
+static bool int32_of(PyObject *source, const char *name, int32_t *out) {
+    unsigned long long value;
+    if (!python_steps(source, name, &value)) return false;
+    if (value > INT32_MAX) return python_refuse("%s: %R is none", name, source);
+    *out = (int32_t)value;
+    return true;
+}
+
+bool python_material(const lar_model *model, PyObject *source, int32_t *index) {
+    *index = -1;
+    if (!source || source == Py_None) return true;
+    if (!PyUnicode_Check(source)) return int32_of(source, "material", index);
+    const char *wanted = PyUnicode_AsUTF8AndSize(source, NULL);
+    lar_material_info info;
+    int32_t count = lar_model_material_count(model);
+    for (int32_t i = 0; wanted && i < count; i++)
+        if (!lar_model_material(model, i, &info, NULL) && strcmp(info.name, wanted) == 0) {
+            *index = i;
+            return true;
+        }
+    return wanted &&
+           python_refuse("material: there is none called %R; Model.materials lists them", source);
+}
+
+bool python_force_parse(PyObject *args, PyObject *keywords, python_force_call *call) {
+    static char *names[] = {"where", "force", NULL};
+    PyObject *where, *force = Py_None;
+    *call = (python_force_call){.node = -1};
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, "O|O:set_force", names, &where, &force))
+        return false;
+    if (PyUnicode_Check(where))
+        call->set = PyUnicode_AsUTF8AndSize(where, NULL);
+    else if (!int32_of(where, "where: a node or the name of a set of nodes", &call->node))
+        return false;
+    if (PyErr_Occurred()) return false;
+    if (force == Py_None) return true;
+    call->force = call->vector;
+    return python_vector(force, "force", 3, call->vector);
+}

@@ -1,0 +1,95 @@
+"""Lariat: real-time finite elements for soft tissue.
+
+    import lariat
+    lariat.write_demo("demo")
+    model = lariat.Model("demo/uterus_live.yaml")
+    with lariat.Simulation(model) as sim:
+        sim.advance(seconds=0.1)
+        print(sim.time, sim.energies(), f"{sim.hash():016x}")
+
+Model: what is simulated, constant. Simulation: the state that moves. Saved: a state in memory.
+Session: a simulation in real time, with tools, devices and the viewer. SI units; vectors are x, y,
+z; nodes and elements count from 0. Arrays are memoryviews, which numpy.asarray takes without a copy;
+numpy is not needed. What is refused raises a subclass of Error with the library's sentence.
+docs/python.md is the tutorial.
+"""
+
+import os as _os
+
+from ._lariat import (
+    ArgumentError,
+    Error,
+    FileError,
+    FormatError,
+    Model,
+    ModelError,
+    OutOfMemoryError,
+    PeerError,
+    Saved,
+    Session,
+    Simulation,
+    StateError,
+    UnstableError,
+    UnsupportedError,
+    View,
+    __version__,
+    checkpoint_info,
+    write_demo,
+)
+
+__all__ = [
+    "ArgumentError", "Error", "FileError", "FormatError", "Model", "ModelError", "OutOfMemoryError",
+    "PeerError", "Saved", "Session", "Simulation", "StateError", "UnstableError", "UnsupportedError",
+    "View", "__version__", "checkpoint_info", "write_demo",
+]
+
+# Wheels bring the viewer's page along; elsewhere the library knows where it was installed.
+_viewer_folder = _os.path.join(_os.path.dirname(_os.path.abspath(__file__)), "viewer")
+if not _os.path.exists(_os.path.join(_viewer_folder, "index.html")):
+    _viewer_folder = None
+
+
+# ---- pickles -------------------------------------------------------------------------------------
+
+
+def _unpack(packed):
+    if packed is None:
+        return None
+    data, kind, columns = packed
+    view = memoryview(data).cast(kind)
+    rows = len(view) // columns if columns else 0
+    return memoryview(data).cast(kind, (rows, columns)) if columns and rows else view
+
+
+def _from_packed(nodes, hexahedra, scene, tags, sets, fibres):
+    return Model.from_arrays(
+        _unpack(nodes), _unpack(hexahedra), scene, tags=_unpack(tags), fibres=_unpack(fibres),
+        sets={name: (kind, _unpack(index)) for name, (kind, index) in sets.items()})
+
+
+def _through_file(call):
+    """Calls with a path in a folder of its own, which is gone afterwards."""
+    import tempfile
+
+    with tempfile.TemporaryDirectory(prefix="lariat-") as folder:
+        return call(_os.path.join(folder, "state"))
+
+
+def _reduce_simulation(simulation):
+    def save(path):
+        simulation.save(path)
+        with open(path, "rb") as file:
+            return file.read()
+
+    return _restore_simulation, (simulation.model, simulation.options, _through_file(save))
+
+
+def _restore_simulation(model, options, state):
+    def load(path):
+        with open(path, "wb") as file:
+            file.write(state)
+        simulation.load(path)
+
+    simulation = Simulation(model, **options)
+    _through_file(load)
+    return simulation

@@ -1,0 +1,223 @@
+/* The Python module lariat: what its files share.
+ *
+ *     errors.c        lar_status to exceptions           convert.c   numbers, vectors, texts
+ *     array.c         memory out and in, by the buffer protocol
+ *     model.c         class Model                        model_arrays.c   Model.from_arrays
+ *     simulation.c    class Simulation: life, advance    simulation_state.c   arrays, states
+ *     change.c        gravity, stiffness, forces         tools.c     tools and their contacts
+ *     session.c       class Session: life, clock         session_state.c   states, snapshots
+ *     saved.c         class Saved: a state in memory     view.c      class View: the browser
+ *     module.c        the module itself
+ *
+ * It is written against CPython's stable ABI (Py_LIMITED_API 3.11): one binary for all later
+ * versions, nothing but Python's headers to build it, and of Lariat nothing but lariat.h.
+ *
+ * Threads. The library leaves it to the caller that a simulation is used by one thread at a time.
+ * Python's callers are promised more: a second thread gets an exception. Whoever computes on a
+ * simulation takes it (`busy`) before it lets go of the interpreter's lock, and calls that keep the
+ * lock look at `busy` first, so the lock protects the mark. Worker threads do not live on in the
+ * child of a fork: what has any is refused there, and left alone when it is collected.
+ */
+#ifndef LARIAT_PYTHON_MODULE_H
+#define LARIAT_PYTHON_MODULE_H
+
+#define PY_SSIZE_T_CLEAN
+#include <Python.h>
+
+#include <lariat.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* What was asked of a tool, which a move keeps where it says nothing; NaN: what is now. */
+typedef struct python_asked {
+    double orientation[4], opening;
+} python_asked;
+
+/* ---- classes -------------------------------------------------------------------------------- */
+
+typedef struct python_model {
+    PyObject_HEAD lar_model *model;
+    PyObject *recipe; /* what __reduce__ gives: a callable and its arguments */
+} python_model;
+
+typedef struct python_session python_session;
+
+typedef struct python_simulation {
+    PyObject_HEAD lar_simulation *simulation; /* NULL: closed */
+    python_model *model;
+    PyObject *options;       /* dict: as it was asked for */
+    python_session *session; /* that has taken it over, which keeps this alive; NULL: none */
+    bool busy;               /* a thread computes on it without the interpreter's lock */
+    unsigned generation;     /* python_generation when it was made */
+    python_asked asked[LAR_TOOLS_MAX];
+} python_simulation;
+
+typedef struct python_saved {
+    PyObject_HEAD lar_saved *saved;
+    python_model *model;
+    bool busy;
+    unsigned long long step; /* of the state in it */
+    double time;             /* [s] */
+} python_saved;
+
+typedef struct python_view python_view;
+
+struct python_session {
+    PyObject_HEAD lar_session *session; /* NULL: closed */
+    python_simulation *simulation;
+    python_view *view; /* its server, which keeps this alive; NULL: none */
+    bool closing;      /* no further calls */
+    int calls;         /* under way without the interpreter's lock */
+    unsigned generation;
+    python_asked asked[LAR_TOOLS_MAX];
+    python_session *next; /* of all that are open */
+};
+
+struct python_view {
+    PyObject_HEAD lar_server *server; /* NULL: closed */
+    python_session *session;
+};
+
+extern PyTypeObject *python_model_type, *python_simulation_type, *python_saved_type,
+    *python_session_type, *python_view_type, *python_array_type;
+
+bool python_errors_add(PyObject *module);
+bool python_array_add(PyObject *module);
+bool python_model_add(PyObject *module);
+bool python_saved_add(PyObject *module);
+bool python_simulation_add(PyObject *module);
+bool python_session_add(PyObject *module);
+bool python_view_add(PyObject *module);
+/* Makes a type and adds it to the module, where it has a public name. */
+PyTypeObject *python_type_add(PyObject *module, PyType_Spec *spec, bool is_public);
+/* Frees an object of one of these classes, whose parts have been freed. */
+void python_object_free(PyObject *object);
+
+/* One more in every child of a fork. */
+extern unsigned python_generation;
+
+/* Without the interpreter's lock. */
+#define PYTHON_UNLOCKED(statement)                                                                 \
+    do {                                                                                           \
+        PyThreadState *python_thread = PyEval_SaveThread();                                        \
+        statement;                                                                                 \
+        PyEval_RestoreThread(python_thread);                                                       \
+    } while (0)
+
+/* ---- errors: all return NULL, or false ------------------------------------------------------ */
+
+extern PyObject *python_error_argument, *python_error_state;
+
+PyObject *python_raise(const lar_error *error);
+/* An ArgumentError (a ValueError) or a TypeError: PyErr_Format's formats. */
+bool python_refuse(const char *format, ...);
+bool python_refuse_type(const char *format, ...);
+
+/* ---- values --------------------------------------------------------------------------------- */
+
+/* `name` begins the message: "steps: expected ..." */
+bool python_steps(PyObject *source, const char *name, unsigned long long *steps);
+bool python_number(PyObject *source, const char *name, double *number);
+/* `count` finite numbers from any sequence. */
+bool python_vector(PyObject *source, const char *name, int count, double *out);
+PyObject *python_tuple(const double *value, int count);
+/* A path as bytes, or NULL and an exception. */
+PyObject *python_path(PyObject *source, const char *name);
+/* Scene text: a str as it is, a dict as JSON, which is YAML. A new str. */
+PyObject *python_scene_text(PyObject *scene);
+/* The pose that a move asks for. Orientation and opening, NULL or None, stay what was asked for
+ * before, or what they are now. */
+bool python_pose(PyObject *position, PyObject *orientation, PyObject *opening,
+                 const python_asked *asked, const lar_tool_pose *now, lar_tool_pose *pose);
+/* After it was accepted, and when nothing is known any more. */
+void python_asked_set(python_asked *asked, const lar_tool_pose *pose);
+void python_asked_forget(python_asked asked[LAR_TOOLS_MAX]);
+PyObject *python_pose_dict(const lar_tool_pose *pose);
+PyObject *python_force_dict(const lar_tool_force *force);
+PyObject *python_wrench(const lar_tool_force *force);
+PyObject *python_touch_list(const lar_touch *touch, int32_t count);
+PyObject *python_tool_dict(const lar_tool_info *info);
+/* "sphere", ... as lar_tool_info for lar_simulation_add_tool. */
+bool python_tool_wanted(PyObject *args, PyObject *keywords, lar_tool_info *info);
+/* The index of a material: a number or a name; None: all, -1. */
+bool python_material(const lar_model *model, PyObject *source, int32_t *index);
+
+/* What a call about forces names: a node or a set, and a vector or None. */
+typedef struct python_force_call {
+    const char *set; /* NULL: the node */
+    int32_t node;
+    double vector[3];
+    const double *force; /* NULL: none any more */
+} python_force_call;
+bool python_force_parse(PyObject *args, PyObject *keywords, python_force_call *call);
+
+/* ---- arrays --------------------------------------------------------------------------------- */
+
+/* A memoryview of [rows][columns] items (columns 0: [rows]); format 'd', 'f', 'i' or 'H'. `owner`
+ * keeps the memory alive. Read only. */
+PyObject *python_array_of(PyObject *owner, const void *data, char format, Py_ssize_t rows,
+                          Py_ssize_t columns);
+/* The same with fresh memory, writable; *data is where it is. */
+PyObject *python_array_new(char format, Py_ssize_t rows, Py_ssize_t columns, void **data);
+
+/* Where a call puts an array: the caller's own, or a fresh one. */
+typedef struct python_target {
+    Py_buffer view; /* of the caller's */
+    PyObject *result;
+    void *data;
+} python_target;
+/* `out` NULL or None: a fresh one. */
+bool python_target_open(PyObject *out, char format, Py_ssize_t rows, Py_ssize_t columns,
+                        python_target *target);
+/* Gives what the call returns, a new reference, or NULL when `failed`. */
+PyObject *python_target_close(python_target *target, bool failed);
+
+/* An array that came in: [rows][columns] (columns 0: [rows]) of float64 or int32. */
+typedef struct python_rows {
+    Py_buffer view;
+    bool held; /* the view is */
+    void *own; /* converted */
+    const void *data;
+    Py_ssize_t rows;
+} python_rows;
+/* Takes a buffer of float64 as it is, nested sequences of numbers by copying them; all finite. */
+bool python_doubles(PyObject *source, const char *name, int columns, python_rows *out);
+/* Likewise int32; other integers are converted. */
+bool python_integers(PyObject *source, const char *name, int columns, python_rows *out);
+void python_rows_free(python_rows *rows);
+
+/* ---- simulations ---------------------------------------------------------------------------- */
+
+/* The simulation for a call that keeps the interpreter's lock; NULL: an exception says why not. */
+lar_simulation *python_simulation_look(python_simulation *self, const char *call);
+/* The same, and taken until python_simulation_give: for calls that let go of the lock. */
+lar_simulation *python_simulation_take(python_simulation *self, const char *call);
+void python_simulation_give(python_simulation *self);
+/* The index of a tool: a number or a name. */
+bool python_simulation_tool(lar_simulation *simulation, PyObject *source, int32_t *index);
+
+/* Rows of the class that stand in other files; each table ends with a row of NULL. */
+extern PyMethodDef python_state_methods[], python_change_methods[], python_tool_methods[];
+extern PyGetSetDef python_change_properties[], python_tool_properties[];
+
+/* ---- sessions ------------------------------------------------------------------------------- */
+
+/* The session for a call that keeps the lock, and for one that does not. */
+lar_session *python_session_look(python_session *self, const char *call);
+lar_session *python_session_take(python_session *self, const char *call);
+void python_session_give(python_session *self);
+bool python_session_tool(lar_session *session, PyObject *source, int32_t *index);
+void python_view_shut(python_view *view);
+PyObject *python_view_open(PyObject *session, PyObject *args, PyObject *keywords);
+
+extern PyMethodDef python_session_state_methods[], python_session_change_methods[],
+    python_session_tool_methods[];
+extern PyGetSetDef python_session_change_properties[], python_session_tool_properties[];
+
+/* A class's methods or properties: tables one behind the other. */
+PyMethodDef *python_join_methods(PyMethodDef *const *tables, int count);
+PyGetSetDef *python_join_properties(PyGetSetDef *const *tables, int count);
+
+#endif

@@ -1,0 +1,69 @@
+#!/bin/sh
+# The tests of the Python module, with an interpreter that can load it.
+#
+#   run.sh NAME SOURCE BUILD SCRATCH WHY      WHY: why there is nothing to test; "" when there is
+#
+# NAME is that of test_NAME.py; `docs` runs the blocks of docs/python.md, `pip` installs a copy of the
+# checkout into an empty virtual environment, without network, and tests what is there then; `asan` builds
+# the module once more with the sanitizers for addresses and undefined behaviour, on the same library.
+set -eu
+name=$1 source=$2 build=$3 scratch=$4 why=$5
+here=$source/tests/python
+[ -z "$why" ] || { echo "skipped: $why"; exit 77; }
+
+# Debian's own knows its packages (numpy); another one on the PATH does as well.
+python=
+for candidate in /usr/bin/python3 python3; do
+    "$candidate" -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null || continue
+    python=$candidate
+    break
+done
+[ -n "$python" ] || { echo "skipped: no python3 of version 3.11 or later"; exit 77; }
+rm -rf "$scratch"
+mkdir -p "$scratch"
+cd "$scratch"
+export LARIAT_COMMAND="$build/lariat" PYTHONDONTWRITEBYTECODE=1
+
+case $name in
+docs)
+    PYTHONPATH="$build/python" "$python" -X faulthandler "$here/docs.py" "$source/docs/python.md"
+    ;;
+pip)
+    "$python" -c 'import venv, ensurepip' 2>/dev/null || { echo "skipped: no venv (apt-get install python3-venv)"; exit 77; }
+    "$python" -m venv "$scratch/venv"
+    # A stranger's copy: what is tracked, in another folder.
+    git -C "$source" ls-files -z --cached --others --exclude-standard 2>/dev/null |
+        (cd "$source" && xargs -0 tar cf -) | (mkdir "$scratch/copy" && tar xf - -C "$scratch/copy") || {
+        echo "skipped: this is no git checkout"
+        exit 77
+    }
+    "$scratch/venv/bin/python" -m pip install --no-index --disable-pip-version-check \
+        "$scratch/copy" >"$scratch/log" 2>&1 || { cat "$scratch/log"; exit 1; }
+    rm -rf "$scratch/copy"
+    for test in model misuse; do
+        PYTHONPATH="$here" "$scratch/venv/bin/python" -X faulthandler "$here/test_$test.py" || exit 1
+    done
+    "$scratch/venv/bin/python" -m pip uninstall -y lariat >>"$scratch/log" 2>&1
+    left=$(find "$scratch/venv" -name '*lariat*')
+    [ -z "$left" ] || { echo "left behind: $left"; exit 1; }
+    ;;
+asan)
+    runtime=$(gcc -print-file-name=libasan.so 2>/dev/null) undefined=$(gcc -print-file-name=libubsan.so)
+    [ -e "$runtime" ] && [ -e "$undefined" ] || { echo "skipped: no gcc with sanitizers"; exit 77; }
+    include=$("$python" -c 'import sysconfig; print(sysconfig.get_path("include"))')
+    [ -e "$include/Python.h" ] || { echo "skipped: no headers of $python"; exit 77; }
+    cp -r "$build/python" "$scratch/python"
+    gcc -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer -shared \
+        -fPIC -D_GNU_SOURCE -DPy_LIMITED_API=0x030b0000 -I"$include" -I"$source/include" \
+        "$source"/python/*.c -o "$scratch/python/lariat/_lariat.abi3.so" -L"$build" -llariat \
+        -Wl,-rpath,"$build"
+    for test in model simulation session misuse; do
+        env LD_PRELOAD="$runtime $undefined" ASAN_OPTIONS=detect_leaks=0 PYTHONMALLOC=malloc \
+            LARIAT_TEST_SANITIZED=1 PYTHONPATH="$scratch/python:$here" \
+            "$python" "$here/test_$test.py" || exit 1
+    done
+    ;;
+*) PYTHONPATH="$build/python:$here" "$python" -X faulthandler "$here/test_$name.py" ;;
+esac
+cd /
+rm -rf "$scratch"

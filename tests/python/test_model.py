@@ -1,0 +1,172 @@
+"""class Model: files, arrays, what it says of itself."""
+
+import array
+import os
+import pickle
+import unittest
+
+import lariat
+from common import SCENE, WITHOUT_NUMPY, block, block_arrays, demo, numpy
+
+
+class Files(unittest.TestCase):
+    def test_a_scene_is_read_and_says_what_it_is(self):
+        model = lariat.Model(os.path.join(demo(), "uterus.yaml"))
+        info = model.info
+        self.assertEqual((info["nodes"], info["elements"]), (2567, 1840))
+        self.assertEqual((model.node_count, model.element_count), (2567, 1840))
+        self.assertEqual(info["materials"], len(model.materials))
+        self.assertEqual(model.positions.shape, (2567, 3))
+        self.assertEqual(model.hexahedra.shape, (1840, 8))
+        self.assertIn("fundus", [s["name"] for s in model.sets])
+        self.assertLess(0, info["time_step"])
+        faces, nodes = model.surface["faces"], model.surface["nodes"]
+        self.assertEqual(sorted({n for face in faces.tolist() for n in face}), nodes.tolist())
+
+    def test_paths_may_be_bytes_and_path_objects(self):
+        import pathlib
+        path = pathlib.Path(demo()) / "uterus.yaml"
+        self.assertEqual(lariat.Model(path).node_count, lariat.Model(os.fsencode(path)).node_count)
+
+    def test_a_missing_file_is_an_os_error_that_names_it(self):
+        with self.assertRaisesRegex(OSError, "none.yaml") as caught:
+            lariat.Model("/nowhere/none.yaml")
+        self.assertIsInstance(caught.exception, lariat.FileError)
+        self.assertEqual(caught.exception.status, "io")
+
+    def test_views_keep_the_model_alive_and_are_read_only(self):
+        positions = lariat.Model(os.path.join(demo(), "uterus.yaml")).positions
+        self.assertTrue(positions.readonly)
+        self.assertLess(abs(positions[0, 0]), 1)
+        with self.assertRaises(TypeError):
+            positions[0, 0] = 1.0
+
+
+class Arrays(unittest.TestCase):
+    def test_lists_and_a_dict_do(self):
+        model = block()
+        self.assertEqual(model.info["title"], "Block")
+        self.assertEqual(model.positions.tolist(), block_arrays()[0])
+        self.assertEqual(model.hexahedra.tolist(), block_arrays()[1])
+        self.assertEqual(model.tools[0]["name"], "probe")
+        self.assertIn({"name": "top", "kind": "nodes", "count": 42}, model.sets)
+
+    def test_text_and_dict_are_the_same_model(self):
+        import json
+        nodes, hexahedra, sets = block_arrays()
+        text = lariat.Model.from_arrays(nodes, hexahedra, json.dumps(SCENE).replace('"all"', "all"),
+                                         sets=sets)
+        hashes = []
+        for model in (text, block()):
+            sim = lariat.Simulation(model)
+            sim.advance(50)
+            hashes.append(sim.hash())
+        self.assertEqual(hashes[0], hashes[1])
+
+    def test_a_title_of_any_characters(self):
+        self.assertEqual(block(title="Gebärmutter 子宮 \U0001f600").info["title"],
+                         "Gebärmutter 子宮 \U0001f600")
+
+    def test_sets_of_other_kinds_and_tags(self):
+        nodes, hexahedra, sets = block_arrays()
+        sets["half"] = ("elements", list(range(45)))
+        sets["side"] = ("faces", [0, 6, 12])
+        model = lariat.Model.from_arrays(nodes, hexahedra, SCENE, sets=sets, tags=[7] * 90)
+        kinds = {s["name"]: s["kind"] for s in model.sets}
+        self.assertEqual((kinds["half"], kinds["side"]), ("elements", "faces"))
+
+    def test_buffers_without_numpy(self):
+        nodes, hexahedra, sets = block_arrays()
+        flat = array.array("d", [x for node in nodes for x in node])
+        view = memoryview(flat).cast("B").cast("d", (len(nodes), 3))
+        model = lariat.Model.from_arrays(view, hexahedra, SCENE, sets=sets)
+        self.assertEqual(model.positions.tolist(), nodes)
+
+    def test_pickles(self):
+        for model in (block(), lariat.Model(os.path.join(demo(), "uterus.yaml"))):
+            again = pickle.loads(pickle.dumps(model))
+            self.assertEqual(again.positions.tolist(), model.positions.tolist())
+            self.assertEqual(again.sets, model.sets)
+
+    def refuses(self, kind, words, nodes=None, hexahedra=None, scene=None, **others):
+        whole_nodes, whole_hexahedra, sets = block_arrays()
+        others.setdefault("sets", sets)
+        with self.assertRaisesRegex(kind, words):
+            lariat.Model.from_arrays(whole_nodes if nodes is None else nodes,
+                                     whole_hexahedra if hexahedra is None else hexahedra,
+                                     SCENE if scene is None else scene, **others)
+
+    def test_what_cannot_be_says_what_was_expected(self):
+        nodes, hexahedra, _ = block_arrays()
+        bad = [list(n) for n in nodes]
+        bad[5][1] = float("nan")
+        self.refuses(ValueError, r"nodes: row 5 .*finite", nodes=bad)
+        self.refuses(ValueError, r"nodes: row 0 .* 3 numbers", nodes=[[0, 0]])
+        self.refuses(TypeError, r"nodes: expected an array of float64 of shape \[n, 3\]", nodes=7)
+        self.refuses(TypeError, r"nodes: expected", nodes="abc")
+        self.refuses(ValueError, r"\[n, 3\].*format 'd' of shape \[3\]",
+                     nodes=array.array("d", [1, 2, 3]))
+        self.refuses(TypeError, "hexahedra: row 0 .* no whole number", hexahedra=[[0.5] * 8])
+        self.refuses(TypeError, "nodes: row 1 .* no number", nodes=[[0, 0, 0], [0, "x", 0]])
+        self.refuses(ValueError, "hexahedra: row 0 .* too large", hexahedra=[[2**70] * 8])
+        self.refuses(ValueError, "32-bit", hexahedra=[[2**40] * 8])
+        self.refuses(lariat.ModelError, "node", hexahedra=hexahedra + [[9999] * 8])
+        self.refuses(ValueError, "tags: expected one row for each of 90", tags=[1, 2])
+        self.refuses(TypeError, "sets: expected a dict", sets=[1])
+        self.refuses(TypeError, "names as keys", sets={3: [1]})
+        self.refuses(ValueError, "fibres: expected one row", fibres=[[1, 0, 0]])
+        self.refuses(TypeError, "scene: expected a str", scene=5)
+        self.refuses(TypeError, "scene: a value", scene={"lariat": {1, 2}})
+        self.refuses(ValueError, "scene: there is a character 0", scene="lariat: 1\0")
+        self.refuses(lariat.FormatError, "gravitas", scene={**SCENE, "gravitas": 1})
+        self.refuses(ValueError, "NaN|not JSON|Out of range", scene={**SCENE, "damping": float("nan")})
+
+    def test_a_dict_that_changes_meanwhile(self):
+        class Sly(int):
+            def __index__(self):
+                sets.clear()
+                return 3
+        nodes, hexahedra, sets = block_arrays()
+        for n in range(50):
+            sets[f"s{n}"] = [Sly()]
+        lariat.Model.from_arrays(nodes, hexahedra, {k: SCENE[k] for k in ("lariat", "materials")},
+                                 sets=sets)
+
+
+@unittest.skipUnless(numpy, WITHOUT_NUMPY)
+class Numpy(unittest.TestCase):
+    def test_arrays_in_and_out_without_a_copy(self):
+        nodes, hexahedra, sets = block_arrays()
+        sets = {name: numpy.array(index) for name, index in sets.items()}
+        for kind in (numpy.int32, numpy.int64, numpy.uint32):
+            model = lariat.Model.from_arrays(numpy.array(nodes), numpy.array(hexahedra, kind),
+                                             {**SCENE, "gravity": numpy.array([0, 0, -9.81])},
+                                             sets=sets)
+            positions = numpy.asarray(model.positions)
+            self.assertEqual(positions.dtype, numpy.float64)
+            self.assertFalse(positions.flags.writeable)
+            self.assertTrue(numpy.array_equal(positions, nodes))
+            self.assertEqual(positions.__array_interface__["data"],
+                             numpy.asarray(model.positions).__array_interface__["data"])
+
+    def test_the_wrong_kinds(self):
+        nodes, hexahedra, _ = block_arrays()
+        right, wide = numpy.array(nodes), numpy.array(hexahedra)
+
+        def refused(words, nodes=right, hexahedra=wide):
+            with self.assertRaisesRegex(ValueError, words):
+                lariat.Model.from_arrays(nodes, hexahedra)
+        refused("format 'f'.*astype", right.astype(numpy.float32))
+        refused("float64", right.astype(">f8"))
+        refused("contiguous", numpy.repeat(right, 2, axis=0)[::2])
+        refused("contiguous", numpy.asfortranarray(right))
+        refused(r"\[n, 3\]", right[:, :2].copy())
+        refused("int32", hexahedra=wide.astype(float))
+        refused("int32", hexahedra=wide.astype(numpy.int16))
+        refused("32 bits", hexahedra=wide + 2**40)
+        refused("32 bits", hexahedra=wide.astype(numpy.uint64) - 2**20)
+        refused("int32", hexahedra=wide.astype(bool))
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,351 @@
+"""class Simulation: the same bits as the command, states, tools, changes, what is refused."""
+
+import array
+import gc
+import os
+import pickle
+import re
+import subprocess
+import tempfile
+import unittest
+
+import lariat
+from common import EDGE, WITHOUT_NUMPY, block, child, demo, numpy
+
+LARIAT = os.environ.get("LARIAT_COMMAND")
+
+
+class Bits(unittest.TestCase):
+    @unittest.skipUnless(LARIAT, "LARIAT_COMMAND does not say where the command is")
+    def test_the_hash_is_that_of_the_command_on_every_grid(self):
+        scene = os.path.join(demo(), "uterus.yaml")
+        said = subprocess.run([LARIAT, "run", scene, "--steps", "300"], check=True, text=True,
+                              capture_output=True).stdout
+        wanted = int(re.search(r"state hash +([0-9a-f]{16})", said).group(1), 16)
+        model = lariat.Model(scene)
+        for options in ({}, {"grid": "2x1x1"}, {"grid": "1x2x2", "threads": 2},
+                        {"threads": 2}, {"isa": "c"}):
+            with lariat.Simulation(model, **options) as sim:
+                self.assertEqual(sim.advance(300), 300)
+                self.assertEqual(sim.hash(), wanted, options)
+                self.assertEqual(sim.options, options)
+
+    def test_pieces_callbacks_and_seconds_are_the_same_steps(self):
+        model, hashes = block(), []
+
+        def look(sim):
+            seen.append((sim.step, sim.positions()[100, 2]))
+        for way in (lambda s: s.advance(100), lambda s: [s.advance(1) for _ in range(100)],
+                    lambda s: s.advance(100, callback=look, every=7),
+                    lambda s: s.advance(seconds=100 * s.time_step)):
+            seen = []
+            with lariat.Simulation(model) as sim:
+                way(sim)
+                self.assertEqual(sim.step, 100)
+                self.assertAlmostEqual(sim.time, 100 * sim.time_step)
+                hashes.append(sim.hash())
+            if seen:
+                self.assertEqual([step for step, _ in seen], [*range(7, 100, 7), 100])
+        self.assertEqual(len(set(hashes)), 1)
+
+
+class States(unittest.TestCase):
+    def test_saved_in_memory_and_on_disk_and_in_pickles(self):
+        model = block()
+        sim, other = lariat.Simulation(model), lariat.Simulation(model, grid="2x1x1")
+        sim.advance(40)
+        saved = sim.save()
+        self.assertEqual((saved.step, saved.time), (40, sim.time))
+        copy = pickle.loads(pickle.dumps(sim))
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "state")
+            sim.save(path)
+            self.assertEqual(lariat.checkpoint_info(path)["step"], 40)
+            sim.advance(40)
+            for again in (sim, other, copy):
+                if again is not copy:
+                    again.load(path if again is other else saved)
+                again.advance(40)
+        self.assertEqual({sim.hash(), other.hash(), copy.hash()}, {sim.hash()})
+        self.assertIs(sim.save(saved), saved)
+        self.assertEqual(saved.step, 80)
+        sim.reset()
+        self.assertEqual((sim.step, sim.time), (0, 0))
+        with self.assertRaises(TypeError):
+            pickle.dumps(saved)
+
+    def test_a_state_of_another_model_is_refused(self):
+        saved = lariat.Simulation(block()).save()
+        sim = lariat.Simulation(lariat.Model(os.path.join(demo(), "uterus.yaml")))
+        with self.assertRaises(lariat.ArgumentError):
+            sim.load(saved)
+        with self.assertRaises(lariat.FileError):
+            sim.load("/nowhere/state")
+
+    def test_a_saved_state_outlives_its_simulation_and_needs_its_model(self):
+        sim = lariat.Simulation(block())
+        sim.advance(5)
+        saved, hash_then, model = sim.save(), sim.hash(), sim.model
+        sim.close()
+        del sim
+        again = lariat.Simulation(model)
+        del model
+        gc.collect()
+        again.load(saved)
+        self.assertEqual(again.hash(), hash_then)
+
+
+class Arrays(unittest.TestCase):
+    def setUp(self):
+        self.sim = lariat.Simulation(block())
+        self.sim.advance(50)
+
+    def test_positions_are_those_at_rest_and_displacements(self):
+        u, x = self.sim.displacements().tolist(), self.sim.positions().tolist()
+        for rest, moved, now in zip(self.sim.model.positions.tolist(), u, x):
+            self.assertEqual(now, [a + b for a, b in zip(rest, moved)])
+        self.assertEqual(self.sim.velocities().shape, (168, 3))
+        self.assertEqual(self.sim.field("von_mises").shape, (168,))
+
+    def test_out_is_filled(self):
+        count = self.sim.model.node_count
+        memory = memoryview(bytearray(24 * count)).cast("d", (count, 3))
+        self.assertIs(self.sim.positions(memory), memory)
+        self.assertEqual(memory.tolist(), self.sim.positions().tolist())
+        flat = memoryview(bytearray(4 * count)).cast("f")
+        self.assertIs(self.sim.field("energy", out=flat), flat)
+
+    def test_what_out_may_be(self):
+        count = self.sim.model.node_count
+        for out, words in ((bytearray(24 * count), r"\[168, 3\]"), (array.array("d", [0] * 3), "got"),
+                           (memoryview(bytes(24 * count)).cast("d", (count, 3)), "read only"),
+                           (memoryview(bytearray(12 * count)).cast("f", (count, 3)), "float64")):
+            with self.assertRaisesRegex(ValueError, "out: .*" + words):
+                self.sim.positions(out)
+        with self.assertRaisesRegex(TypeError, "out: expected an array"):
+            self.sim.positions([[0, 0, 0]])
+        with self.assertRaisesRegex(ValueError, "none; there are"):
+            self.sim.field("colour")
+
+    def test_energies_balance(self):
+        e = self.sim.energies()
+        held = sum(e[k] for k in ("kinetic", "strain", "hourglass", "damping", "contact", "viscous"))
+        self.assertAlmostEqual(held, e["external"], delta=2e-2 * abs(e["external"]))
+
+    @unittest.skipUnless(numpy, WITHOUT_NUMPY)
+    def test_numpy_takes_them_without_a_copy(self):
+        x = numpy.empty((self.sim.model.node_count, 3))
+        self.assertIs(self.sim.positions(x), x)
+        view = self.sim.positions()
+        array_of_it = numpy.asarray(view)
+        array_of_it[0, 0] = 5
+        self.assertEqual(view[0, 0], 5)
+        for bad in (x.T, x[::2], x.astype(numpy.float32), numpy.asfortranarray(x)):
+            with self.assertRaises(ValueError):
+                self.sim.positions(bad)
+        self.assertTrue(numpy.allclose(x - numpy.asarray(self.sim.model.positions),
+                                       numpy.asarray(self.sim.displacements())))
+
+
+class Changes(unittest.TestCase):
+    def test_gravity_damping_stiffness_and_forces(self):
+        sim = lariat.Simulation(block())
+        self.assertEqual(sim.gravity, (0, 0, -9.81))
+        sim.gravity = [0, -9.81, 0]
+        self.assertEqual(sim.gravity, (0, -9.81, 0))
+        sim.gravity = None
+        self.assertEqual(sim.gravity, (0, 0, -9.81))
+        sim.damping = 5
+        self.assertEqual(sim.damping, 5)
+        sim.set_stiffness(2, "soft")
+        self.assertEqual(sim.stiffness(0), 2)
+        sim.set_stiffness(0.5)
+        self.assertEqual(sim.stiffness("soft"), 0.5)
+        sim.set_force("top", (0, 0, 0.01))
+        sim.set_force(167, (0.5, 0, 0))
+        self.assertEqual(sim.force(167), (0.5, 0, 0.01))
+        sim.set_force(167)
+        self.assertEqual(sim.force(167), (0, 0, 0.01))
+        sim.clear_forces()
+        self.assertEqual(sim.force(167), (0, 0, 0))
+
+    def test_what_is_refused(self):
+        sim = lariat.Simulation(block())
+        for call, words in ((lambda: sim.set_stiffness(9), "4"),
+                            (lambda: sim.set_stiffness(1, "hard"), "none called 'hard'"),
+                            (lambda: sim.stiffness(7), "no material"),
+                            (lambda: sim.set_force("nowhere", (1, 0, 0)), "nowhere"),
+                            (lambda: sim.set_force(99999, (1, 0, 0)), "99999"),
+                            (lambda: sim.set_force(0, (1, 0)), "3 finite numbers"),
+                            (lambda: sim.set_force(0, (1, 0, float("inf"))), "finite"),
+                            (lambda: sim.force(-1), "no node"),
+                            (lambda: setattr(sim, "gravity", (1, 2)), "3 finite"),
+                            (lambda: setattr(sim, "gravity", (0, 0, 1e6)), "1000"),
+                            (lambda: setattr(sim, "damping", -1), "damping")):
+            with self.assertRaisesRegex(ValueError, words):
+                call()
+        for call in (lambda: setattr(sim, "damping", "x"), lambda: setattr(sim, "gravity", 5),
+                     lambda: delattr(sim, "damping"), lambda: sim.set_force(0.5, (0, 0, 1)),
+                     lambda: sim.set_stiffness(None)):
+            with self.assertRaises(TypeError):
+                call()
+
+
+class Tools(unittest.TestCase):
+    def test_a_probe_presses_and_its_points_are_its_force(self):
+        sim = lariat.Simulation(block())
+        self.assertEqual([t["name"] for t in sim.tools], ["probe"])
+        sim.tool_move("probe", (0.03, 0.025, 0.033), 500)
+        sim.advance(700)
+        touches, sums = sim.tool_touches("probe"), [0.0, 0.0, 0.0]
+        self.assertGreater(len(touches), 3)
+        for touch in touches:
+            self.assertEqual(touch["kind"], "pressed")
+            self.assertAlmostEqual(sum(touch["weights"]), 1)
+            sums = [a + b for a, b in zip(sums, touch["force"])]
+        sim.advance(1)
+        force = sim.tool_force(0)
+        for felt, summed in zip(force["force"], sums):
+            self.assertAlmostEqual(felt, summed, places=9)
+        self.assertEqual(sim.wrench("probe"), force["force"] + force["torque"])
+        self.assertGreater(force["force"][2], 0)
+        self.assertAlmostEqual(sim.tool_pose(0)["position"][2], 0.033, places=3)
+
+    def test_a_hand_lifts(self):
+        sim = lariat.Simulation(block(tools=[]), hands=1)
+        place = (0.03, 0.025, 3 * EDGE)
+        sim.tool_move(0, place)
+        self.assertGreater(sim.grasp(0, place), 0)
+        sim.tool_move(0, (0.03, 0.025, 3 * EDGE + 0.005), 2000)
+        sim.advance(2000)
+        self.assertGreater(sim.tool_force(0)["held"], 0)
+        self.assertLess(sim.wrench(0)[2], 0)
+        sim.release(0)
+        self.assertEqual(sim.grasp(0, (1, 1, 1)), 0)
+
+    def test_tools_come_and_go(self):
+        sim = lariat.Simulation(block(), spares=1)
+        added = sim.add_tool("sphere", 0.008)
+        self.assertEqual(sim.tools[added]["shape"], "sphere")
+        sim.remove_tool(added)
+        self.assertEqual(sim.tools[added]["shape"], "none")
+
+    def test_what_is_refused(self):
+        sim = lariat.Simulation(block())
+        for call, words in ((lambda: sim.tool_pose("scalpel"), "none called 'scalpel'"),
+                            (lambda: sim.tool_pose(1), "the simulation has 1"),
+                            (lambda: sim.tool_move(0, (1, 2)), "position: expected 3"),
+                            (lambda: sim.tool_move(0, (0, 0, float("nan"))), "position"),
+                            (lambda: sim.tool_move(0, (0, 0, 9), 1), "radius"),
+                            (lambda: sim.tool_move(0, (0, 0, 0), 0), "step"),
+                            (lambda: sim.tool_move(0, (0, 0, 0), orientation=(1, 1, 1, 1)), "unit|quat"),
+                            (lambda: sim.tool_move(0, (0, 0, 0), opening=float("nan")), "opening"),
+                            (lambda: sim.grasp(0), ""), (lambda: sim.add_tool("sphere", 0.008), ""),
+                            (lambda: sim.add_tool("saw", 0.01), "sphere")):
+            with self.assertRaisesRegex(ValueError, words):
+                call()
+        for call in (lambda: sim.tool_pose(0.5), lambda: sim.tool_pose(None),
+                     lambda: sim.tool_move(0), lambda: sim.tool_move(0, 5)):
+            with self.assertRaises(TypeError):
+                call()
+
+
+class Arguments(unittest.TestCase):
+    def test_of_a_simulation(self):
+        model = block()
+        for options, words in (({"grid": "x"}, "grid"), ({"element": "tet4"}, "tet4"),
+                               ({"isa": "mmx"}, "mmx"), ({"threads": -1}, ""),
+                               ({"time_step": -1.0}, ""), ({"time_step": float("nan")}, ""),
+                               ({"hands": -1}, ""), ({"spares": 99}, ""), ({"grid": "2x1x1", "scheme": "no"}, "no")):
+            with self.assertRaisesRegex(lariat.Error, words):
+                lariat.Simulation(model, **options)
+        for arguments in ((), ("organ.yaml",), (None,), (model, "2x1x1")):
+            with self.assertRaises(TypeError):
+                lariat.Simulation(*arguments)
+        with self.assertRaises(TypeError):
+            lariat.Simulation(model, colour="red")
+        with self.assertRaises(TypeError):
+            lariat.Saved()
+
+    def test_of_advance(self):
+        sim = lariat.Simulation(block())
+        for arguments, options in (((), {}), ((1,), {"seconds": 1}), (("1",), {}), ((1.0,), {}),
+                                   ((1, 2), {}), ((1,), {"steps": 1}), ((), {"minutes": 1}),
+                                   ((1,), {"every": 1}), ((1,), {"callback": 5})):
+            with self.assertRaises(TypeError):
+                sim.advance(*arguments, **options)
+        for arguments, options in (((-1,), {}), ((2**64,), {}), ((), {"seconds": -1.0}),
+                                   ((), {"seconds": float("nan")}), ((), {"seconds": 1e300}),
+                                   ((5,), {"callback": print, "every": 0})):
+            with self.assertRaises(ValueError):
+                sim.advance(*arguments, **options)
+        self.assertEqual((sim.advance(0), sim.advance(True), sim.step), (0, 1, 1))
+
+
+class Life(unittest.TestCase):
+    def test_after_close_everything_is_refused(self):
+        sim = lariat.Simulation(block())
+        sim.close()
+        sim.close()
+        self.assertTrue(sim.closed)
+        self.assertIn("closed", repr(sim))
+        for name in dir(sim):
+            if name.startswith("__") or name in ("model", "closed", "options", "close"):
+                continue
+            for arguments in ((), (0,), (0, (0, 0, 0)), ("sphere", 1.0)):
+                try:
+                    value = getattr(sim, name)
+                    value(*arguments)
+                except (lariat.StateError, TypeError, ValueError):
+                    continue
+                self.fail(f"{name}{arguments} of a closed simulation answers")
+        self.assertRaises(lariat.StateError, lariat.Session, sim)
+
+    def test_unstable_runs_say_so_and_can_be_taken_up_again(self):
+        sim = lariat.Simulation(block(), time_step=0.0)
+        for node in range(130, 160):
+            sim.set_force(node, (0, 0, 200))
+        with self.assertRaisesRegex(ArithmeticError, "step|element|node") as caught:
+            sim.advance(20000)
+        self.assertEqual(caught.exception.status, "unstable")
+        sim.reset()
+        sim.advance(10)
+
+    @unittest.skipIf(os.environ.get("LARIAT_TEST_SANITIZED"), "sanitizers keep what was freed")
+    def test_ten_thousand_come_and_go_without_growth(self):
+        def resident():
+            with open("/proc/self/statm", encoding="ascii") as file:
+                return int(file.read().split()[1]) * os.sysconf("SC_PAGE_SIZE")
+        many = 10000 if os.environ.get("LARIAT_TEST_FULL") else 300
+        model = block()
+        for i in range(many + 100):
+            if i == 100:
+                before = resident()
+            sim = lariat.Simulation(model)
+            sim.advance(1)
+            sim.save()
+            sim.positions()
+            del sim
+            block() if i % 10 == 0 else None
+        self.assertLess(resident() - before, 8 << 20)
+
+    def test_exceptions_leave_nothing_behind(self):
+        import sys
+        model = block()
+        count = sys.getrefcount(model)
+        for _ in range(50):
+            with self.assertRaises(lariat.Error):
+                lariat.Simulation(model, grid="x")
+            with self.assertRaises(TypeError):
+                lariat.Simulation(model, grid=5)
+        self.assertEqual(sys.getrefcount(model), count)
+
+    def test_a_second_interpreter_gets_an_exception_or_the_module(self):
+        status, said, error = child("import lariat, importlib, sys\n"
+                                    "del sys.modules['lariat'], sys.modules['lariat._lariat']\n"
+                                    "try:\n import lariat\nexcept ImportError as e: print(e)\n")
+        self.assertEqual(status, 0, said + error)
+
+
+if __name__ == "__main__":
+    unittest.main()
