@@ -1,6 +1,10 @@
-/* Gravity, damping, stiffness and forces on nodes, of a simulation and of a session: the same words
- * for both, because the library has the same calls for both. */
+/* Gravity, damping, stiffness, activation and forces on nodes, of a simulation and of a session:
+ * the same words for both, because the library has the same calls for both. */
 #include "module.h"
+
+/* A number for each material: the library's calls. */
+typedef lar_status set_for_material(void *it, int32_t material, double value, lar_error *error);
+typedef double of_material(const void *it, int32_t material);
 
 /* What a class has: how it is taken, and the library's calls with a plain pointer. */
 typedef struct changes {
@@ -10,12 +14,12 @@ typedef struct changes {
     const lar_model *(*model)(PyObject *me);
     lar_status (*set_gravity)(void *it, const double gravity[3], lar_error *error);
     lar_status (*set_damping)(void *it, double damping, lar_error *error);
-    lar_status (*set_stiffness)(void *it, int32_t material, double factor, lar_error *error);
+    set_for_material *set_stiffness, *activate;
     lar_status (*set_force)(void *it, int32_t node, const double force[3], lar_error *error);
     lar_status (*set_force_on)(void *it, const char *set, const double force[3], lar_error *error);
     void (*gravity)(const void *it, double gravity[3]);
     double (*damping)(const void *it);
-    double (*stiffness)(const void *it, int32_t material);
+    of_material *stiffness, *activation;
 } changes;
 
 /* ---- the two of them ------------------------------------------------------------------------ */
@@ -30,6 +34,10 @@ typedef struct changes {
     static lar_status kind##_set_stiffness(void *it, int32_t material, double factor,              \
                                            lar_error *error) {                                     \
         return lar_##kind##_set_stiffness(it, material, factor, error);                            \
+    }                                                                                              \
+    static lar_status kind##_activate(void *it, int32_t material, double value,                    \
+                                      lar_error *error) {                                          \
+        return lar_##kind##_activate(it, material, value, error);                                  \
     }                                                                                              \
     static lar_status kind##_set_force(void *it, int32_t node, const double force[3],              \
                                        lar_error *error) {                                         \
@@ -48,6 +56,9 @@ typedef struct changes {
     static double kind##_stiffness(const void *it, int32_t material) {                             \
         return lar_##kind##_stiffness(it, material);                                               \
     }                                                                                              \
+    static double kind##_activation(const void *it, int32_t material) {                            \
+        return lar_##kind##_activation(it, material);                                              \
+    }                                                                                              \
     static void *kind##_take(PyObject *me, const char *call) {                                     \
         return python_##kind##_take((python_##kind *)me, call);                                    \
     }                                                                                              \
@@ -58,9 +69,10 @@ typedef struct changes {
         python_##kind##_give((python_##kind *)me);                                                 \
     }                                                                                              \
     static const changes kind##_changes = {                                                        \
-        kind##_take,         kind##_look,        kind##_give,          kind##_model,               \
-        kind##_set_gravity,  kind##_set_damping, kind##_set_stiffness, kind##_set_force,           \
-        kind##_set_force_on, kind##_gravity,     kind##_damping,       kind##_stiffness};
+        kind##_take,        kind##_look,         kind##_give,          kind##_model,               \
+        kind##_set_gravity, kind##_set_damping,  kind##_set_stiffness, kind##_activate,            \
+        kind##_set_force,   kind##_set_force_on, kind##_gravity,       kind##_damping,             \
+        kind##_stiffness,   kind##_activation};
 
 static const lar_model *simulation_model(PyObject *me) {
     return ((python_simulation *)me)->model->model;
@@ -134,39 +146,61 @@ static PyObject *get_damping(PyObject *me, void *unused) {
     return it ? PyFloat_FromDouble(changes_of(me)->damping(it)) : NULL;
 }
 
-static PyObject *set_stiffness(PyObject *me, PyObject *args, PyObject *keywords) {
-    static char *names[] = {"factor", "material", NULL};
+/* `call` (number, material=None), the number called `name`. */
+static PyObject *set_number(PyObject *me, PyObject *args, PyObject *keywords, const char *call,
+                            char *name, set_for_material *set) {
+    char *names[] = {name, "material", NULL};
     const changes *c = changes_of(me);
-    PyObject *factor, *material = Py_None;
+    PyObject *value, *material = Py_None;
     double number;
     int32_t index;
-    if (!PyArg_ParseTupleAndKeywords(args, keywords, "O|O:set_stiffness", names, &factor,
-                                     &material) ||
-        !python_number(factor, "factor", &number) ||
-        !python_material(c->model(me), material, &index))
+    char format[32];
+    snprintf(format, sizeof format, "O|O:%s", call);
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, format, names, &value, &material) ||
+        !python_number(value, name, &number) || !python_material(c->model(me), material, &index))
         return NULL;
-    void *it = c->take(me, "set_stiffness");
+    void *it = c->take(me, call);
     if (!it) return NULL;
     lar_error error;
     lar_status status;
-    PYTHON_UNLOCKED(status = c->set_stiffness(it, index, number, &error));
+    PYTHON_UNLOCKED(status = set(it, index, number, &error));
     return done(me, c, status, &error);
 }
 
-static PyObject *stiffness(PyObject *me, PyObject *args, PyObject *keywords) {
+static PyObject *set_stiffness(PyObject *me, PyObject *args, PyObject *keywords) {
+    return set_number(me, args, keywords, "set_stiffness", "factor", changes_of(me)->set_stiffness);
+}
+
+static PyObject *activate(PyObject *me, PyObject *args, PyObject *keywords) {
+    return set_number(me, args, keywords, "activate", "value", changes_of(me)->activate);
+}
+
+/* `call` (material). */
+static PyObject *get_number(PyObject *me, PyObject *args, PyObject *keywords, const char *call,
+                            of_material *get) {
     static char *names[] = {"material", NULL};
     const changes *c = changes_of(me);
     PyObject *material;
     int32_t index;
-    if (!PyArg_ParseTupleAndKeywords(args, keywords, "O:stiffness", names, &material) ||
+    char format[32];
+    snprintf(format, sizeof format, "O:%s", call);
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, format, names, &material) ||
         !python_material(c->model(me), material, &index))
         return NULL;
     if (index < 0 || index >= lar_model_material_count(c->model(me))) {
         python_refuse("material: there is no material %R", material);
         return NULL;
     }
-    void *it = c->look(me, "stiffness");
-    return it ? PyFloat_FromDouble(c->stiffness(it, index)) : NULL;
+    void *it = c->look(me, call);
+    return it ? PyFloat_FromDouble(get(it, index)) : NULL;
+}
+
+static PyObject *stiffness(PyObject *me, PyObject *args, PyObject *keywords) {
+    return get_number(me, args, keywords, "stiffness", changes_of(me)->stiffness);
+}
+
+static PyObject *activation(PyObject *me, PyObject *args, PyObject *keywords) {
+    return get_number(me, args, keywords, "activation", changes_of(me)->activation);
 }
 
 static PyObject *set_force(PyObject *me, PyObject *args, PyObject *keywords) {
@@ -217,6 +251,13 @@ static PyObject *force(PyObject *me, PyObject *args, PyObject *keywords) {
      "divided."},                                                                                  \
         {"stiffness", FUNCTION(stiffness), METH_VARARGS | METH_KEYWORDS,                           \
          "stiffness($self, material)\n--\n\nThat factor now; material by index or name."},         \
+        {"activate", FUNCTION(activate), METH_VARARGS | METH_KEYWORDS,                             \
+         "activate($self, value, material=None)\n--\n\nHow active a material with active stress "  \
+         "is, 0 to 1, times what its curve or wave says; by index or name, None: all that have "   \
+         "one. It starts at 1."},                                                                  \
+        {"activation", FUNCTION(activation), METH_VARARGS | METH_KEYWORDS,                         \
+         "activation($self, material)\n--\n\nWhat was set, without curve and wave; material by "   \
+         "index or name."},                                                                        \
         {"set_force", FUNCTION(set_force), METH_VARARGS | METH_KEYWORDS,                           \
          "set_force($self, where, force=None)\n--\n\nA constant force [N], three numbers, on a "   \
          "node "                                                                                   \

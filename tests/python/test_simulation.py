@@ -10,7 +10,7 @@ import tempfile
 import unittest
 
 import lariat
-from common import EDGE, WITHOUT_NUMPY, block, child, demo, numpy
+from common import EDGE, SCENE, WITHOUT_NUMPY, block, child, demo, numpy
 
 LARIAT = os.environ.get("LARIAT_COMMAND")
 
@@ -169,9 +169,27 @@ class Changes(unittest.TestCase):
         sim.clear_forces()
         self.assertEqual(sim.force(167), (0, 0, 0))
 
+    def test_a_muscle_is_as_active_as_it_is_told(self):
+        muscle = {"direction": {"axis": [0, 0, 1]}, "active": {"along": 500}}
+        sim = lariat.Simulation(block(materials=[{**SCENE["materials"][0], "fibres": muscle}]))
+        self.assertEqual(sim.activation("soft"), 1)
+        sim.activate(0)
+        self.assertEqual(sim.activation(0), 0)
+        sim.advance(100)
+        tall = sim.positions()[167, 2]
+        sim.activate(1, material="soft")
+        sim.advance(100)
+        self.assertLess(sim.positions()[167, 2], tall)
+        for value in (-0.1, 1.5, float("nan")):
+            with self.assertRaises(ValueError):
+                sim.activate(value)
+        with self.assertRaisesRegex(ValueError, "no material"):
+            sim.activation(3)
+
     def test_what_is_refused(self):
         sim = lariat.Simulation(block())
-        for call, words in ((lambda: sim.set_stiffness(9), "4"),
+        for call, words in ((lambda: sim.activate(0.5), "active"),
+                            (lambda: sim.set_stiffness(9), "4"),
                             (lambda: sim.set_stiffness(1, "hard"), "none called 'hard'"),
                             (lambda: sim.stiffness(7), "no material"),
                             (lambda: sim.set_force("nowhere", (1, 0, 0)), "nowhere"),
