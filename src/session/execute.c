@@ -254,7 +254,7 @@ static void seek(lar_session *session, double seconds) {
     if (!player) return;
     bool rested = session->status.state != LAR_SESSION_PLAYING;
     double place = fmax(0, seconds) / session->time_step;
-    player->rests = rested || (player->rests && player->goal > player->place);
+    player->rests = rested || player->rests; /* sought again before it came there */
     uint64_t wanted = place < (double)player->length ? (uint64_t)place : player->length;
     if (lar_player_seek(player, session->simulation, wanted, &error)) {
         lar_session_stop(session, &error);
