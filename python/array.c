@@ -122,8 +122,8 @@ static void describe(const Py_buffer *view, char *text, size_t size) {
     if (at > 0 && (size_t)at < size) snprintf(text + at, size - (size_t)at, "]");
 }
 
-/* The letter of a format of one item in this machine's order; 0: another one. */
-static char letter_of(const Py_buffer *view) {
+/* The type of a format of one item in this machine's order; 0: another one. */
+static char type_of(const Py_buffer *view) {
     const char *format = view->format ? view->format : "B";
     if (*format == '@' || *format == '=' || *format == '<') format++;
     return *format && !format[1] ? *format : 0;
@@ -155,7 +155,7 @@ bool python_target_open(PyObject *out, char format, Py_ssize_t rows, Py_ssize_t 
     if (PyObject_GetBuffer(out, &target->view, PyBUF_RECORDS_RO)) return false;
     const Py_buffer *view = &target->view;
     bool fits = view->ndim == (columns > 0 ? 2 : 1) && view->shape[0] == rows &&
-                (columns == 0 || view->shape[1] == columns) && letter_of(view) == format &&
+                (columns == 0 || view->shape[1] == columns) && type_of(view) == format &&
                 view->itemsize == item_of(format) && !view->readonly &&
                 PyBuffer_IsContiguous(view, 'C');
     if (!fits) {
@@ -227,7 +227,7 @@ static bool take_row(PyObject *row, const char *name, Py_ssize_t number, int cou
 }
 
 /* Python's own words do not say where. */
-static bool blame(const char *name, Py_ssize_t number, size_t item) {
+static bool refuse_item(const char *name, Py_ssize_t number, size_t item) {
     const char *kind = item == 8 ? "number" : "whole number";
     if (PyErr_ExceptionMatches(PyExc_TypeError)) {
         PyErr_Clear();
@@ -260,7 +260,7 @@ static bool take_sequence(PyObject *source, const char *name, int columns, size_
         char *place = (char *)out->own + (size_t)i * width;
         PyObject *row = PyTuple_GetItem(list, i);
         ok = columns > 0 ? take_row(row, name, i, columns, item, take, place) : take(row, place);
-        if (!ok) blame(name, i, item);
+        if (!ok) refuse_item(name, i, item);
     }
     Py_DECREF(list);
     out->data = out->own;
@@ -300,7 +300,7 @@ bool python_doubles(PyObject *source, const char *name, int columns, python_rows
     bool ok;
     if (PyObject_CheckBuffer(source)) {
         ok = open_buffer(source, name, "float64", columns, out);
-        if (ok && (letter_of(&out->view) != 'd' || out->view.itemsize != 8)) {
+        if (ok && (type_of(&out->view) != 'd' || out->view.itemsize != 8)) {
             char got[160];
             describe(&out->view, got, sizeof got);
             ok = python_refuse("%s: expected float64 (format 'd'), got %s; "
@@ -316,9 +316,9 @@ bool python_doubles(PyObject *source, const char *name, int columns, python_rows
 }
 
 /* One integer of another kind. */
-static bool convert(const void *from, char letter, Py_ssize_t item, int32_t *to) {
+static bool convert(const void *from, char type, Py_ssize_t item, int32_t *to) {
     long long value;
-    bool is_signed = strchr("bhilq", letter) != NULL;
+    bool is_signed = strchr("bhilq", type) != NULL;
     if (item == 8) {
         long long wide;
         memcpy(&wide, from, 8);
@@ -334,20 +334,20 @@ static bool convert(const void *from, char letter, Py_ssize_t item, int32_t *to)
 }
 
 static bool narrow(const char *name, int columns, python_rows *out) {
-    char letter = letter_of(&out->view), got[160];
+    char type = type_of(&out->view), got[160];
     Py_ssize_t item = out->view.itemsize, width = columns > 0 ? columns : 1;
-    if (!letter || !strchr("ilqILQ", letter) || (item != 4 && item != 8)) {
+    if (!type || !strchr("ilqILQ", type) || (item != 4 && item != 8)) {
         describe(&out->view, got, sizeof got);
         return python_refuse("%s: expected int32 (format 'i'), got %s; "
                              "array.astype(numpy.int32) converts",
                              name, got);
     }
-    if (item == 4 && strchr("il", letter)) return true;
+    if (item == 4 && strchr("il", type)) return true;
     Py_ssize_t count = out->rows * width;
     int32_t *own = out->own = PyMem_Calloc((size_t)count + 1, sizeof *own);
     if (!own) return PyErr_NoMemory() != NULL;
     for (Py_ssize_t i = 0; i < count; i++)
-        if (!convert((const char *)out->data + i * item, letter, item, &own[i]))
+        if (!convert((const char *)out->data + i * item, type, item, &own[i]))
             return python_refuse("%s: row %zd has a number beyond 32 bits", name, i / width);
     out->data = own;
     return true;

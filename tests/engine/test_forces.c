@@ -3,7 +3,7 @@
  * through checkpoints and states in memory. */
 #include "simulation/checkpoint.h"
 #include "engine/engine_test.h"
-#include "engine/fleet_test.h"
+#include "engine/changes_test.h"
 
 #define PATH LAR_TEST_BUILD "/forces.checkpoint"
 
@@ -185,57 +185,20 @@ static void run(lar_simulation *simulation, int first, int end) {
     }
 }
 
-static uint64_t straight(const lar_model *model) {
-    lar_simulation *simulation = start_with(model, lar_options_default());
-    run(simulation, 0, PARTS);
-    uint64_t hash = lar_simulation_hash(simulation);
-    lar_simulation_destroy(simulation);
-    return hash;
+static lar_model *whole_body(void) {
+    return make(false);
 }
+
+static const changed_run changed = {whole_body, run, PARTS, 1, false, PATH};
 
 static void the_hash_is_the_same_everywhere(void **unused) {
     (void)unused;
-    static const char *const grids[] = {NULL, "1x1x1", "2x1x1", "2x2x1", "2x2x3"};
-    static const lar_isa isas[] = {LAR_ISA_C, LAR_ISA_AVX2, LAR_ISA_AVX512, LAR_ISA_AUTO};
-    lar_model *model = make(false);
-    uint64_t wanted = straight(model);
-    for (int grid = 0; grid < 5; grid++)
-        for (int threads = 1; threads <= (grid ? 2 : 1); threads++)
-            for (int i = 0; i < 4; i++) {
-                lar_options options = lar_options_default();
-                options.grid = grids[grid];
-                options.threads = threads;
-                options.isa = isas[i];
-                options.delays = (uint64_t)(3 + grid);
-                lar_simulation *simulation = NULL;
-                if (lar_simulation_create(model, &options, &simulation, NULL)) continue;
-                run(simulation, 0, PARTS);
-                assert_int_equal(lar_simulation_hash(simulation), wanted);
-                lar_simulation_destroy(simulation);
-            }
-    lar_model_destroy(model);
+    check_changed_everywhere(&changed);
 }
 
 static void processes_agree(void **unused) {
     (void)unused;
-    lar_model *model = make(false);
-    uint64_t wanted = straight(model);
-    for (int i = 0; i < 2; i++) {
-        lar_options options = lar_options_default();
-        fleet f;
-        options.grid = i ? "2x2x1" : "2x1x1";
-        options.comm = i ? "tcp" : "shm";
-        start_fleet(&f, model, options, i ? 4 : 2, NULL);
-        run(f.zero, 0, PARTS / 2);
-        assert_int_equal(lar_simulation_save(f.zero, PATH, NULL), LAR_OK);
-        run(f.zero, PARTS / 2, PARTS);
-        assert_int_equal(lar_simulation_hash(f.zero), wanted);
-        assert_int_equal(lar_simulation_load(f.zero, PATH, NULL), LAR_OK);
-        run(f.zero, PARTS / 2, PARTS);
-        assert_int_equal(lar_simulation_hash(f.zero), wanted);
-        end_fleet(&f);
-    }
-    lar_model_destroy(model);
+    check_changed_in_processes(&changed);
 }
 
 /* ---- going back ----------------------------------------------------------------------------- */
@@ -252,7 +215,7 @@ static uint32_t version_of(const char *path) {
 static void a_run_goes_on_with_its_forces(void **unused) {
     (void)unused;
     lar_model *model = make(false);
-    uint64_t wanted = straight(model);
+    uint64_t wanted = changed_straight(&changed, model);
     for (int part = 1; part < PARTS; part++)
         for (int memory = 0; memory < 2; memory++) {
             lar_options options = lar_options_default();

@@ -3,7 +3,7 @@
  * every grid, with every backend, and through checkpoints. */
 #include "simulation/checkpoint.h"
 #include "engine/engine_test.h"
-#include "engine/fleet_test.h"
+#include "engine/changes_test.h"
 #include "engine/tools_test.h"
 
 #define PATH LAR_TEST_BUILD "/settings.checkpoint"
@@ -289,60 +289,22 @@ static void run(lar_simulation *simulation, int first, int end) {
     }
 }
 
-static uint64_t straight(const lar_model *model) {
-    lar_simulation *simulation = start_with(model, lar_options_default());
-    run(simulation, 0, PARTS);
-    uint64_t hash = lar_simulation_hash(simulation);
-    assert_true(lar_simulation_divided_steps(simulation, NULL) > 0);
-    lar_simulation_destroy(simulation);
-    return hash;
+static lar_model *everything(void) {
+    return everything_model(&larger);
 }
+
+static const changed_run changed = {everything, run, PARTS, 1, true, PATH};
 
 static void the_hash_is_the_same_everywhere(void **unused) {
     (void)unused;
-    static const char *const grids[] = {NULL, "1x1x1", "2x1x1", "2x2x1", "2x2x3"};
-    static const lar_isa isas[] = {LAR_ISA_C, LAR_ISA_AVX2, LAR_ISA_AVX512, LAR_ISA_AUTO};
-    lar_model *model = everything_model(&larger);
-    uint64_t wanted = straight(model);
-    for (int grid = 0; grid < 5; grid += test_every(2))
-        for (int threads = 1; threads <= (grid ? 2 : 1); threads++)
-            for (int i = 0; i < 4; i++) {
-                lar_options options = lar_options_default();
-                options.grid = grids[grid];
-                options.threads = threads;
-                options.isa = isas[i];
-                options.delays = (uint64_t)(3 + grid);
-                lar_simulation *simulation = NULL;
-                if (lar_simulation_create(model, &options, &simulation, NULL)) continue;
-                run(simulation, 0, PARTS);
-                assert_int_equal(lar_simulation_hash(simulation), wanted);
-                lar_simulation_destroy(simulation);
-            }
-    lar_model_destroy(model);
+    changed_run every = changed;
+    every.grid_stride = test_every(2);
+    check_changed_everywhere(&every);
 }
 
 static void processes_agree(void **unused) {
     (void)unused;
-    lar_model *model = everything_model(&larger);
-    uint64_t wanted = straight(model);
-    for (int i = 0; i < 2; i++) {
-        lar_options options = lar_options_default();
-        fleet f;
-        lar_energy e;
-        options.grid = i ? "2x2x1" : "2x1x1";
-        options.comm = i ? "tcp" : "shm";
-        start_fleet(&f, model, options, i ? 4 : 2, NULL);
-        run(f.zero, 0, PARTS / 2);
-        assert_int_equal(lar_simulation_save(f.zero, PATH, NULL), LAR_OK);
-        run(f.zero, PARTS / 2, PARTS);
-        assert_int_equal(lar_simulation_hash(f.zero), wanted);
-        lar_simulation_energy(f.zero, &e);
-        assert_int_equal(lar_simulation_load(f.zero, PATH, NULL), LAR_OK);
-        run(f.zero, PARTS / 2, PARTS);
-        assert_int_equal(lar_simulation_hash(f.zero), wanted);
-        end_fleet(&f);
-    }
-    lar_model_destroy(model);
+    check_changed_in_processes(&changed);
 }
 
 /* With instruments that press, are kept back, and hold. */
@@ -395,7 +357,7 @@ static void tools_press_harder_on_stiffer_tissue(void **unused) {
 static void a_loaded_run_goes_on_with_its_settings(void **unused) {
     (void)unused;
     lar_model *model = everything_model(&larger);
-    uint64_t wanted = straight(model);
+    uint64_t wanted = changed_straight(&changed, model);
     for (int part = 1; part < PARTS; part++) {
         lar_options options = lar_options_default();
         lar_simulation *simulation = start_with(model, options);
