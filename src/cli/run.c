@@ -351,15 +351,13 @@ static int compute(run *r) {
     if (r->settings.resume && lar_simulation_load(r->simulation, r->settings.resume, &error))
         return fail_by(r, &error);
     int status = choose_length(r);
+    cli_catch_stop(); /* from here on there are results to end with */
     if (!status && r->settings.out &&
         (r->settings.surface ? lar_results_open_surface : lar_results_open)(
             r->settings.out, r->simulation, &r->results, &error))
         status = cli_complain(&cli_run, CLI_FAILED, "%s", error.message);
     if (!status && r->settings.out) status = forget_earlier(r);
-    if (!status) {
-        cli_catch_stop();
-        status = advance(r);
-    }
+    if (!status) status = advance(r);
     if (lar_results_close(r->results, &error) && !status)
         status = cli_complain(&cli_run, CLI_FAILED, "%s", error.message);
     if (!status && r->settings.save && lar_simulation_save(r->simulation, r->settings.save, &error))

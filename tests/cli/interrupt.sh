@@ -50,4 +50,23 @@ for signal in INT TERM; do
     interrupt $signal --grid 2x1x1 --comm shm
     interrupt $signal --grid 3x1x1 --comm tcp
 done
+
+# As early as it is heard at all, perhaps before the first step: every number is a number.
+for wait in 0 0.001 0.003 0.01; do
+    rm -rf "$SCRATCH/early"
+    "$LARIAT" run "$SOURCE/examples/beam.yaml" --time 3600 --json --out "$SCRATCH/early" \
+        --grid 1x1x1 >"$SCRATCH/out" 2>"$SCRATCH/err" &
+    pid=$!
+    for _ in $(seq 3000); do
+        [ -e "$SCRATCH/early/probes.csv" ] && break
+        sleep 0.002
+    done
+    sleep $wait
+    kill -INT $pid
+    wait $pid
+    status=$?
+    [ $status -eq 130 ] || fail "exit status $status after an early SIGINT"
+    [ ! -s "$SCRATCH/err" ] || fail "messages after an early SIGINT: $(cat "$SCRATCH/err")"
+    has_keys state_hash --numbers steps frames ns_per_element real_time_factor
+done
 finish "interrupted after $(value_of steps) steps"

@@ -46,6 +46,8 @@ for divided in '' '--grid 2x1x1'; do
     expect 0 "$LARIAT" run "$scene" --steps 80 --json --resume "$half" $divided
     [ "$(value_of state_hash)" = "$hash" ] || fail "resumed, the hash is $(value_of state_hash)"
     [ "$(value_of steps)" = 200 ] || fail "resumed, it ends at step $(value_of steps)"
+    echo "$(value_of real_time_factor) $(value_of wall_time) $(value_of time_step)" |
+        awk '{ exit !($1 * $2 < 81 * $3) }' || fail "the 120 steps before count as this run's"
 done
 for command in run info view; do
     expect 1 "$LARIAT" $command "$half"

@@ -13,13 +13,17 @@ static double stepping_time(const run_report *report) {
     return report->clock->paced ? report->elapsed : lar_step_clock_busy(report->clock);
 }
 
+/* Of this run's own steps: what it was resumed from took its time elsewhere. 0: none was taken. */
 static double real_time_factor(const run_report *report) {
-    return lar_simulation_time(report->simulation) / stepping_time(report);
+    double steps = (double)report->clock->times.count;
+    return steps > 0 ? steps * lar_simulation_time_step(report->simulation) / stepping_time(report)
+                     : 0;
 }
 
 static double ns_per_element(const run_report *report) {
-    return 1e9 * lar_step_clock_busy(report->clock) /
-           ((double)lar_simulation_steps(report->simulation) * report->info.elements);
+    double steps = (double)report->clock->times.count;
+    return steps > 0 ? 1e9 * lar_step_clock_busy(report->clock) / (steps * report->info.elements)
+                     : 0;
 }
 
 /* ---- for machines ----------------------------------------------------------------------- */
@@ -224,7 +228,7 @@ static void print_pace(const run_report *report, FILE *out) {
     if (clock->paced)
         fprintf(out, ", paced; %" PRIu64 " of %" PRIu64 " steps ended after their tick\n",
                 clock->misses, clock->times.count);
-    else if (isfinite(factor))
+    else if (factor > 0)
         fprintf(out, ", %.3g times as fast as real time\n", factor);
     else
         fputc('\n', out);
