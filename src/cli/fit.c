@@ -137,8 +137,9 @@ const cli_command cli_fit = {
     .arguments = "EXPERIMENT",
     .description =
         "Finds parameters of materials so that simulations answer as experiments did (tension,\n"
-        "compression, indentation, markers, deformed surfaces), by least squares: values, 95 %\n"
-        "intervals, which parameters the data cannot tell, and whether what is left is chance.\n"
+        "compression, indentation, aspiration, markers, deformed surfaces), by least squares:\n"
+        "values, 95 % intervals, which parameters the data cannot tell, and whether what is left\n"
+        "is chance.\n"
         "EXPERIMENT is a file (.yaml) that names scenes, tables of measured numbers (.csv) and\n"
         "the free parameters. Simulations go on all cores. Ctrl-C ends a fit with the best so\n"
         "far (exit status 130).",

@@ -98,6 +98,45 @@ fit | sed 's/one\.yaml/wild.yaml/' >bad.yaml
 expect 3 "$LARIAT" fit bad.yaml
 complains 'no answer with the first guess'
 
+# A tube, of one element: profiles, pressures and the tube's place.
+sed 's/^move.*/load: [ { faces: { plane: { point: [0, 0, 0.02], normal: [0, 0, 1] } }, pressure: -100 } ]/' \
+    one.yaml | sed 's/^fix:/&\n  - { nodes: top, axes: xy }/' >tube.yaml
+tube() { # KEYS...
+    printf "lariat-fit: 1\nparameters:\n  - { material: gel, parameter: shear_modulus, guess: 1.5e3, bounds: [1.0e2, 1.0e5] }\nexperiments:\n  - { kind: aspiration, scene: ${scene:-tube.yaml}, data: profile.csv$* }\n"
+}
+profile() {
+    # shellcheck disable=SC2059
+    printf "$1" >profile.csv
+}
+profile 'pressure,r,z\n300,0,0.001\n300,0.005,0.001\n600,0,0.002\n600,0.005,0.002\n'
+tube >tube_fit.yaml
+expect 0 "$LARIAT" fit tube_fit.yaml --out sucked
+says 'experiments *aspiration: 4 values, residual [0-9.e-]* m'
+grep -q 'distance from the axis' sucked/1_aspiration.svg || fail "no profile in the picture"
+profile 'r,z\n0,0.001\n0.005,0.001\n'
+bad 'profile\.csv:1: the column time is missing' tube
+profile 'pressure,r,z\n-300,0,0.001\n-300,0.005,0.001\n'
+bad 'profile\.csv:2: the pressure is -300 Pa.*scale: {pressure: -1}' tube
+profile 'pressure,r,z\n0,0,0.001\n0,0.005,0.001\n'
+bad 'profile\.csv: the pressure is 0 all the time' tube
+profile 'pressure,r,z\n300,0,0.001\n300,5,0.001\n'
+bad 'profile\.csv:3: r is 5 m.*scale: {r: 0.001}' tube
+profile 'pressure,r,z\n300,0,1\n300,0.005,1\n'
+bad 'profile\.csv:2: z is 1 m.*scale: {z: 0.001}' tube
+profile 'pressure,r,z\n0.3,0,0.001\n0.6,0.005,0.002\n'
+bad 'the heights of profile\.csv are .* times.*scale: {pressure: 1000}' tube
+profile 'pressure,r,z\n300,0,-0.001\n600,0.005,-0.002\n'
+bad 'opposite sign.*turn axis' tube
+profile 'time,r,z\n1,0,0.001\n3,0.005,0.001\n'
+printf 'time,pressure\n0,0\n2,300\n' >suction.csv
+bad 'profile\.csv:3: this profile is of 3 s, and .*suction\.csv ends at 2 s' tube ', pressure: suction.csv'
+bad 'bad\.yaml:5:.*"load" *\|bad\.yaml:5:.*has 1 pressures; say which' tube ', load: 2'
+printf 'time,druck\n0,0\n2,300\n' >suction.csv
+bad 'suction\.csv:1: the column pressure is missing' tube ', pressure: suction.csv'
+scene=one.yaml
+bad 'one\.yaml has 0 pressures; give its faces' tube
+scene=
+
 # In millimetres and with other names, once that is said.
 printf 'mm,mN\n1,28.6\n2,54.7\n3,78.8\n' >other.csv
 fit shear_modulus 1e3 other.csv \

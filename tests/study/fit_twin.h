@@ -8,7 +8,7 @@
 #include "study/fit/fit.h"
 #include "study/fit/forward.h"
 
-enum { TWIN_TEXT = 2048, TWIN_ROWS = 400 };
+enum { TWIN_TEXT = 4096, TWIN_ROWS = 400 };
 
 /* A file below the build folder. */
 TEST_UNUSED static const char *twin_path(const char *name) {
@@ -58,6 +58,31 @@ TEST_UNUSED static void twin_read(const char *name, lar_fit_problem *problem) {
     *problem = (lar_fit_problem){0};
     if (lar_fit_problem_read(twin_path(name), problem, &error)) fail_msg("%s", error.message);
 }
+
+/* A scene with one material, gel, of all elements. */
+TEST_UNUSED static void write_scene(const char *name, const char *mesh, const char *material,
+                                    const char *more) {
+    char text[TWIN_TEXT];
+    snprintf(text, sizeof text,
+             "lariat: 1\nmesh: %s\nmaterials: [ { cells: all, name: gel, %s } ]\n%s",
+             twin_path(mesh), material, more);
+    twin_write(name, text);
+}
+
+/* One experiment; `more` are further keys of it, after a comma. */
+TEST_UNUSED static void write_fit(const char *name, const char *parameters, const char *kind,
+                                  const char *scene, const char *data, const char *more) {
+    char text[TWIN_TEXT];
+    snprintf(text, sizeof text,
+             "lariat-fit: 1\nparameters:\n%s\nexperiments:\n"
+             "  - { kind: %s, scene: %s, data: %s%s }\n",
+             parameters, kind, twin_path(scene), twin_path(data), more);
+    twin_write(name, text);
+}
+
+/* A free parameter of gel. */
+#define FREE(name, guess, low, high)                                                               \
+    "  - { material: gel, parameter: " name ", guess: " guess ", bounds: [" low ", " high "] }\n"
 
 /* What experiment 0 of this problem would measure with these parameters. */
 TEST_UNUSED static void twin_measure(const char *name, const double *truth, double *measured) {

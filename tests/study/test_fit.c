@@ -8,28 +8,6 @@
 #define FACE(z) "{ plane: { point: [0, 0, " z "], normal: [0, 0, 1] } }"
 #define NEO     "law: neo-hookean, density: 1050, shear_modulus: 1.0e3, bulk_modulus: 4.0e4"
 
-static void write_scene(const char *name, const char *mesh, const char *material,
-                        const char *more) {
-    char text[TWIN_TEXT];
-    snprintf(text, sizeof text,
-             "lariat: 1\nmesh: %s\nmaterials: [ { cells: all, name: gel, %s } ]\n%s",
-             twin_path(mesh), material, more);
-    twin_write(name, text);
-}
-
-static void write_fit(const char *name, const char *parameters, const char *kind, const char *scene,
-                      const char *data, const char *more) {
-    char text[TWIN_TEXT];
-    snprintf(text, sizeof text,
-             "lariat-fit: 1\nparameters:\n%s\nexperiments:\n"
-             "  - { kind: %s, scene: %s, data: %s%s }\n",
-             parameters, kind, twin_path(scene), twin_path(data), more);
-    twin_write(name, text);
-}
-
-#define FREE(name, guess, low, high)                                                               \
-    "  - { material: gel, parameter: " name ", guess: " guess ", bounds: [" low ", " high "] }\n"
-
 static const double SIZE[3] = {0.01, 0.01, 0.02};
 static const char CLAMPED[] = "fix: [ { nodes: " FACE("0") ", axes: xyz }, { nodes: " FACE(
     "0.02") ", axes: xy } ]\nmove: [ { nodes: " FACE("0.02") ", axes: z, by: 1, over: 1 } ]\n";

@@ -119,7 +119,7 @@ void fit_report_table(const lar_fit_problem *problem, const lar_fit_result *r, F
         fprintf(out, "%-16s%s: %d values, residual %.3g %s, %.2g %% of the largest%s\n",
                 k ? "" : "experiments", problem->experiment[k].name,
                 (int)problem->experiment[k].values, r->residuals[k].rms,
-                problem->experiment[k].kind < LAR_FIT_MARKERS ? "N" : "m",
+                problem->experiment[k].kind < LAR_FIT_ASPIRATION ? "N" : "m",
                 100 * r->residuals[k].relative, r->residuals[k].systematic ? ", systematic" : "");
     fprintf(out, "%-16s%d simulations in %.3g s\n", r->converged ? "converged" : "NOT CONVERGED",
             r->runs, r->seconds);

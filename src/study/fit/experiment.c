@@ -6,11 +6,12 @@
 
 #include "base/memory.h"
 #include "model/scene/scene.h"
+#include "study/fit/aspiration.h"
 #include "study/fit/measured.h"
 #include "study/fit/parameters.h"
 
-const char *const lar_fit_kind_name[LAR_FIT_KINDS] = {"tension", "compression", "indentation",
-                                                      "markers", "surface"};
+const char *const lar_fit_kind_name[LAR_FIT_KINDS] = {"tension",    "compression", "indentation",
+                                                      "aspiration", "markers",     "surface"};
 
 typedef struct reader {
     lar_scene scene; /* the file, for the scene reader's helpers and their sentences */
@@ -201,6 +202,9 @@ static lar_status read_plain(reader *r, const lar_yaml *node, lar_fit_experiment
     if (!status) status = read_kind(r, kind, &e->kind);
     if (!status) status = read_path(r, scene, "the name of a scene (.yaml)", &e->scene);
     if (!status) status = read_path(r, data, "the name of a table (.csv)", &e->data);
+    const lar_yaml *pressure = lar_yaml_get(node, "pressure");
+    if (!status && pressure && e->kind == LAR_FIT_ASPIRATION)
+        status = read_path(r, pressure, "the name of a table (.csv)", &e->pressure);
     text = lar_fit_kind_name[e->kind];
     if (!status && name) status = lar_scene_text(s, name, "a name", &text);
     return status ? status : copy_text(r, text, &e->name);
@@ -208,7 +212,8 @@ static lar_status read_plain(reader *r, const lar_yaml *node, lar_fit_experiment
 
 static lar_status read_experiment(reader *r, const lar_yaml *node) {
     static const char *const keys[] = {"kind",  "name",   "scene", "data", "columns",   "scale",
-                                       "noise", "length", "move",  "tool", "direction", NULL};
+                                       "noise", "length", "move",  "tool", "direction", "pressure",
+                                       "load",  "origin", "axis",  NULL};
     lar_fit_problem *problem = r->problem;
     const lar_scene *s = &r->scene;
     if (problem->experiments == LAR_FIT_EXPERIMENTS_MAX)
@@ -224,6 +229,7 @@ static lar_status read_experiment(reader *r, const lar_yaml *node) {
     if (!status) status = choose_time(r, node, e);
     if (!status && e->kind <= LAR_FIT_COMPRESSION) status = choose_move(r, node, e);
     if (!status && e->kind == LAR_FIT_INDENTATION) status = choose_tool(r, node, e);
+    if (!status && e->kind == LAR_FIT_ASPIRATION) status = lar_fit_tube_read(s, node, e);
     return status ? status : lar_fit_measured_read(s, node, e);
 }
 
@@ -305,6 +311,9 @@ void lar_fit_problem_clear(lar_fit_problem *p) {
         free(e->name);
         free(e->scene);
         free(e->data);
+        free(e->pressure);
+        free(e->aspiration.node);
+        free(e->aspiration.suction);
         free(e->row_line);
         free(e->time);
         free(e->along);

@@ -22,6 +22,7 @@ typedef enum lar_fit_kind {
     LAR_FIT_TENSION,     /* force of a moved support over its displacement or the stretch */
     LAR_FIT_COMPRESSION, /* the same, shorter instead of longer */
     LAR_FIT_INDENTATION, /* force on a sphere over its depth */
+    LAR_FIT_ASPIRATION,  /* profile of the tissue that a falling pressure draws into a tube */
     LAR_FIT_MARKERS,     /* where points of the body have gone */
     LAR_FIT_SURFACE,     /* points that lie on the deformed surface */
     LAR_FIT_KINDS
@@ -36,22 +37,37 @@ typedef struct lar_fit_parameter {
     bool log; /* positive bounds: what counts are ratios */
 } lar_fit_parameter;
 
+/* Tissue in a tube (T 1.3). */
+typedef struct lar_fit_aspiration {
+    int load;                  /* of the model's pressures: the faces in the tube */
+    double origin[3], axis[3]; /* heights count from here, along the unit axis out of the tissue */
+    int32_t nodes, *node;      /* [nodes] of these faces */
+    double width;              /* of the window that profiles are read through [m] */
+    int32_t points;
+    double (*suction)[2]; /* [points] time [s], pressure below the one outside [Pa]: in time the
+                             measured curve, at rest one of every row; NULL: the scene has it */
+} lar_fit_aspiration;
+
 typedef struct lar_fit_experiment {
     lar_fit_kind kind;
     int line; /* of the file */
     char *name, *scene, *data;
+    char *pressure; /* table of the pressure in the tube; NULL: none */
     lar_model *model;
     bool in_time;         /* rows are moments of one run; else each is followed to rest */
     int32_t rows, values; /* of the table; measured numbers, of markers three a row */
     int *row_line;        /* [rows] lines of the table's file */
     double *time;         /* [rows] [s]; NULL: not measured */
-    double *along;        /* [rows] displacement or depth [m]; NULL: the scene moves by itself */
-    double *measured;     /* [values] N; of markers displacements, of surfaces distances 0 [m] */
+    double *along;        /* [rows] displacement, depth, or distance from the tube's axis [m]; NULL:
+                             the scene moves by itself */
+    double *measured;     /* [values] N; of profiles heights, of markers displacements, of surfaces
+                             distances 0 [m] */
     lar_embedded_surface points; /* markers: bound to elements; surface: places alone */
     double largest;              /* of what is measured, in size: the scale of its errors */
     double noise;        /* standard deviation of a measured number, or a hundredth of `largest` */
     int move, tool;      /* of the model: what is driven; -1: nothing */
     double direction[3]; /* into the tissue, of a tool */
+    lar_fit_aspiration aspiration;
 } lar_fit_experiment;
 
 typedef struct lar_fit_problem {

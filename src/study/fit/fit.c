@@ -211,6 +211,21 @@ static double ratio_of(const lar_fit_experiment *e, const double *model) {
     return down > 0 ? up / down : 1;
 }
 
+static lar_status complain_profile(const lar_fit_problem *p, const lar_fit_experiment *e,
+                                   double ratio, lar_error *error) {
+    if (ratio < 0)
+        return lar_fail(error, LAR_ERROR_MODEL,
+                        "%s:%d: the heights of %s have the opposite sign of the model's; z grows "
+                        "out of the tissue, along the axis: turn axis, or say scale: {z: -1}",
+                        p->path, e->line, e->data);
+    return lar_fail(
+        error, LAR_ERROR_MODEL,
+        "%s:%d: the heights of %s are %.2g times those of the model at the guess; is a "
+        "unit wrong (kPa or mbar instead of Pa: scale: {pressure: 1000}, mm: scale: {z: "
+        "0.001}), or the guess? Give a nearer one",
+        p->path, e->line, e->data, ratio);
+}
+
 /* Forces that are far from those of the guess are of another unit, or of another sign. */
 static lar_status check_units(const lar_fit_solver *s, lar_error *error) {
     static const double FAR = 300;
@@ -218,8 +233,10 @@ static lar_status check_units(const lar_fit_solver *s, lar_error *error) {
     const double *model = s->best_model;
     for (int k = 0; k < p->experiments; model += p->experiment[k++].values) {
         const lar_fit_experiment *e = &p->experiment[k];
-        if (e->kind > LAR_FIT_INDENTATION) continue;
+        if (e->kind > LAR_FIT_ASPIRATION) continue;
         double ratio = ratio_of(e, model);
+        if (e->kind == LAR_FIT_ASPIRATION && !(ratio >= 1 / FAR && ratio <= FAR))
+            return complain_profile(p, e, ratio, error);
         if (ratio < 0)
             return lar_fail(error, LAR_ERROR_MODEL,
                             "%s:%d: the forces of %s have the opposite sign of the model's; force "

@@ -8,6 +8,7 @@
 #include "model/rest.h"
 #include "model/triangles/surface_tree.h"
 #include "simulation/simulation.h"
+#include "study/fit/aspiration.h"
 #include "study/fit/parameters.h"
 
 /* One run under way. */
@@ -29,26 +30,34 @@ static void *copied(const void *from, int count, int more, size_t size) {
     return to;
 }
 
-/* The driven support follows a curve of its own, in metres. */
+/* The driven support, or the pressure in the tube, follows a curve of its own, in metres or Pa. */
 static lar_status drive(forward *f) {
     const lar_fit_experiment *e = f->e;
-    if (e->move < 0 || !e->along) return LAR_OK;
-    lar_move *move = &f->model.move[e->move];
-    f->point = lar_calloc((size_t)e->rows + 1, sizeof *f->point);
-    if (!f->point) return lar_fail_memory(f->error, (size_t)e->rows, e->scene);
+    const lar_fit_aspiration *a = &e->aspiration;
+    if (!a->suction && (e->move < 0 || !e->along)) return LAR_OK;
+    const int32_t rows = a->suction ? a->points : e->rows;
+    f->point = lar_calloc((size_t)rows + 1, sizeof *f->point);
+    if (!f->point) return lar_fail_memory(f->error, (size_t)rows, e->scene);
     int count = 1; /* the start, where nothing has moved */
-    for (int32_t i = 0; e->in_time && i < e->rows; i++) {
-        if (e->time[i] == 0) continue;
-        f->point[count][0] = e->time[i];
-        f->point[count++][1] = e->along[i];
+    for (int32_t i = 0; e->in_time && i < rows; i++) {
+        double time = a->suction ? a->suction[i][0] : e->time[i];
+        double value = a->suction ? a->suction[i][1] : e->along[i];
+        if (time > 0) f->point[count++][0] = time;
+        f->point[count - 1][1] = value;
     }
-    move->by = move->by < 0 ? -1 : 1;
-    move->curve = f->model.curve_count++;
-    f->model.curve[move->curve] =
-        (lar_curve){.kind = LAR_CURVE_TABLE,
-                    .shape = e->in_time ? LAR_CURVE_LINEAR : LAR_CURVE_SMOOTH,
-                    .count = count,
-                    .point = f->point};
+    const int curve = f->model.curve_count++;
+    if (a->suction) {
+        f->model.pressure[a->load].pressure = -1; /* positive pressures push */
+        f->model.pressure[a->load].curve = curve;
+    } else {
+        lar_move *move = &f->model.move[e->move];
+        move->by = move->by < 0 ? -1 : 1;
+        move->curve = curve;
+    }
+    f->model.curve[curve] = (lar_curve){.kind = LAR_CURVE_TABLE,
+                                        .shape = e->in_time ? LAR_CURVE_LINEAR : LAR_CURVE_SMOOTH,
+                                        .count = count,
+                                        .point = f->point};
     return LAR_OK;
 }
 
@@ -59,7 +68,8 @@ static lar_status copy_model(forward *f, const lar_fit_problem *problem, const d
     m->material = copied(from->material, from->material_count, 0, sizeof *m->material);
     m->curve = copied(from->curve, from->curve_count, 1, sizeof *m->curve);
     m->move = copied(from->move, from->move_count, 0, sizeof *m->move);
-    if (!m->material || !m->curve || !m->move)
+    m->pressure = copied(from->pressure, from->pressure_count, 0, sizeof *m->pressure);
+    if (!m->material || !m->curve || !m->move || !m->pressure)
         return lar_fail_memory(f->error, sizeof *m, f->e->scene);
     lar_fit_set_all(problem, value, m->material, m->material_count);
     for (int i = 0; i < m->material_count; i++) {
@@ -76,6 +86,7 @@ static void forward_clear(forward *f) {
     free(f->model.material);
     free(f->model.curve);
     free(f->model.move);
+    free(f->model.pressure);
     free(f->point);
 }
 
@@ -129,6 +140,17 @@ static lar_status support_force(forward *f, double *force) {
     return status;
 }
 
+/* The driving curve goes from one level to another, and the body to rest. */
+static lar_status settle(forward *f, double from, double to) {
+    double now = lar_simulation_time(f->simulation);
+    f->point[0][0] = now;
+    f->point[0][1] = from;
+    f->point[1][0] = now + f->ramp;
+    f->point[1][1] = to;
+    f->model.curve[f->model.curve_count - 1].count = 2;
+    return follow_to_rest(f);
+}
+
 static lar_status pull(forward *f, double *model) {
     const lar_fit_experiment *e = f->e;
     lar_status status = LAR_OK;
@@ -137,16 +159,35 @@ static lar_status pull(forward *f, double *model) {
         if (e->in_time) {
             status = advance(f, steps_to(f, e->time[i]));
         } else {
-            double now = lar_simulation_time(f->simulation);
-            f->point[0][0] = now;
-            f->point[0][1] = before;
-            f->point[1][0] = now + f->ramp;
-            f->point[1][1] = before = e->along[i];
-            f->model.curve[f->model.curve_count - 1].count = 2;
-            status = follow_to_rest(f);
+            status = settle(f, before, e->along[i]);
+            before = e->along[i];
         }
         if (!status) status = support_force(f, &model[i]);
     }
+    return status;
+}
+
+/* ---- tubes --------------------------------------------------------------------------------------
+ */
+
+static lar_status suck(forward *f, double *model) {
+    const lar_fit_experiment *e = f->e;
+    const double(*suction)[2] = (const double(*)[2])e->aspiration.suction;
+    size_t nodes = (size_t)f->model.mesh.node_count;
+    double(*u)[3] = lar_calloc(nodes, sizeof *u);
+    if (!u) return lar_fail_memory(f->error, nodes * sizeof *u, e->scene);
+    lar_status status = LAR_OK;
+    for (int32_t i = 0; i < e->rows && !status; i++) {
+        bool next = i == 0 || (e->in_time ? e->time[i] != e->time[i - 1]
+                                          : suction[i][1] != suction[i - 1][1]);
+        if (next && e->in_time)
+            status = advance(f, steps_to(f, e->time[i]));
+        else if (next)
+            status = settle(f, i > 0 ? suction[i - 1][1] : 0, suction[i][1]);
+        if (next && !status) lar_simulation_displacements(f->simulation, u);
+        if (!status) model[i] = lar_fit_tube_height(e, (const double(*)[3])u, e->along[i]);
+    }
+    free(u);
     return status;
 }
 
@@ -281,6 +322,8 @@ lar_status lar_fit_forward(const lar_fit_problem *problem, int k, const double *
     if (!status) status = lar_simulation_create(&f.model, &options, &f.simulation, error);
     if (!status && f.e->kind == LAR_FIT_INDENTATION)
         status = press(&f, model);
+    else if (!status && f.e->kind == LAR_FIT_ASPIRATION)
+        status = suck(&f, model);
     else if (!status && f.e->kind <= LAR_FIT_COMPRESSION)
         status = pull(&f, model);
     else if (!status)

@@ -4,15 +4,16 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "study/fit/aspiration.h"
 #include "study/fit/table.h"
 
 /* ---- columns -----------------------------------------------------------------------------------
  */
 
 static const char *const column_name[] = {
-    "time", "displacement", "stretch", "depth", "force", "x", "y",
-    "z",    "to_x",         "to_y",    "to_z",  NULL};
-enum { TIME, DISPLACEMENT, STRETCH, DEPTH, FORCE, X, Y, Z, TO_X, TO_Y, TO_Z, COLUMNS };
+    "time", "displacement", "stretch", "depth", "force", "x",        "y",
+    "z",    "to_x",         "to_y",    "to_z",  "r",     "pressure", NULL};
+enum { TIME, DISPLACEMENT, STRETCH, DEPTH, FORCE, X, Y, Z, TO_X, TO_Y, TO_Z, R, PRESSURE, COLUMNS };
 
 typedef struct source {
     const lar_scene *scene;
@@ -39,7 +40,8 @@ static lar_status find_columns(source *s) {
             status = lar_scene_number(s->scene, scale, "a number, for example 0.001", &s->scale[c]);
         if (status) break;
         s->column[c] = lar_fit_table_find(&s->table, text);
-        if (name && s->column[c] < 0)
+        bool elsewhere = c == PRESSURE && s->e->pressure; /* in a table of its own */
+        if (name && s->column[c] < 0 && !elsewhere)
             return lar_scene_fail(s->scene, name, LAR_ERROR_FORMAT, "%s:%d has no column %s",
                                   s->table.path, s->table.header_line, text);
     }
@@ -106,20 +108,21 @@ static lar_status check_length(const source *s, int32_t row, int c, double value
 /* ---- curves
  * --------------------------------------------------------------------------------------- */
 
-static lar_status read_time(const source *s) {
-    lar_fit_experiment *e = s->e;
+/* Growing times; several rows of one moment where a moment `may_repeat`. */
+static lar_status read_time(const source *s, bool may_repeat, double **to) {
     const char *path = s->table.path;
-    lar_status status = take(s, TIME, &e->time);
-    for (int32_t i = 0; i < e->rows && !status; i++) {
-        if (e->time[i] < 0)
+    lar_status status = take(s, TIME, to);
+    const double *time = *to;
+    for (int32_t i = 0; i < s->table.rows && !status; i++) {
+        if (time[i] < 0)
             status =
                 lar_fail(s->scene->error, LAR_ERROR_FORMAT, "%s:%d: time %g is before the start, 0",
-                         path, s->table.line[i], e->time[i]);
-        else if (i > 0 && !(e->time[i] > e->time[i - 1]))
+                         path, s->table.line[i], time[i]);
+        else if (i > 0 && !(time[i] > time[i - 1]) && !(may_repeat && time[i] == time[i - 1]))
             status = lar_fail(s->scene->error, LAR_ERROR_FORMAT,
                               "%s:%d: time %g does not come after %g; times must grow from row to "
                               "row: sort them, or leave the repeated row out",
-                              path, s->table.line[i], e->time[i], e->time[i - 1]);
+                              path, s->table.line[i], time[i], time[i - 1]);
     }
     return status;
 }
@@ -187,11 +190,148 @@ static lar_status check_curve(const source *s) {
 static lar_status read_curve(source *s) {
     lar_fit_experiment *e = s->e;
     e->values = e->rows;
-    lar_status status = s->column[TIME] >= 0 ? read_time(s) : LAR_OK;
+    lar_status status = s->column[TIME] >= 0 ? read_time(s, false, &e->time) : LAR_OK;
     if (!status) status = read_along(s);
     if (!status) status = need(s, FORCE);
     if (!status) status = take(s, FORCE, &e->measured);
     return status ? status : check_curve(s);
+}
+
+/* ---- profiles
+ * ------------------------------------------------------------------------------------
+ */
+
+static lar_status check_suction(const source *s, const lar_fit_table *table, int32_t row,
+                                double pressure) {
+    if (pressure >= 0) return LAR_OK;
+    return lar_fail(s->scene->error, LAR_ERROR_MODEL,
+                    "%s:%d: the pressure is %g Pa; it is measured by how far it is below the one "
+                    "outside, positive when it sucks: say scale: {pressure: -1} in %s:%d",
+                    table->path, table->line[row], pressure, s->scene->path, s->node->line);
+}
+
+/* The pressure's own table, as the curve of a run. */
+static lar_status read_suction(source *s) {
+    lar_fit_aspiration *a = &s->e->aspiration;
+    source own = {.scene = s->scene, .node = s->node, .e = s->e};
+    double *time = NULL, *pressure = NULL;
+    const lar_yaml *names = lar_yaml_get(s->node, "columns");
+    lar_status status = lar_fit_table_read(s->e->pressure, &own.table, s->scene->error);
+    for (int c = 0; c < COLUMNS && !status; c++) {
+        const lar_yaml *name = lar_yaml_get(names, column_name[c]);
+        own.scale[c] = s->scale[c];
+        own.column[c] = lar_fit_table_find(&own.table, name ? name->text : column_name[c]);
+        if (own.column[c] < 0) own.column[c] = lar_fit_table_find(&own.table, column_name[c]);
+    }
+    if (!status) status = need(&own, TIME);
+    if (!status) status = need(&own, PRESSURE);
+    if (!status) status = read_time(&own, false, &time);
+    if (!status) status = take(&own, PRESSURE, &pressure);
+    a->suction = status ? NULL : lar_calloc((size_t)own.table.rows, sizeof *a->suction);
+    if (!status && !a->suction) status = lar_scene_no_memory(s->scene, (size_t)own.table.rows);
+    for (a->points = 0; a->points < own.table.rows && !status; a->points++) {
+        status = check_suction(s, &own.table, a->points, pressure[a->points]);
+        a->suction[a->points][0] = time[a->points];
+        a->suction[a->points][1] = pressure[a->points];
+    }
+    free(time);
+    free(pressure);
+    lar_fit_table_clear(&own.table);
+    return status;
+}
+
+static lar_status take_suction_of_rows(source *s) {
+    lar_fit_experiment *e = s->e;
+    lar_fit_aspiration *a = &e->aspiration;
+    double *pressure = NULL;
+    lar_status status = take(s, PRESSURE, &pressure);
+    a->suction = status ? NULL : lar_calloc((size_t)e->rows, sizeof *a->suction);
+    if (!status && !a->suction) status = lar_scene_no_memory(s->scene, (size_t)e->rows);
+    for (int32_t i = 0; i < e->rows && !status; i++) {
+        status = check_suction(s, &s->table, i, pressure[i]);
+        bool again = e->in_time && i > 0 && e->time[i] == e->time[i - 1];
+        if (!again) a->points++;
+        a->suction[a->points - 1][0] = e->time ? e->time[i] : 0;
+        a->suction[a->points - 1][1] = pressure[i];
+    }
+    free(pressure);
+    return status;
+}
+
+/* At rest every row has its pressure, in between those that were measured. */
+static lar_status settle_suction(source *s) {
+    lar_fit_experiment *e = s->e;
+    lar_fit_aspiration *a = &e->aspiration;
+    double(*of_row)[2] = lar_calloc((size_t)e->rows, sizeof *of_row);
+    if (!of_row) return lar_scene_no_memory(s->scene, (size_t)e->rows);
+    for (int32_t i = 0, k = 0; i < e->rows; i++) {
+        while (k + 2 < a->points && a->suction[k + 1][0] < e->time[i]) k++;
+        const double *from = a->suction[k], *to = a->suction[k + 1];
+        double part = fmin(fmax((e->time[i] - from[0]) / (to[0] - from[0]), 0), 1);
+        of_row[i][0] = e->time[i];
+        of_row[i][1] = from[1] + part * (to[1] - from[1]);
+    }
+    free(a->suction);
+    a->suction = of_row;
+    a->points = e->rows;
+    return LAR_OK;
+}
+
+static lar_status read_pressures(source *s) {
+    lar_fit_experiment *e = s->e;
+    lar_fit_aspiration *a = &e->aspiration;
+    if (e->pressure && s->column[PRESSURE] >= 0)
+        return lar_scene_fail(s->scene, s->node, LAR_ERROR_FORMAT,
+                              "%s has a column pressure, and %s is given too; leave one out",
+                              s->table.path, e->pressure);
+    if (!e->time && (e->in_time || s->column[PRESSURE] < 0)) return need(s, TIME);
+    if (!e->pressure && s->column[PRESSURE] < 0) {
+        e->in_time = true; /* as the scene has it */
+        return LAR_OK;
+    }
+    if (s->column[PRESSURE] >= 0) return take_suction_of_rows(s);
+    lar_status status = read_suction(s);
+    if (!status && e->time[e->rows - 1] > a->suction[a->points - 1][0])
+        return lar_fail(s->scene->error, LAR_ERROR_MODEL,
+                        "%s:%d: this profile is of %g s, and %s ends at %g s; the pressure must be "
+                        "known as long as profiles are",
+                        s->table.path, s->table.line[e->rows - 1], e->time[e->rows - 1],
+                        e->pressure, a->suction[a->points - 1][0]);
+    return status || e->in_time ? status : settle_suction(s);
+}
+
+static lar_status check_radius(const source *s, int32_t row, double reach) {
+    double r = s->e->along[row];
+    if (r >= 0 && r <= reach * (1 + 1e-6)) return LAR_OK;
+    return lar_fail(s->scene->error, LAR_ERROR_MODEL,
+                    "%s:%d: r is %g m, and the faces under the pressure are between 0 and %.4g m "
+                    "from the axis; were millimetres measured (scale: {r: 0.001}), or is the axis "
+                    "elsewhere (origin: [x, y, z] in %s:%d)?",
+                    s->table.path, s->table.line[row], r, reach, s->scene->path, s->node->line);
+}
+
+static lar_status read_profiles(source *s) {
+    lar_fit_experiment *e = s->e;
+    const lar_fit_aspiration *a = &e->aspiration;
+    e->values = e->rows;
+    lar_status status = s->column[TIME] >= 0 ? read_time(s, true, &e->time) : LAR_OK;
+    if (!status) status = read_pressures(s);
+    if (!status) status = need(s, R);
+    if (!status) status = take(s, R, &e->along);
+    if (!status) status = need(s, Z);
+    if (!status) status = take(s, Z, &e->measured);
+    double reach = lar_fit_tube_reach(e);
+    for (int32_t i = 0; i < e->rows && !status; i++) {
+        status = check_radius(s, i, reach);
+        if (!status) status = check_length(s, i, Z, e->measured[i]);
+    }
+    bool sucked = !a->suction;
+    for (int32_t i = 0; i < a->points; i++) sucked = sucked || a->suction[i][1] > 0;
+    if (!status && !sucked)
+        status = lar_fail(s->scene->error, LAR_ERROR_MODEL,
+                          "%s: the pressure is 0 all the time, so nothing is strained",
+                          e->pressure ? e->pressure : s->table.path);
+    return status;
 }
 
 /* ---- points
@@ -262,7 +402,8 @@ static lar_status set_noise(const source *s) {
         return lar_fail(s->scene->error, LAR_ERROR_MODEL,
                         "%s: all that is measured is zero, which tells nothing", s->table.path);
     e->noise = SHARE * e->largest;
-    return own ? lar_scene_positive(s->scene, own, "a number in newton, or in metres for points",
+    return own ? lar_scene_positive(s->scene, own,
+                                    "a number in newton, or in metres for profiles and points",
                                     &e->noise)
                : LAR_OK;
 }
@@ -277,6 +418,8 @@ lar_status lar_fit_measured_read(const lar_scene *scene, const lar_yaml *node,
         status = read_markers(&s);
     else if (!status && e->kind == LAR_FIT_SURFACE)
         status = read_surface(&s);
+    else if (!status && e->kind == LAR_FIT_ASPIRATION)
+        status = read_profiles(&s);
     else if (!status)
         status = read_curve(&s);
     if (!status) status = set_noise(&s);

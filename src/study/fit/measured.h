@@ -2,8 +2,9 @@
  *
  *     tension, compression   time, displacement or stretch, force
  *     indentation            time, depth, force
- *     markers                x, y, z before; to_x, to_y, to_z after
- *     surface                x, y, z
+ *     aspiration             time, r, z, pressure; or pressure in a table of its own: time,
+ * pressure markers                x, y, z before; to_x, to_y, to_z after surface                x,
+ * y, z
  *
  * `columns: {force: F_mess}` of the experiment says what a column is called in the table, and
  * `scale: {force: 0.001}` by what its numbers are multiplied to be SI. Lengths that do not fit the

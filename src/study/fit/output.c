@@ -137,7 +137,36 @@ static void draw_axes(const axes *a, const char *title, const char *x, const cha
 /* Over the way, the time where there is none or it stands still, or the number of the value. */
 static double abscissa(const lar_fit_experiment *e, int32_t i) {
     if (e->kind == LAR_FIT_MARKERS || e->kind == LAR_FIT_SURFACE) return i;
+    if (e->kind == LAR_FIT_ASPIRATION) return e->along[i];
     return e->in_time ? e->time[i] : e->along[i];
+}
+
+/* What stands on the axes. */
+static const char *x_title(const lar_fit_experiment *e) {
+    if (e->kind == LAR_FIT_MARKERS || e->kind == LAR_FIT_SURFACE) return "value";
+    if (e->kind == LAR_FIT_ASPIRATION) return "distance from the axis [m]";
+    if (e->in_time) return "time [s]";
+    return e->kind == LAR_FIT_INDENTATION ? "depth [m]" : "displacement [m]";
+}
+
+static const char *y_title(const lar_fit_experiment *e) {
+    if (e->kind == LAR_FIT_MARKERS) return "displacement [m]";
+    if (e->kind == LAR_FIT_SURFACE) return "distance [m]";
+    return e->kind == LAR_FIT_ASPIRATION ? "height [m]" : "force [N]";
+}
+
+/* One line, of profiles one for each moment. */
+static void draw_model(const axes *a, const lar_fit_experiment *e, const double *model) {
+    for (int32_t i = 0; i < e->values; i++) {
+        bool next = i == 0 || (e->kind == LAR_FIT_ASPIRATION && e->along[i] <= e->along[i - 1]);
+        if (next)
+            fprintf(a->out,
+                    "%s<polyline fill=\"none\" stroke=\"#2b5fb5\" stroke-width=\"1.5\" "
+                    "points=\"",
+                    i > 0 ? "\"/>\n" : "");
+        fprintf(a->out, "%.1f,%.1f ", x_of(a, abscissa(e, i)), y_of(a, model[i]));
+    }
+    fprintf(a->out, "\"/>\n");
 }
 
 static void widen(double *low, double *high) {
@@ -149,7 +178,6 @@ static void widen(double *low, double *high) {
 lar_status lar_fit_write_svg(const char *path, const lar_fit_problem *p, const lar_fit_result *r,
                              int k, lar_error *error) {
     const lar_fit_experiment *e = &p->experiment[k];
-    bool points = e->kind == LAR_FIT_MARKERS || e->kind == LAR_FIT_SURFACE;
     const double *model = r->model;
     for (int i = 0; i < k; i++) model += p->experiment[i].values;
     char title[256];
@@ -167,18 +195,8 @@ lar_status lar_fit_write_svg(const char *path, const lar_fit_problem *p, const l
     if (status) return lar_part_close(&out, status);
     a.out = out.file;
     plain(e->name, title, sizeof title);
-    draw_axes(&a, title,
-              points                           ? "value"
-              : e->in_time                     ? "time [s]"
-              : e->kind == LAR_FIT_INDENTATION ? "depth [m]"
-                                               : "displacement [m]",
-              e->kind == LAR_FIT_MARKERS   ? "displacement [m]"
-              : e->kind == LAR_FIT_SURFACE ? "distance [m]"
-                                           : "force [N]");
-    fprintf(a.out, "<polyline fill=\"none\" stroke=\"#2b5fb5\" stroke-width=\"1.5\" points=\"");
-    for (int32_t i = 0; i < e->values; i++)
-        fprintf(a.out, "%.1f,%.1f ", x_of(&a, abscissa(e, i)), y_of(&a, model[i]));
-    fprintf(a.out, "\"/>\n");
+    draw_axes(&a, title, x_title(e), y_title(e));
+    draw_model(&a, e, model);
     for (int32_t i = 0; i < e->values; i++)
         fprintf(a.out, "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"3\" fill=\"#b5342b\"/>\n",
                 x_of(&a, abscissa(e, i)), y_of(&a, e->measured[i]));
