@@ -1,4 +1,4 @@
-#include "study/fit/residuals.h"
+#include "study/inverse/residuals.h"
 
 #include <math.h>
 
@@ -6,7 +6,7 @@
 static const double TINY = 5e-4;
 enum { ENOUGH = 8 }; /* values that chance can be told in */
 
-static void test_runs(lar_fit_residuals *r, const double *left, int n) {
+static void test_runs(lar_inverse_residuals *r, const double *left, int n) {
     double up = 0, down = 0;
     r->runs = 0;
     for (int i = 0; i < n; i++) {
@@ -32,7 +32,7 @@ static double lag_of(const double *left, int n) {
 }
 
 /* Mean of what is left where the way is longest, or shortest: a third of the way each. */
-static double mean_at(const lar_fit_experiment *e, const double *left, bool large) {
+static double mean_at(const lar_inverse_experiment *e, const double *left, bool large) {
     double far = 0, sum = 0;
     int count = 0;
     for (int32_t i = 0; i < e->rows; i++) far = fmax(far, fabs(e->along[i]));
@@ -45,27 +45,27 @@ static double mean_at(const lar_fit_experiment *e, const double *left, bool larg
     return count ? sum / count : 0;
 }
 
-static void note_shape(const lar_fit_experiment *e, const lar_fit_residuals *r, const double *left,
-                       lar_fit_result *result) {
+static void note_shape(const lar_inverse_experiment *e, const lar_inverse_residuals *r,
+                       const double *left, lar_inverse_result *result) {
     const char *at = "";
-    bool curve = e->kind <= LAR_FIT_INDENTATION && e->along;
+    bool curve = e->kind <= LAR_INVERSE_INDENTATION && e->along;
     double large = curve ? mean_at(e, left, true) : 0, sign = 0;
     for (int32_t i = 0; curve && i < e->rows; i++) sign += e->measured[i];
     if (sign < 0) large = -large;
     if (curve && large > 0.3 * r->rms) at = "; the law is too soft at large strain";
     if (curve && large < -0.3 * r->rms) at = "; the law is too stiff at large strain";
-    lar_fit_note(result,
-                 "%s: what is left is no chance (%d changes of sign in %d values, neighbours "
-                 "correlate by %.2f), %.2g %% of the largest measured%s%s",
-                 e->name, r->runs - 1, (int)e->values, r->lag, 100 * r->relative, at,
-                 r->relative > 0.01 ? ": try another law, or look at mesh and supports" : "");
+    lar_inverse_note(result,
+                     "%s: what is left is no chance (%d changes of sign in %d values, neighbours "
+                     "correlate by %.2f), %.2g %% of the largest measured%s%s",
+                     e->name, r->runs - 1, (int)e->values, r->lag, 100 * r->relative, at,
+                     r->relative > 0.01 ? ": try another law, or look at mesh and supports" : "");
 }
 
-void lar_fit_look_at_residuals(const lar_fit_problem *problem, lar_fit_result *result) {
+void lar_inverse_look_at_residuals(const lar_inverse_problem *problem, lar_inverse_result *result) {
     double *model = result->model; /* becomes what is left, and the model again */
     for (int k = 0; k < problem->experiments; model += problem->experiment[k++].values) {
-        const lar_fit_experiment *e = &problem->experiment[k];
-        lar_fit_residuals *r = &result->residuals[k];
+        const lar_inverse_experiment *e = &problem->experiment[k];
+        lar_inverse_residuals *r = &result->residuals[k];
         int n = e->values;
         double squares = 0;
         for (int i = 0; i < n; i++) {
@@ -76,7 +76,7 @@ void lar_fit_look_at_residuals(const lar_fit_problem *problem, lar_fit_result *r
         r->relative = r->rms / e->largest;
         r->lag = lag_of(model, n);
         test_runs(r, model, n);
-        r->systematic = e->kind < LAR_FIT_MARKERS && n >= ENOUGH && r->relative > TINY &&
+        r->systematic = e->kind < LAR_INVERSE_MARKERS && n >= ENOUGH && r->relative > TINY &&
                         (r->runs_z < -1.96 || r->lag > 2 / sqrt(n));
         if (r->systematic) note_shape(e, r, model, result);
         for (int i = 0; i < n; i++) model[i] = e->measured[i] - model[i];

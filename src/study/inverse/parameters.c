@@ -1,4 +1,4 @@
-#include "study/fit/parameters.h"
+#include "study/inverse/parameters.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -45,7 +45,7 @@ static int modulus_of(const char *name) {
     return i;
 }
 
-bool lar_fit_get(const lar_material *material, const char *name, double *value) {
+bool lar_inverse_get(const lar_material *material, const char *name, double *value) {
     lar_material copy = *material;
     double moduli[MODULI];
     const double *own = own_number(&copy, name);
@@ -55,7 +55,7 @@ bool lar_fit_get(const lar_material *material, const char *name, double *value) 
     return true;
 }
 
-bool lar_fit_set(lar_material *m, const char *name, double value) {
+bool lar_inverse_set(lar_material *m, const char *name, double value) {
     double moduli[MODULI], *own = own_number(m, name);
     int i = modulus_of(name);
     if (own) *own = value;
@@ -69,7 +69,7 @@ bool lar_fit_set(lar_material *m, const char *name, double value) {
     return true;
 }
 
-int lar_fit_names(const lar_material *m, const char **name, int max) {
+int lar_inverse_names(const lar_material *m, const char **name, int max) {
     const lar_law_row *law = &lar_law_table[m->law];
     double moduli[MODULI];
     int count = 0;
@@ -86,7 +86,7 @@ int lar_fit_names(const lar_material *m, const char **name, int max) {
     return count;
 }
 
-const char *lar_fit_unit(const lar_material *m, const char *name) {
+const char *lar_inverse_unit(const lar_material *m, const char *name) {
     const lar_law_row *law = &lar_law_table[m->law];
     for (int i = 0; i < law->count; i++)
         if (strcmp(law->parameter[i].name, name) == 0)
@@ -95,7 +95,7 @@ const char *lar_fit_unit(const lar_material *m, const char *name) {
     return strncmp(name, "time", 4) == 0 ? "s" : "";
 }
 
-const lar_material *lar_fit_material(const lar_fit_problem *problem, const char *name) {
+const lar_material *lar_inverse_material(const lar_inverse_problem *problem, const char *name) {
     for (int k = 0; k < problem->experiments; k++) {
         const lar_model *model = problem->experiment[k].model;
         for (int i = 0; model && i < model->material_count; i++)
@@ -105,49 +105,49 @@ const lar_material *lar_fit_material(const lar_fit_problem *problem, const char 
     return NULL;
 }
 
-void lar_fit_set_all(const lar_fit_problem *problem, const double *value, lar_material *material,
-                     int materials) {
+void lar_inverse_set_all(const lar_inverse_problem *problem, const double *value,
+                         lar_material *material, int materials) {
     for (int j = 0; j < problem->parameters; j++)
         for (int i = 0; i < materials; i++)
             if (material[i].name && strcmp(material[i].name, problem->parameter[j].material) == 0)
-                lar_fit_set(&material[i], problem->parameter[j].name, value[j]);
+                lar_inverse_set(&material[i], problem->parameter[j].name, value[j]);
 }
 
 /* ---- the axes ------------------------------------------------------------------------------- */
 
-static double size_of(const lar_fit_parameter *p) {
+static double size_of(const lar_inverse_parameter *p) {
     return fmax(fabs(p->low), fabs(p->high));
 }
 
-double lar_fit_u(const lar_fit_parameter *p, double value) {
+double lar_inverse_u(const lar_inverse_parameter *p, double value) {
     return p->log ? log(value) : value / size_of(p);
 }
 
-double lar_fit_value(const lar_fit_parameter *p, double u) {
+double lar_inverse_value(const lar_inverse_parameter *p, double u) {
     double value = p->log ? exp(u) : u * size_of(p);
     return fmin(fmax(value, p->low), p->high); /* rounding */
 }
 
-double lar_fit_u_low(const lar_fit_parameter *p) {
-    return lar_fit_u(p, p->low);
+double lar_inverse_u_low(const lar_inverse_parameter *p) {
+    return lar_inverse_u(p, p->low);
 }
 
-double lar_fit_u_high(const lar_fit_parameter *p) {
-    return lar_fit_u(p, p->high);
+double lar_inverse_u_high(const lar_inverse_parameter *p) {
+    return lar_inverse_u(p, p->high);
 }
 
 static const double SHIFT = 2;
 
-double lar_fit_x(const lar_fit_parameter *p, double u) {
+double lar_inverse_x(const lar_inverse_parameter *p, double u) {
     /* At a bound the sine has no slope, and nothing would ever leave it. */
     static const double INSIDE = 0.998;
-    double low = lar_fit_u_low(p), high = lar_fit_u_high(p);
+    double low = lar_inverse_u_low(p), high = lar_inverse_u_high(p);
     double s = (2 * u - low - high) / (high - low);
     return asin(fmin(fmax(s, -INSIDE), INSIDE)) + SHIFT;
 }
 
-double lar_fit_u_of_x(const lar_fit_parameter *p, double x, double *slope) {
-    double low = lar_fit_u_low(p), half = 0.5 * (lar_fit_u_high(p) - low);
+double lar_inverse_u_of_x(const lar_inverse_parameter *p, double x, double *slope) {
+    double low = lar_inverse_u_low(p), half = 0.5 * (lar_inverse_u_high(p) - low);
     *slope = half * cos(x - SHIFT);
     return low + half * (1 + sin(x - SHIFT));
 }

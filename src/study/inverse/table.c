@@ -1,4 +1,4 @@
-#include "study/fit/table.h"
+#include "study/inverse/table.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -28,7 +28,7 @@ static int shown(lar_span span) {
     return (int)(span.length < SHOWN ? span.length : SHOWN);
 }
 
-static lar_status read_names(reader *r, lar_fit_table *t, lar_error *error) {
+static lar_status read_names(reader *r, lar_inverse_table *t, lar_error *error) {
     lar_span rest, part;
     double number;
     if (!next_line(r, &rest))
@@ -49,7 +49,7 @@ static lar_status read_names(reader *r, lar_fit_table *t, lar_error *error) {
                             r->line, COLUMNS_MAX);
         char *name = lar_strndup(part.at, part.length);
         if (!name) return lar_fail_memory(error, part.length, t->path);
-        bool twice = lar_fit_table_find(t, name) >= 0;
+        bool twice = lar_inverse_table_find(t, name) >= 0;
         t->name[t->columns++] = name;
         if (twice)
             return lar_fail(error, LAR_ERROR_FORMAT, "%s:%d: the column %.*s stands twice", t->path,
@@ -58,7 +58,7 @@ static lar_status read_names(reader *r, lar_fit_table *t, lar_error *error) {
     return LAR_OK;
 }
 
-static lar_status read_row(reader *r, lar_fit_table *t, lar_span rest, lar_error *error) {
+static lar_status read_row(reader *r, lar_inverse_table *t, lar_span rest, lar_error *error) {
     size_t rows = (size_t)t->rows;
     if (rows == ROWS_MAX)
         return lar_fail(error, LAR_ERROR_FORMAT,
@@ -81,7 +81,7 @@ static lar_status read_row(reader *r, lar_fit_table *t, lar_span rest, lar_error
     return LAR_OK;
 }
 
-static lar_status parse(const lar_bytes *bytes, lar_fit_table *t, lar_error *error) {
+static lar_status parse(const lar_bytes *bytes, lar_inverse_table *t, lar_error *error) {
     reader r = {.text = lar_text_from(bytes)};
     lar_span line;
     lar_status status = read_names(&r, t, error);
@@ -93,7 +93,7 @@ static lar_status parse(const lar_bytes *bytes, lar_fit_table *t, lar_error *err
     return status;
 }
 
-lar_status lar_fit_table_read(const char *path, lar_fit_table *t, lar_error *error) {
+lar_status lar_inverse_table_read(const char *path, lar_inverse_table *t, lar_error *error) {
     lar_bytes bytes;
     lar_status status = lar_bytes_read(path, &bytes, error);
     if (status) return status;
@@ -104,23 +104,23 @@ lar_status lar_fit_table_read(const char *path, lar_fit_table *t, lar_error *err
     return status;
 }
 
-void lar_fit_table_clear(lar_fit_table *t) {
+void lar_inverse_table_clear(lar_inverse_table *t) {
     for (int i = 0; i < t->columns; i++) free(t->name[i]);
     free(t->name);
     free(t->path);
     free(t->line);
     free(t->value);
-    *t = (lar_fit_table){0};
+    *t = (lar_inverse_table){0};
 }
 
-int lar_fit_table_find(const lar_fit_table *t, const char *name) {
+int lar_inverse_table_find(const lar_inverse_table *t, const char *name) {
     for (int i = 0; i < t->columns; i++)
         if (strcmp(t->name[i], name) == 0) return i;
     return -1;
 }
 
-lar_status lar_fit_table_take(const lar_fit_table *t, int column, double scale, double *value,
-                              lar_error *error) {
+lar_status lar_inverse_table_take(const lar_inverse_table *t, int column, double scale,
+                                  double *value, lar_error *error) {
     for (int32_t i = 0; i < t->rows; i++) {
         value[i] = scale * t->value[(size_t)i * (size_t)t->columns + (size_t)column];
         if (!isfinite(value[i]))

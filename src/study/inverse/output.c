@@ -1,4 +1,4 @@
-#include "study/fit/output.h"
+#include "study/inverse/output.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -6,16 +6,15 @@
 #include <time.h>
 
 #include "base/file/part_file.h"
-#include "study/fit/parameters.h"
+#include "study/inverse/parameters.h"
 
-bool lar_fit_first_of_material(const lar_fit_problem *p, int j) {
+bool lar_inverse_first_of_material(const lar_inverse_problem *p, int j) {
     for (int i = 0; i < j; i++)
         if (strcmp(p->parameter[i].material, p->parameter[j].material) == 0) return false;
     return true;
 }
 
-/* ---- tissue
- * ---------------------------------------------------------------------------------------- */
+/* ---- tissue ---------------------------------------------------------------------------------- */
 
 /* A name as YAML and XML take it: what would mean something else there is left out. */
 static void plain(const char *text, char *to, size_t size) {
@@ -25,7 +24,7 @@ static void plain(const char *text, char *to, size_t size) {
     to[n] = '\0';
 }
 
-static void write_provenance(FILE *out, const lar_fit_problem *p, const lar_fit_result *r,
+static void write_provenance(FILE *out, const lar_inverse_problem *p, const lar_inverse_result *r,
                              const char *material) {
     char text[256], date[32] = "";
     time_t now = time(NULL);
@@ -37,11 +36,11 @@ static void write_provenance(FILE *out, const lar_fit_problem *p, const lar_fit_
     for (int k = 0; k < p->experiments; k++) {
         plain(p->experiment[k].data, text, sizeof text);
         fprintf(out, "# %s: %s, %d values, residual %.2g %% of the largest.\n",
-                lar_fit_kind_name[p->experiment[k].kind], text, (int)p->experiment[k].values,
+                lar_inverse_kind_name[p->experiment[k].kind], text, (int)p->experiment[k].values,
                 100 * r->residuals[k].relative);
     }
     for (int j = 0; j < p->parameters; j++) {
-        const lar_fit_estimate *e = &r->estimate[j];
+        const lar_inverse_estimate *e = &r->estimate[j];
         if (strcmp(p->parameter[j].material, material) != 0) continue;
         if (e->told && isfinite(e->low))
             fprintf(out, "# %s: fitted, 95 %% between %.4g and %.4g.\n", p->parameter[j].name,
@@ -67,13 +66,14 @@ static void write_material(FILE *out, const lar_material *m) {
                 m->viscosity.time[i]);
 }
 
-lar_status lar_fit_write_tissue(const char *path, const lar_fit_problem *p, const lar_fit_result *r,
-                                const char *material, lar_error *error) {
+lar_status lar_inverse_write_tissue(const char *path, const lar_inverse_problem *p,
+                                    const lar_inverse_result *r, const char *material,
+                                    lar_error *error) {
     char text[256];
-    double value[LAR_FIT_PARAMETERS_MAX];
-    lar_material fitted = *lar_fit_material(p, material);
+    double value[LAR_INVERSE_PARAMETERS_MAX];
+    lar_material fitted = *lar_inverse_material(p, material);
     for (int j = 0; j < p->parameters; j++) value[j] = r->estimate[j].value;
-    lar_fit_set_all(p, value, &fitted, 1);
+    lar_inverse_set_all(p, value, &fitted, 1);
     lar_part_file out;
     lar_status status = lar_part_open(&out, path, error);
     if (status) return lar_part_close(&out, status);
@@ -84,8 +84,7 @@ lar_status lar_fit_write_tissue(const char *path, const lar_fit_problem *p, cons
     return lar_part_close(&out, LAR_OK);
 }
 
-/* ---- pictures
- * ----------------------------------------------------------------------------------------- */
+/* ---- pictures -------------------------------------------------------------------------------- */
 
 enum { LEFT = 80, TOP = 40, WIDTH = 560, HEIGHT = 340 };
 
@@ -135,8 +134,8 @@ static void draw_axes(const axes *a, const char *title, const char *x, const cha
 }
 
 /* Over the way, the time where there is none or it stands still, or the number of the value. */
-static double abscissa(const lar_fit_experiment *e, int32_t i) {
-    if (e->kind == LAR_FIT_MARKERS || e->kind == LAR_FIT_SURFACE) return i;
+static double abscissa(const lar_inverse_experiment *e, int32_t i) {
+    if (e->kind == LAR_INVERSE_MARKERS || e->kind == LAR_INVERSE_SURFACE) return i;
     return e->in_time ? e->time[i] : e->along[i];
 }
 
@@ -146,10 +145,10 @@ static void widen(double *low, double *high) {
     *high += more;
 }
 
-lar_status lar_fit_write_svg(const char *path, const lar_fit_problem *p, const lar_fit_result *r,
-                             int k, lar_error *error) {
-    const lar_fit_experiment *e = &p->experiment[k];
-    bool points = e->kind == LAR_FIT_MARKERS || e->kind == LAR_FIT_SURFACE;
+lar_status lar_inverse_write_svg(const char *path, const lar_inverse_problem *p,
+                                 const lar_inverse_result *r, int k, lar_error *error) {
+    const lar_inverse_experiment *e = &p->experiment[k];
+    bool points = e->kind == LAR_INVERSE_MARKERS || e->kind == LAR_INVERSE_SURFACE;
     const double *model = r->model;
     for (int i = 0; i < k; i++) model += p->experiment[i].values;
     char title[256];
@@ -168,13 +167,13 @@ lar_status lar_fit_write_svg(const char *path, const lar_fit_problem *p, const l
     a.out = out.file;
     plain(e->name, title, sizeof title);
     draw_axes(&a, title,
-              points                           ? "value"
-              : e->in_time                     ? "time [s]"
-              : e->kind == LAR_FIT_INDENTATION ? "depth [m]"
-                                               : "displacement [m]",
-              e->kind == LAR_FIT_MARKERS   ? "displacement [m]"
-              : e->kind == LAR_FIT_SURFACE ? "distance [m]"
-                                           : "force [N]");
+              points                               ? "value"
+              : e->in_time                         ? "time [s]"
+              : e->kind == LAR_INVERSE_INDENTATION ? "depth [m]"
+                                                   : "displacement [m]",
+              e->kind == LAR_INVERSE_MARKERS   ? "displacement [m]"
+              : e->kind == LAR_INVERSE_SURFACE ? "distance [m]"
+                                               : "force [N]");
     fprintf(a.out, "<polyline fill=\"none\" stroke=\"#2b5fb5\" stroke-width=\"1.5\" points=\"");
     for (int32_t i = 0; i < e->values; i++)
         fprintf(a.out, "%.1f,%.1f ", x_of(&a, abscissa(e, i)), y_of(&a, model[i]));

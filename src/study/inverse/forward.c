@@ -1,4 +1,4 @@
-#include "study/fit/forward.h"
+#include "study/inverse/forward.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -8,11 +8,11 @@
 #include "model/rest.h"
 #include "model/triangles/surface_tree.h"
 #include "simulation/simulation.h"
-#include "study/fit/parameters.h"
+#include "study/inverse/parameters.h"
 
 /* One run under way. */
 typedef struct forward {
-    const lar_fit_experiment *e;
+    const lar_inverse_experiment *e;
     const volatile sig_atomic_t *stop;
     lar_model model;    /* a shallow copy: materials, moves and curves are its own */
     double (*point)[2]; /* of the curve that drives; the last one of the model */
@@ -31,7 +31,7 @@ static void *copied(const void *from, int count, int more, size_t size) {
 
 /* The driven support follows a curve of its own, in metres. */
 static lar_status drive(forward *f) {
-    const lar_fit_experiment *e = f->e;
+    const lar_inverse_experiment *e = f->e;
     if (e->move < 0 || !e->along) return LAR_OK;
     lar_move *move = &f->model.move[e->move];
     f->point = lar_calloc((size_t)e->rows + 1, sizeof *f->point);
@@ -52,7 +52,7 @@ static lar_status drive(forward *f) {
     return LAR_OK;
 }
 
-static lar_status copy_model(forward *f, const lar_fit_problem *problem, const double *value) {
+static lar_status copy_model(forward *f, const lar_inverse_problem *problem, const double *value) {
     const lar_model *from = f->e->model;
     lar_model *m = &f->model;
     *m = *from;
@@ -61,7 +61,7 @@ static lar_status copy_model(forward *f, const lar_fit_problem *problem, const d
     m->move = copied(from->move, from->move_count, 0, sizeof *m->move);
     if (!m->material || !m->curve || !m->move)
         return lar_fail_memory(f->error, sizeof *m, f->e->scene);
-    lar_fit_set_all(problem, value, m->material, m->material_count);
+    lar_inverse_set_all(problem, value, m->material, m->material_count);
     for (int i = 0; i < m->material_count; i++) {
         lar_status status = lar_material_check(&m->material[i], f->e->scene, f->error);
         if (status) return status;
@@ -130,7 +130,7 @@ static lar_status support_force(forward *f, double *force) {
 }
 
 static lar_status pull(forward *f, double *model) {
-    const lar_fit_experiment *e = f->e;
+    const lar_inverse_experiment *e = f->e;
     lar_status status = LAR_OK;
     double before = 0;
     for (int32_t i = 0; i < e->rows && !status; i++) {
@@ -150,11 +150,10 @@ static lar_status pull(forward *f, double *model) {
     return status;
 }
 
-/* ---- tools ------------------------------------------------------------------------------------
- */
+/* ---- tools ----------------------------------------------------------------------------------- */
 
 static lar_status tool_to(forward *f, double depth, uint64_t steps) {
-    const lar_fit_experiment *e = f->e;
+    const lar_inverse_experiment *e = f->e;
     lar_tool_pose pose = f->model.tool[e->tool].rest;
     for (int i = 0; i < 3; i++) pose.position[i] += depth * e->direction[i];
     lar_status status = lar_simulation_tool_move(f->simulation, e->tool, &pose, steps, f->error);
@@ -183,7 +182,7 @@ static lar_status settle_tool(forward *f, double depth, double *inside) {
 }
 
 static lar_status press(forward *f, double *model) {
-    const lar_fit_experiment *e = f->e;
+    const lar_inverse_experiment *e = f->e;
     lar_status status = LAR_OK;
     double inside = 0;
     for (int32_t i = 0; i < e->rows && !status; i++) {
@@ -203,11 +202,10 @@ static lar_status press(forward *f, double *model) {
     return status;
 }
 
-/* ---- points -----------------------------------------------------------------------------------
- */
+/* ---- points ---------------------------------------------------------------------------------- */
 
 static void markers(const forward *f, const double (*u)[3], double *model) {
-    const lar_fit_experiment *e = f->e;
+    const lar_inverse_experiment *e = f->e;
     for (int32_t i = 0; i < e->rows; i++) {
         const int32_t *node = f->model.mesh.element[e->points.element[i]];
         for (int k = 0; k < 3; k++) {
@@ -221,7 +219,7 @@ static void markers(const forward *f, const double (*u)[3], double *model) {
 /* Distances of the measured points from the deformed surface, positive outside: unlike plain ones
  * they pass through zero without a kink. */
 static lar_status distances(forward *f, const double (*u)[3], double *model) {
-    const lar_fit_experiment *e = f->e;
+    const lar_inverse_experiment *e = f->e;
     lar_mesh mesh = f->model.mesh;
     lar_surface_tree outer = {0};
     size_t nodes = (size_t)mesh.node_count;
@@ -252,7 +250,7 @@ static lar_status look_at_points(forward *f, double *model) {
     double(*u)[3] = lar_calloc(nodes, sizeof *u);
     if (!u) return lar_fail_memory(f->error, nodes * sizeof *u, f->e->scene);
     lar_simulation_displacements(f->simulation, u);
-    if (f->e->kind == LAR_FIT_MARKERS)
+    if (f->e->kind == LAR_INVERSE_MARKERS)
         markers(f, (const double(*)[3])u, model);
     else
         status = distances(f, (const double(*)[3])u, model);
@@ -263,25 +261,24 @@ static lar_status look_at_points(forward *f, double *model) {
 /* Half of the automatic step under a tool: its springs are four times as stiff then. */
 static lar_status choose_step(const forward *f, lar_options *options) {
     lar_model_info info;
-    if (f->e->kind != LAR_FIT_INDENTATION || f->model.time_step > 0) return LAR_OK;
+    if (f->e->kind != LAR_INVERSE_INDENTATION || f->model.time_step > 0) return LAR_OK;
     lar_status status = lar_model_inspect(&f->model, &info, f->error);
     if (!status) options->time_step = 0.5 * info.time_step;
     return status;
 }
 
-/* ---- one experiment ----------------------------------------------------------------------------
- */
+/* ---- one experiment -------------------------------------------------------------------------- */
 
-lar_status lar_fit_forward(const lar_fit_problem *problem, int k, const double *value,
-                           const volatile sig_atomic_t *stop, double *model, lar_error *error) {
+lar_status lar_inverse_forward(const lar_inverse_problem *problem, int k, const double *value,
+                               const volatile sig_atomic_t *stop, double *model, lar_error *error) {
     forward f = {.e = &problem->experiment[k], .stop = stop, .error = error};
     lar_options options = lar_options_default();
     lar_status status = copy_model(&f, problem, value);
     if (!status) status = choose_step(&f, &options);
     if (!status) status = lar_simulation_create(&f.model, &options, &f.simulation, error);
-    if (!status && f.e->kind == LAR_FIT_INDENTATION)
+    if (!status && f.e->kind == LAR_INVERSE_INDENTATION)
         status = press(&f, model);
-    else if (!status && f.e->kind <= LAR_FIT_COMPRESSION)
+    else if (!status && f.e->kind <= LAR_INVERSE_COMPRESSION)
         status = pull(&f, model);
     else if (!status)
         status = look_at_points(&f, model);

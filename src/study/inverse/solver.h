@@ -10,60 +10,61 @@
  * about a thousandth. Runs are deterministic: nothing but rest and rounding is between two of them.
  * Levenberg-Marquardt: More, Lecture Notes in Mathematics 630:105, 1978.
  */
-#ifndef LAR_STUDY_FIT_SOLVER_H
-#define LAR_STUDY_FIT_SOLVER_H
+#ifndef LAR_STUDY_INVERSE_SOLVER_H
+#define LAR_STUDY_INVERSE_SOLVER_H
 
 #include <signal.h>
 
-#include "study/fit/experiment.h"
+#include "study/inverse/experiment.h"
 
-typedef struct lar_fit_progress {
+typedef struct lar_inverse_progress {
     const char *doing; /* "fitting", "looking how far ..." */
     int runs;          /* simulations so far */
     double residual;   /* root mean square, in units of the noise; the best so far */
     double remaining;  /* a guess [s]; below 0: not known yet */
-} lar_fit_progress;
+} lar_inverse_progress;
 
-typedef struct lar_fit_options {
+typedef struct lar_inverse_options {
     const volatile sig_atomic_t *stop; /* not 0: end with the best so far; may be NULL */
-    void (*progress)(void *context, const lar_fit_progress *progress); /* may be NULL */
+    void (*progress)(void *context, const lar_inverse_progress *progress); /* may be NULL */
     void *context;
-} lar_fit_options;
+} lar_inverse_options;
 
-typedef struct lar_fit_solver {
-    const lar_fit_problem *problem;
-    lar_fit_options options;
+typedef struct lar_inverse_solver {
+    const lar_inverse_problem *problem;
+    lar_inverse_options options;
     int values, parameters;
     int runs, rounds;    /* simulations; evaluations with derivatives */
     double begin, round; /* clock at the start [s]; seconds of the last round */
     const char *doing;
     double *best_model; /* [values] */
-    double best_u[LAR_FIT_PARAMETERS_MAX];
-    double best_squares;                  /* of residuals; INFINITY: none yet */
-    bool fixed[LAR_FIT_PARAMETERS_MAX];   /* stay at their u of the start */
-    double start[LAR_FIT_PARAMETERS_MAX]; /* u */
+    double best_u[LAR_INVERSE_PARAMETERS_MAX];
+    double best_squares;                      /* of residuals; INFINITY: none yet */
+    bool fixed[LAR_INVERSE_PARAMETERS_MAX];   /* stay at their u of the start */
+    double start[LAR_INVERSE_PARAMETERS_MAX]; /* u */
     lar_error *error;
     lar_status status; /* what ended it */
-} lar_fit_solver;
+} lar_inverse_solver;
 
 /* Whether this program has cminpack. */
-bool lar_fit_available(void);
+bool lar_inverse_available(void);
 
 /* A solver at the first guess; NULL memory is an error. Cleared in any case. */
-lar_status lar_fit_solver_create(const lar_fit_problem *problem, const lar_fit_options *options,
-                                 lar_fit_solver *solver, lar_error *error);
-void lar_fit_solver_clear(lar_fit_solver *solver);
+lar_status lar_inverse_solver_create(const lar_inverse_problem *problem,
+                                     const lar_inverse_options *options, lar_inverse_solver *solver,
+                                     lar_error *error);
+void lar_inverse_solver_clear(lar_inverse_solver *solver);
 
 /* Residuals at u, into r[values]; LAR_ERROR_UNSTABLE and LAR_ERROR_MODEL say that there is no
  * answer with these parameters. The best is kept. */
-lar_status lar_fit_evaluate(lar_fit_solver *solver, const double *u, double *r);
+lar_status lar_inverse_evaluate(lar_inverse_solver *solver, const double *u, double *r);
 /* dr/du into jacobian[parameters][values], of parameters that are not fixed; r: those at u. */
-lar_status lar_fit_differentiate(lar_fit_solver *solver, const double *u, const double *r,
-                                 double *jacobian);
+lar_status lar_inverse_differentiate(lar_inverse_solver *solver, const double *u, const double *r,
+                                     double *jacobian);
 /* From solver->start to the least squares; where it ends stands in best_*. *converged: whether
  * the squares are as small as they get. An interrupted fit is LAR_OK. */
-lar_status lar_fit_minimise(lar_fit_solver *solver, bool *converged);
+lar_status lar_inverse_minimise(lar_inverse_solver *solver, bool *converged);
 /* Whether the user has asked to stop. */
-bool lar_fit_stopped(const lar_fit_solver *solver);
+bool lar_inverse_stopped(const lar_inverse_solver *solver);
 
 #endif

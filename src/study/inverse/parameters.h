@@ -12,31 +12,31 @@
  * a logistic curve would not, and keeps Levenberg-Marquardt free of them: MINPACK knows none. The
  * shift by 2 keeps x away from 0, where MINPACK's first step would be none.
  */
-#ifndef LAR_STUDY_FIT_PARAMETERS_H
-#define LAR_STUDY_FIT_PARAMETERS_H
+#ifndef LAR_STUDY_INVERSE_PARAMETERS_H
+#define LAR_STUDY_INVERSE_PARAMETERS_H
 
-#include "study/fit/experiment.h"
+#include "study/inverse/problem.h"
 
 /* A parameter of a material. False: it has none of that name. */
-bool lar_fit_get(const lar_material *material, const char *name, double *value);
-bool lar_fit_set(lar_material *material, const char *name, double value);
+bool lar_inverse_get(const lar_material *material, const char *name, double *value);
+bool lar_inverse_set(lar_material *material, const char *name, double value);
 /* The names that a material has, into name[max]; how many. */
-int lar_fit_names(const lar_material *material, const char **name, int max);
+int lar_inverse_names(const lar_material *material, const char **name, int max);
 /* "Pa", "s" or "". */
-const char *lar_fit_unit(const lar_material *material, const char *name);
+const char *lar_inverse_unit(const lar_material *material, const char *name);
 
 /* The first material of that name in any experiment; NULL: none. */
-const lar_material *lar_fit_material(const lar_fit_problem *problem, const char *name);
+const lar_material *lar_inverse_material(const lar_inverse_problem *problem, const char *name);
 
 /* All parameters into the materials of one model; where there is no such material nothing. */
-void lar_fit_set_all(const lar_fit_problem *problem, const double *value, lar_material *material,
-                     int materials);
+void lar_inverse_set_all(const lar_inverse_problem *problem, const double *value,
+                         lar_material *material, int materials);
 
-double lar_fit_u(const lar_fit_parameter *p, double value);
-double lar_fit_value(const lar_fit_parameter *p, double u);
-double lar_fit_u_low(const lar_fit_parameter *p);
-double lar_fit_u_high(const lar_fit_parameter *p);
-double lar_fit_x(const lar_fit_parameter *p, double u);
-double lar_fit_u_of_x(const lar_fit_parameter *p, double x, double *slope /* du/dx */);
+double lar_inverse_u(const lar_inverse_parameter *p, double value);
+double lar_inverse_value(const lar_inverse_parameter *p, double u);
+double lar_inverse_u_low(const lar_inverse_parameter *p);
+double lar_inverse_u_high(const lar_inverse_parameter *p);
+double lar_inverse_x(const lar_inverse_parameter *p, double u);
+double lar_inverse_u_of_x(const lar_inverse_parameter *p, double x, double *slope /* du/dx */);
 
 #endif

@@ -1,4 +1,4 @@
-#include "study/fit/experiment.h"
+#include "study/inverse/experiment.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -6,15 +6,12 @@
 
 #include "base/memory.h"
 #include "model/scene/scene.h"
-#include "study/fit/measured.h"
-#include "study/fit/parameters.h"
-
-const char *const lar_fit_kind_name[LAR_FIT_KINDS] = {"tension", "compression", "indentation",
-                                                      "markers", "surface"};
+#include "study/inverse/measured.h"
+#include "study/inverse/parameters.h"
 
 typedef struct reader {
     lar_scene scene; /* the file, for the scene reader's helpers and their sentences */
-    lar_fit_problem *problem;
+    lar_inverse_problem *problem;
 } reader;
 
 static lar_status copy_text(const reader *r, const char *text, char **to) {
@@ -32,11 +29,10 @@ static lar_status read_path(const reader *r, const lar_yaml *node, const char *e
     return *path ? LAR_OK : lar_scene_no_memory(&r->scene, strlen(name) + 1);
 }
 
-/* ---- parameters -------------------------------------------------------------------------------
- */
+/* ---- parameters ------------------------------------------------------------------------------ */
 
 static lar_status check_bounds(const reader *r, const lar_yaml *bounds, const lar_yaml *guess,
-                               lar_fit_parameter *p) {
+                               lar_inverse_parameter *p) {
     if (!(p->low < p->high))
         return lar_scene_fail(&r->scene, bounds, LAR_ERROR_MODEL,
                               "bounds: %g is not below %g; give the lower one first", p->low,
@@ -53,15 +49,15 @@ static lar_status check_bounds(const reader *r, const lar_yaml *bounds, const la
 static lar_status read_parameter(reader *r, const lar_yaml *node) {
     static const char *const keys[] = {"material", "parameter", "guess", "bounds", NULL};
     static const char what[] = "a parameter";
-    lar_fit_problem *problem = r->problem;
+    lar_inverse_problem *problem = r->problem;
     const lar_yaml *material, *name, *guess, *bounds;
     const char *text = NULL;
-    if (problem->parameters == LAR_FIT_PARAMETERS_MAX)
+    if (problem->parameters == LAR_INVERSE_PARAMETERS_MAX)
         return lar_scene_fail(&r->scene, node, LAR_ERROR_UNSUPPORTED,
                               "more than %d parameters; no experiment tells so many apart",
-                              LAR_FIT_PARAMETERS_MAX);
-    lar_fit_parameter *p = &problem->parameter[problem->parameters++];
-    *p = (lar_fit_parameter){.line = node->line};
+                              LAR_INVERSE_PARAMETERS_MAX);
+    lar_inverse_parameter *p = &problem->parameter[problem->parameters++];
+    *p = (lar_inverse_parameter){.line = node->line};
     const lar_scene *s = &r->scene;
     lar_status status = lar_scene_keys(s, node, what, keys);
     if (!status) status = lar_scene_need(s, node, what, "material", "material: liver", &material);
@@ -92,12 +88,12 @@ static lar_status read_parameter(reader *r, const lar_yaml *node) {
 
 /* When all models are there: every parameter must be one of a material of its scenes. */
 static lar_status check_parameter(const reader *r, const lar_yaml *node,
-                                  const lar_fit_parameter *p) {
+                                  const lar_inverse_parameter *p) {
     enum { MAX = 20 };
     const char *name[MAX];
     double value;
     const lar_yaml *where = lar_yaml_get(node, "material");
-    const lar_material *material = lar_fit_material(r->problem, p->material);
+    const lar_material *material = lar_inverse_material(r->problem, p->material);
     if (!material) {
         int count = 0;
         for (int k = 0; k < r->problem->experiments; k++) {
@@ -108,28 +104,27 @@ static lar_status check_parameter(const reader *r, const lar_yaml *node,
         return lar_scene_unknown(&r->scene, where, LAR_ERROR_MODEL, "the material",
                                  "those with a name in the scenes are", name, count);
     }
-    if (!lar_fit_get(material, p->name, &value))
+    if (!lar_inverse_get(material, p->name, &value))
         return lar_scene_unknown(&r->scene, lar_yaml_get(node, "parameter"), LAR_ERROR_MODEL,
                                  "the parameter", "this material has", name,
-                                 lar_fit_names(material, name, MAX));
+                                 lar_inverse_names(material, name, MAX));
     return LAR_OK;
 }
 
-/* ---- experiments ------------------------------------------------------------------------------
- */
+/* ---- experiments ----------------------------------------------------------------------------- */
 
-static lar_status read_kind(const reader *r, const lar_yaml *node, lar_fit_kind *kind) {
-    for (int i = 0; i < LAR_FIT_KINDS; i++)
-        if (lar_scene_is_word(node, lar_fit_kind_name[i])) {
-            *kind = (lar_fit_kind)i;
+static lar_status read_kind(const reader *r, const lar_yaml *node, lar_inverse_kind *kind) {
+    for (int i = 0; i < LAR_INVERSE_KINDS; i++)
+        if (lar_scene_is_word(node, lar_inverse_kind_name[i])) {
+            *kind = (lar_inverse_kind)i;
             return LAR_OK;
         }
     return lar_scene_unknown(&r->scene, node, LAR_ERROR_FORMAT, "the kind", "the kinds are",
-                             lar_fit_kind_name, LAR_FIT_KINDS);
+                             lar_inverse_kind_name, LAR_INVERSE_KINDS);
 }
 
 /* Which entry of the scene's `move` is driven: the only one, or `move: N`, from 1. */
-static lar_status choose_move(const reader *r, const lar_yaml *node, lar_fit_experiment *e) {
+static lar_status choose_move(const reader *r, const lar_yaml *node, lar_inverse_experiment *e) {
     const lar_yaml *own = lar_yaml_get(node, "move"), *at = own ? own : node;
     const lar_model *m = e->model;
     int64_t number = 1;
@@ -153,7 +148,7 @@ static lar_status choose_move(const reader *r, const lar_yaml *node, lar_fit_exp
     return LAR_OK;
 }
 
-static lar_status choose_tool(const reader *r, const lar_yaml *node, lar_fit_experiment *e) {
+static lar_status choose_tool(const reader *r, const lar_yaml *node, lar_inverse_experiment *e) {
     enum { MAX = LAR_MODEL_TOOLS_MAX };
     const lar_yaml *own = lar_yaml_get(node, "tool"), *way = lar_yaml_get(node, "direction");
     const lar_model *m = e->model;
@@ -180,17 +175,17 @@ static lar_status choose_tool(const reader *r, const lar_yaml *node, lar_fit_exp
 }
 
 /* Tissue that relaxes has its own time; everything else is followed to rest. */
-static lar_status choose_time(const reader *r, const lar_yaml *node, lar_fit_experiment *e) {
+static lar_status choose_time(const reader *r, const lar_yaml *node, lar_inverse_experiment *e) {
     const lar_material *viscous = lar_model_viscous(e->model);
     e->in_time = viscous != NULL;
-    if (!viscous || e->kind < LAR_FIT_MARKERS) return LAR_OK;
+    if (!viscous || e->kind < LAR_INVERSE_MARKERS) return LAR_OK;
     return lar_scene_fail(&r->scene, node, LAR_ERROR_UNSUPPORTED,
                           "the scene %s has a viscous material, and %s are compared at rest; leave "
                           "viscous out of it: at rest the stress is g0 times the law's",
-                          e->scene, lar_fit_kind_name[e->kind]);
+                          e->scene, lar_inverse_kind_name[e->kind]);
 }
 
-static lar_status read_plain(reader *r, const lar_yaml *node, lar_fit_experiment *e) {
+static lar_status read_plain(reader *r, const lar_yaml *node, lar_inverse_experiment *e) {
     static const char what[] = "an experiment";
     const lar_scene *s = &r->scene;
     const lar_yaml *kind, *scene, *data, *name = lar_yaml_get(node, "name");
@@ -201,7 +196,7 @@ static lar_status read_plain(reader *r, const lar_yaml *node, lar_fit_experiment
     if (!status) status = read_kind(r, kind, &e->kind);
     if (!status) status = read_path(r, scene, "the name of a scene (.yaml)", &e->scene);
     if (!status) status = read_path(r, data, "the name of a table (.csv)", &e->data);
-    text = lar_fit_kind_name[e->kind];
+    text = lar_inverse_kind_name[e->kind];
     if (!status && name) status = lar_scene_text(s, name, "a name", &text);
     return status ? status : copy_text(r, text, &e->name);
 }
@@ -209,26 +204,25 @@ static lar_status read_plain(reader *r, const lar_yaml *node, lar_fit_experiment
 static lar_status read_experiment(reader *r, const lar_yaml *node) {
     static const char *const keys[] = {"kind",  "name",   "scene", "data", "columns",   "scale",
                                        "noise", "length", "move",  "tool", "direction", NULL};
-    lar_fit_problem *problem = r->problem;
+    lar_inverse_problem *problem = r->problem;
     const lar_scene *s = &r->scene;
-    if (problem->experiments == LAR_FIT_EXPERIMENTS_MAX)
+    if (problem->experiments == LAR_INVERSE_EXPERIMENTS_MAX)
         return lar_scene_fail(s, node, LAR_ERROR_UNSUPPORTED, "more than %d experiments",
-                              LAR_FIT_EXPERIMENTS_MAX);
-    lar_fit_experiment *e = &problem->experiment[problem->experiments++];
-    *e = (lar_fit_experiment){.line = node->line, .move = -1, .tool = -1};
+                              LAR_INVERSE_EXPERIMENTS_MAX);
+    lar_inverse_experiment *e = &problem->experiment[problem->experiments++];
+    *e = (lar_inverse_experiment){.line = node->line, .move = -1, .tool = -1};
     lar_status status = lar_scene_keys(s, node, "an experiment", keys);
     if (!status) status = read_plain(r, node, e);
     lar_error own = {0};
     if (!status && lar_model_open(e->scene, &e->model, &own))
         status = lar_scene_fail(s, lar_yaml_get(node, "scene"), own.status, "%s", own.message);
     if (!status) status = choose_time(r, node, e);
-    if (!status && e->kind <= LAR_FIT_COMPRESSION) status = choose_move(r, node, e);
-    if (!status && e->kind == LAR_FIT_INDENTATION) status = choose_tool(r, node, e);
-    return status ? status : lar_fit_measured_read(s, node, e);
+    if (!status && e->kind <= LAR_INVERSE_COMPRESSION) status = choose_move(r, node, e);
+    if (!status && e->kind == LAR_INVERSE_INDENTATION) status = choose_tool(r, node, e);
+    return status ? status : lar_inverse_measured_read(s, node, e);
 }
 
-/* ---- the file ----------------------------------------------------------------------------------
- */
+/* ---- the file -------------------------------------------------------------------------------- */
 
 static lar_status read_root(reader *r) {
     static const char *const keys[] = {"lariat-fit", "title", "parameters", "experiments", NULL};
@@ -265,18 +259,19 @@ static lar_status read_root(reader *r) {
     return status;
 }
 
-static lar_status check_counts(const lar_fit_problem *p, lar_error *error) {
+static lar_status check_counts(const lar_inverse_problem *p, lar_error *error) {
     if (p->parameters == 0 || p->experiments == 0)
         return lar_fail(error, LAR_ERROR_FORMAT, "%s: no %s; give one at least", p->path,
                         p->parameters ? "experiment" : "parameter");
-    if (lar_fit_problem_values(p) < p->parameters)
+    if (lar_inverse_problem_values(p) < p->parameters)
         return lar_fail(error, LAR_ERROR_MODEL,
                         "%s: %d measured numbers for %d parameters; measure more, or free fewer",
-                        p->path, (int)lar_fit_problem_values(p), p->parameters);
+                        p->path, (int)lar_inverse_problem_values(p), p->parameters);
     return LAR_OK;
 }
 
-lar_status lar_fit_problem_read(const char *path, lar_fit_problem *problem, lar_error *error) {
+lar_status lar_inverse_problem_read(const char *path, lar_inverse_problem *problem,
+                                    lar_error *error) {
     lar_error unused;
     lar_bytes bytes;
     lar_yaml_tree tree;
@@ -291,32 +286,4 @@ lar_status lar_fit_problem_read(const char *path, lar_fit_problem *problem, lar_
     status = problem->path ? read_root(&r) : lar_scene_no_memory(&r.scene, strlen(path));
     lar_yaml_clear(&tree);
     return status ? status : check_counts(problem, error);
-}
-
-void lar_fit_problem_clear(lar_fit_problem *p) {
-    for (int j = 0; j < p->parameters; j++) {
-        free(p->parameter[j].material);
-        free(p->parameter[j].name);
-    }
-    for (int k = 0; k < p->experiments; k++) {
-        lar_fit_experiment *e = &p->experiment[k];
-        lar_model_destroy(e->model);
-        lar_embedded_surface_clear(&e->points);
-        free(e->name);
-        free(e->scene);
-        free(e->data);
-        free(e->row_line);
-        free(e->time);
-        free(e->along);
-        free(e->measured);
-    }
-    free(p->path);
-    free(p->title);
-    *p = (lar_fit_problem){0};
-}
-
-int32_t lar_fit_problem_values(const lar_fit_problem *p) {
-    int32_t values = 0;
-    for (int k = 0; k < p->experiments; k++) values += p->experiment[k].values;
-    return values;
 }

@@ -9,15 +9,15 @@
  * `scale: {force: 0.001}` by what its numbers are multiplied to be SI. Lengths that do not fit the
  * scene's body are refused as what they nearly always are: another unit.
  */
-#ifndef LAR_STUDY_FIT_MEASURED_H
-#define LAR_STUDY_FIT_MEASURED_H
+#ifndef LAR_STUDY_INVERSE_MEASURED_H
+#define LAR_STUDY_INVERSE_MEASURED_H
 
 #include "model/scene/scene.h"
-#include "study/fit/experiment.h"
+#include "study/inverse/problem.h"
 
 /* Into `e`, whose kind, files, model and `in_time` stand already. `node` is the experiment in the
  * file that `scene` reads. */
-lar_status lar_fit_measured_read(const lar_scene *scene, const lar_yaml *node,
-                                 lar_fit_experiment *e);
+lar_status lar_inverse_measured_read(const lar_scene *scene, const lar_yaml *node,
+                                     lar_inverse_experiment *e);
 
 #endif

@@ -1,13 +1,12 @@
-#include "study/fit/measured.h"
+#include "study/inverse/measured.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "study/fit/table.h"
+#include "study/inverse/table.h"
 
-/* ---- columns -----------------------------------------------------------------------------------
- */
+/* ---- columns --------------------------------------------------------------------------------- */
 
 static const char *const column_name[] = {
     "time", "displacement", "stretch", "depth", "force", "x", "y",
@@ -17,8 +16,8 @@ enum { TIME, DISPLACEMENT, STRETCH, DEPTH, FORCE, X, Y, Z, TO_X, TO_Y, TO_Z, COL
 typedef struct source {
     const lar_scene *scene;
     const lar_yaml *node;
-    lar_fit_experiment *e;
-    lar_fit_table table;
+    lar_inverse_experiment *e;
+    lar_inverse_table table;
     int column[COLUMNS]; /* of the table; -1: not there */
     double scale[COLUMNS];
 } source;
@@ -38,7 +37,7 @@ static lar_status find_columns(source *s) {
         if (!status && scale)
             status = lar_scene_number(s->scene, scale, "a number, for example 0.001", &s->scale[c]);
         if (status) break;
-        s->column[c] = lar_fit_table_find(&s->table, text);
+        s->column[c] = lar_inverse_table_find(&s->table, text);
         if (name && s->column[c] < 0)
             return lar_scene_fail(s->scene, name, LAR_ERROR_FORMAT, "%s:%d has no column %s",
                                   s->table.path, s->table.header_line, text);
@@ -52,14 +51,15 @@ static lar_status need(const source *s, int c) {
                     "%s:%d: the column %s is missing, which %s needs; name it so, or say columns: "
                     "{%s: NAME} in %s:%d",
                     s->table.path, s->table.header_line, column_name[c],
-                    lar_fit_kind_name[s->e->kind], column_name[c], s->scene->path, s->node->line);
+                    lar_inverse_kind_name[s->e->kind], column_name[c], s->scene->path,
+                    s->node->line);
 }
 
 /* A new array of a column's numbers. */
 static lar_status take(const source *s, int c, double **to) {
     *to = lar_calloc((size_t)s->table.rows, sizeof **to);
     if (!*to) return lar_scene_no_memory(s->scene, (size_t)s->table.rows);
-    return lar_fit_table_take(&s->table, s->column[c], s->scale[c], *to, s->scene->error);
+    return lar_inverse_table_take(&s->table, s->column[c], s->scale[c], *to, s->scene->error);
 }
 
 static lar_status take_vectors(const source *s, int first, double (**to)[3]) {
@@ -77,8 +77,7 @@ static lar_status take_vectors(const source *s, int first, double (**to)[3]) {
     return status;
 }
 
-/* ---- does it fit the body
- * ------------------------------------------------------------------------ */
+/* ---- does it fit the body -------------------------------------------------------------------- */
 
 static double body_size(const lar_model *m, int only_axis) {
     double longest = 0;
@@ -103,11 +102,10 @@ static lar_status check_length(const source *s, int32_t row, int c, double value
                     column_name[c], s->scene->path, s->node->line);
 }
 
-/* ---- curves
- * --------------------------------------------------------------------------------------- */
+/* ---- curves ---------------------------------------------------------------------------------- */
 
 static lar_status read_time(const source *s) {
-    lar_fit_experiment *e = s->e;
+    lar_inverse_experiment *e = s->e;
     const char *path = s->table.path;
     lar_status status = take(s, TIME, &e->time);
     for (int32_t i = 0; i < e->rows && !status; i++) {
@@ -126,13 +124,13 @@ static lar_status read_time(const source *s) {
 
 /* Displacement from stretch, with the length at rest: said, or the body's along that axis. */
 static lar_status read_stretch(const source *s) {
-    lar_fit_experiment *e = s->e;
+    lar_inverse_experiment *e = s->e;
     const lar_yaml *own = lar_yaml_get(s->node, "length");
     unsigned axes = e->model->move[e->move].axes;
     double length = body_size(e->model, axes == LAR_AXIS_X ? 0 : axes == LAR_AXIS_Y ? 1 : 2);
     lar_status status = own ? lar_scene_positive(s->scene, own, LAR_IN_METRES, &length) : LAR_OK;
     if (!status) status = take(s, STRETCH, &e->along);
-    double way = e->kind == LAR_FIT_COMPRESSION ? -1 : 1;
+    double way = e->kind == LAR_INVERSE_COMPRESSION ? -1 : 1;
     for (int32_t i = 0; i < e->rows && !status; i++) {
         if (!(e->along[i] > 0 && e->along[i] < 20))
             return lar_fail(s->scene->error, LAR_ERROR_MODEL,
@@ -145,8 +143,8 @@ static lar_status read_stretch(const source *s) {
 }
 
 static lar_status read_along(const source *s) {
-    lar_fit_experiment *e = s->e;
-    int c = e->kind == LAR_FIT_INDENTATION ? DEPTH : DISPLACEMENT;
+    lar_inverse_experiment *e = s->e;
+    int c = e->kind == LAR_INVERSE_INDENTATION ? DEPTH : DISPLACEMENT;
     if (c == DISPLACEMENT && s->column[DISPLACEMENT] >= 0 && s->column[STRETCH] >= 0)
         return lar_scene_fail(s->scene, s->node, LAR_ERROR_FORMAT,
                               "%s has displacement and stretch; leave one out", s->table.path);
@@ -163,8 +161,8 @@ static lar_status read_along(const source *s) {
 }
 
 static lar_status check_curve(const source *s) {
-    const lar_fit_experiment *e = s->e;
-    const lar_fit_table *t = &s->table;
+    const lar_inverse_experiment *e = s->e;
+    const lar_inverse_table *t = &s->table;
     if (e->in_time && !e->time)
         return lar_fail(s->scene->error, LAR_ERROR_MODEL,
                         "%s:%d: the column time is missing, and a material of %s is viscous: its "
@@ -185,7 +183,7 @@ static lar_status check_curve(const source *s) {
 }
 
 static lar_status read_curve(source *s) {
-    lar_fit_experiment *e = s->e;
+    lar_inverse_experiment *e = s->e;
     e->values = e->rows;
     lar_status status = s->column[TIME] >= 0 ? read_time(s) : LAR_OK;
     if (!status) status = read_along(s);
@@ -194,11 +192,10 @@ static lar_status read_curve(source *s) {
     return status ? status : check_curve(s);
 }
 
-/* ---- points
- * ---------------------------------------------------------------------------------------- */
+/* ---- points ---------------------------------------------------------------------------------- */
 
 static lar_status read_markers(source *s) {
-    lar_fit_experiment *e = s->e;
+    lar_inverse_experiment *e = s->e;
     double(*from)[3] = NULL, (*to)[3] = NULL;
     lar_error own = {0};
     lar_triangles at = {.source = lar_strdup(s->table.path), .vertex_count = e->rows};
@@ -227,7 +224,7 @@ static lar_status read_markers(source *s) {
 }
 
 static lar_status read_surface(source *s) {
-    lar_fit_experiment *e = s->e;
+    lar_inverse_experiment *e = s->e;
     double(*at)[3] = NULL;
     lar_status status = take_vectors(s, X, &at);
     e->points.surface = (lar_triangles){.vertex = at, .vertex_count = e->rows};
@@ -247,17 +244,16 @@ static lar_status read_surface(source *s) {
     return status;
 }
 
-/* ---- errors
- * ------------------------------------------------------------------------------------------ */
+/* ---- errors ---------------------------------------------------------------------------------- */
 
 /* The scale of what is measured: the largest number; of a surface, whose distances are to be zero,
  * a hundredth of the body. */
 static lar_status set_noise(const source *s) {
     static const double SHARE = 0.01;
-    lar_fit_experiment *e = s->e;
+    lar_inverse_experiment *e = s->e;
     const lar_yaml *own = lar_yaml_get(s->node, "noise");
     for (int32_t i = 0; i < e->values; i++) e->largest = fmax(e->largest, fabs(e->measured[i]));
-    if (e->kind == LAR_FIT_SURFACE) e->largest = SHARE * body_size(e->model, -1);
+    if (e->kind == LAR_INVERSE_SURFACE) e->largest = SHARE * body_size(e->model, -1);
     if (!(e->largest > 0))
         return lar_fail(s->scene->error, LAR_ERROR_MODEL,
                         "%s: all that is measured is zero, which tells nothing", s->table.path);
@@ -267,21 +263,21 @@ static lar_status set_noise(const source *s) {
                : LAR_OK;
 }
 
-lar_status lar_fit_measured_read(const lar_scene *scene, const lar_yaml *node,
-                                 lar_fit_experiment *e) {
+lar_status lar_inverse_measured_read(const lar_scene *scene, const lar_yaml *node,
+                                     lar_inverse_experiment *e) {
     source s = {.scene = scene, .node = node, .e = e};
-    lar_status status = lar_fit_table_read(e->data, &s.table, scene->error);
+    lar_status status = lar_inverse_table_read(e->data, &s.table, scene->error);
     e->rows = s.table.rows;
     if (!status) status = find_columns(&s);
-    if (!status && e->kind == LAR_FIT_MARKERS)
+    if (!status && e->kind == LAR_INVERSE_MARKERS)
         status = read_markers(&s);
-    else if (!status && e->kind == LAR_FIT_SURFACE)
+    else if (!status && e->kind == LAR_INVERSE_SURFACE)
         status = read_surface(&s);
     else if (!status)
         status = read_curve(&s);
     if (!status) status = set_noise(&s);
     e->row_line = s.table.line;
     s.table.line = NULL;
-    lar_fit_table_clear(&s.table);
+    lar_inverse_table_clear(&s.table);
     return status;
 }

@@ -1,18 +1,17 @@
-#include "study/fit/fit.h"
+#include "study/inverse/inverse.h"
 
 #include <math.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/clock.h"
 #include "base/memory.h"
-#include "study/fit/parameters.h"
-#include "study/fit/profile.h"
-#include "study/fit/residuals.h"
+#include "study/inverse/parameters.h"
+#include "study/inverse/profile.h"
+#include "study/inverse/residuals.h"
 
-enum { P = LAR_FIT_PARAMETERS_MAX };
+enum { P = LAR_INVERSE_PARAMETERS_MAX };
 
 /* How exact a run is, of the largest measured number: the least deviation that is believed. */
 static const double EXACT = 1e-4;
@@ -21,16 +20,7 @@ static const double WIDE = 0.69; /* ln 2 */
 /* Nearer to a bound than this part of the way between both is at it. */
 static const double AT_BOUND = 2e-3;
 
-void lar_fit_note(lar_fit_result *result, const char *format, ...) {
-    if (result->notes == LAR_FIT_NOTES_MAX) return;
-    va_list args;
-    va_start(args, format);
-    vsnprintf(result->note[result->notes++], LAR_FIT_NOTE, format, args);
-    va_end(args);
-}
-
-/* ---- statistics
- * ---------------------------------------------------------------------------------- */
+/* ---- statistics ------------------------------------------------------------------------------ */
 
 /* With T = sqrt(n) tan(a) the density of Student is cos(a)^(n - 1), up to a constant. */
 static double area_to(double angle, int n) {
@@ -82,24 +72,23 @@ static void eigen(int n, double a[P][P], double v[P][P]) {
 }
 
 /* s: the root of what is left for each degree of freedom, not less than runs are exact. */
-static double deviation_of(const lar_fit_solver *s) {
-    const lar_fit_problem *p = s->problem;
+static double deviation_of(const lar_inverse_solver *s) {
+    const lar_inverse_problem *p = s->problem;
     int freedom = s->values - s->parameters;
     double exact = 0;
     for (int k = 0; k < p->experiments; k++) {
-        const lar_fit_experiment *e = &p->experiment[k];
+        const lar_inverse_experiment *e = &p->experiment[k];
         exact += e->values * pow(EXACT * e->largest / e->noise, 2);
     }
     if (freedom <= 0) return NAN;
     return sqrt(fmax(s->best_squares / freedom, exact / s->values));
 }
 
-/* ---- the linear picture
- * ---------------------------------------------------------------------------- */
+/* ---- the linear picture ---------------------------------------------------------------------- */
 
 /* A direction that the data hardly see: which parameters share it. */
-static void note_direction(const lar_fit_problem *p, double v[P][P], int d, double width,
-                           lar_fit_result *result) {
+static void note_direction(const lar_inverse_problem *p, double v[P][P], int d, double width,
+                           lar_inverse_result *result) {
     static const double SHARE = 0.3;
     char names[200] = "";
     size_t used = 0;
@@ -112,16 +101,18 @@ static void note_direction(const lar_fit_problem *p, double v[P][P], int d, doub
         count++;
     }
     if (count > 1)
-        lar_fit_note(result,
-                     "these data cannot tell apart: %s; they can change together by a factor of "
-                     "%.3g and more unseen",
-                     names, exp(fmin(width, 20)));
+        lar_inverse_note(
+            result,
+            "these data cannot tell apart: %s; they can change together by a factor of "
+            "%.3g and more unseen",
+            names, exp(fmin(width, 20)));
 }
 
 /* Covariances, intervals, correlations and the directions that are not seen. */
-static void linearise(const lar_fit_solver *s, const double *jacobian, lar_fit_result *result) {
+static void linearise(const lar_inverse_solver *s, const double *jacobian,
+                      lar_inverse_result *result) {
     static const double UNSEEN = 1e-12; /* of the largest eigenvalue: rounding */
-    const lar_fit_problem *p = s->problem;
+    const lar_inverse_problem *p = s->problem;
     int n = s->parameters, m = s->values;
     double a[P][P], v[P][P], covariance[P][P] = {{0}}, largest = 0;
     for (int i = 0; i < n; i++)
@@ -142,54 +133,56 @@ static void linearise(const lar_fit_solver *s, const double *jacobian, lar_fit_r
     }
     for (int i = 0; i < n; i++) {
         double half = t * sqrt(covariance[i][i]), u = s->best_u[i];
-        lar_fit_estimate *e = &result->estimate[i];
-        const lar_fit_parameter *own = &p->parameter[i];
-        double range = lar_fit_u_high(own) - lar_fit_u_low(own);
-        e->low = m > n ? lar_fit_value(own, u - half) : NAN;
-        e->high = m > n ? lar_fit_value(own, u + half) : NAN;
-        e->told = half < fmin(WIDE, 0.25 * range) && u - lar_fit_u_low(own) > AT_BOUND * range &&
-                  lar_fit_u_high(own) - u > AT_BOUND * range;
+        lar_inverse_estimate *e = &result->estimate[i];
+        const lar_inverse_parameter *own = &p->parameter[i];
+        double range = lar_inverse_u_high(own) - lar_inverse_u_low(own);
+        e->low = m > n ? lar_inverse_value(own, u - half) : NAN;
+        e->high = m > n ? lar_inverse_value(own, u + half) : NAN;
+        e->told = half < fmin(WIDE, 0.25 * range) &&
+                  u - lar_inverse_u_low(own) > AT_BOUND * range &&
+                  lar_inverse_u_high(own) - u > AT_BOUND * range;
         for (int j = 0; j < n; j++)
             result->correlation[i][j] =
                 i == j ? 1 : covariance[i][j] / sqrt(covariance[i][i] * covariance[j][j]);
     }
 }
 
-/* ---- what cannot be told
- * ------------------------------------------------------------------------------ */
+/* ---- what cannot be told --------------------------------------------------------------------- */
 
-static void note_open(const lar_fit_parameter *p, const lar_fit_estimate *e, bool low, bool high,
-                      lar_fit_result *result) {
+static void note_open(const lar_inverse_parameter *p, const lar_inverse_estimate *e, bool low,
+                      bool high, lar_inverse_result *result) {
     if (low && high)
-        lar_fit_note(result,
-                     "%s of %s cannot be told from these data: everything between its bounds, %.4g "
-                     "to %.4g, fits as well; measure something else that depends on it, or fix it",
-                     p->name, p->material, p->low, p->high);
+        lar_inverse_note(
+            result,
+            "%s of %s cannot be told from these data: everything between its bounds, %.4g "
+            "to %.4g, fits as well; measure something else that depends on it, or fix it",
+            p->name, p->material, p->low, p->high);
     else if (high)
-        lar_fit_note(result,
-                     "%s of %s cannot be told from these data: everything from %.4g up to its "
-                     "bound %.4g fits as well",
-                     p->name, p->material, e->low, p->high);
+        lar_inverse_note(result,
+                         "%s of %s cannot be told from these data: everything from %.4g up to its "
+                         "bound %.4g fits as well",
+                         p->name, p->material, e->low, p->high);
     else if (low)
-        lar_fit_note(result,
-                     "%s of %s cannot be told from these data: everything from its bound %.4g up "
-                     "to %.4g fits as well",
-                     p->name, p->material, p->low, e->high);
+        lar_inverse_note(
+            result,
+            "%s of %s cannot be told from these data: everything from its bound %.4g up "
+            "to %.4g fits as well",
+            p->name, p->material, p->low, e->high);
 }
 
 /* Parameters whose interval is wide or ends at a bound. */
-static lar_status profile_suspects(const lar_fit_solver *s, lar_fit_result *result) {
-    const lar_fit_problem *p = s->problem;
+static lar_status profile_suspects(const lar_inverse_solver *s, lar_inverse_result *result) {
+    const lar_inverse_problem *p = s->problem;
     int freedom = s->values - s->parameters;
     if (freedom <= 0) return LAR_OK;
     double grown = lar_student_95(freedom) * result->deviation;
     lar_status status = LAR_OK;
-    for (int j = 0; j < s->parameters && !status && !lar_fit_stopped(s); j++) {
-        lar_fit_estimate *e = &result->estimate[j];
+    for (int j = 0; j < s->parameters && !status && !lar_inverse_stopped(s); j++) {
+        lar_inverse_estimate *e = &result->estimate[j];
         bool low, high;
         if (e->told) continue;
         status =
-            lar_fit_profile(s, j, grown * grown, &e->low, &e->high, &low, &high, &result->runs);
+            lar_inverse_profile(s, j, grown * grown, &e->low, &e->high, &low, &high, &result->runs);
         if (status) break;
         e->profiled = true;
         e->told = !low && !high;
@@ -198,11 +191,10 @@ static lar_status profile_suspects(const lar_fit_solver *s, lar_fit_result *resu
     return status;
 }
 
-/* ---- the guess
- * ------------------------------------------------------------------------------------------ */
+/* ---- the guess ------------------------------------------------------------------------------- */
 
 /* By how much all that the model answers would have to grow to fit, least squares. */
-static double ratio_of(const lar_fit_experiment *e, const double *model) {
+static double ratio_of(const lar_inverse_experiment *e, const double *model) {
     double up = 0, down = 0;
     for (int32_t i = 0; i < e->values; i++) {
         up += model[i] * e->measured[i];
@@ -212,13 +204,13 @@ static double ratio_of(const lar_fit_experiment *e, const double *model) {
 }
 
 /* Forces that are far from those of the guess are of another unit, or of another sign. */
-static lar_status check_units(const lar_fit_solver *s, lar_error *error) {
+static lar_status check_units(const lar_inverse_solver *s, lar_error *error) {
     static const double FAR = 300;
-    const lar_fit_problem *p = s->problem;
+    const lar_inverse_problem *p = s->problem;
     const double *model = s->best_model;
     for (int k = 0; k < p->experiments; model += p->experiment[k++].values) {
-        const lar_fit_experiment *e = &p->experiment[k];
-        if (e->kind > LAR_FIT_INDENTATION) continue;
+        const lar_inverse_experiment *e = &p->experiment[k];
+        if (e->kind > LAR_INVERSE_INDENTATION) continue;
         double ratio = ratio_of(e, model);
         if (ratio < 0)
             return lar_fail(error, LAR_ERROR_MODEL,
@@ -236,10 +228,10 @@ static lar_status check_units(const lar_fit_solver *s, lar_error *error) {
     return LAR_OK;
 }
 
-static lar_status try_guess(lar_fit_solver *s, lar_error *error) {
+static lar_status try_guess(lar_inverse_solver *s, lar_error *error) {
     double *r = lar_calloc((size_t)s->values, sizeof *r);
     if (!r) return lar_fail_memory(error, (size_t)s->values, s->problem->path);
-    lar_status status = lar_fit_evaluate(s, s->start, r);
+    lar_status status = lar_inverse_evaluate(s, s->start, r);
     free(r);
     if (status == LAR_ERROR_UNSTABLE || status == LAR_ERROR_MODEL) {
         lar_error why = *error;
@@ -251,11 +243,9 @@ static lar_status try_guess(lar_fit_solver *s, lar_error *error) {
     return status ? status : check_units(s, error);
 }
 
-/* ---- the fit
- * ------------------------------------------------------------------------------------------------
- */
+/* ---- the fit --------------------------------------------------------------------------------- */
 
-static lar_status know(lar_fit_solver *s, lar_fit_result *result) {
+static lar_status know(lar_inverse_solver *s, lar_inverse_result *result) {
     size_t values = (size_t)s->values;
     double *r = lar_calloc(values, sizeof *r);
     double *jacobian = lar_calloc((size_t)s->parameters * values, sizeof *jacobian);
@@ -263,8 +253,8 @@ static lar_status know(lar_fit_solver *s, lar_fit_result *result) {
     memcpy(u, s->best_u, sizeof u);
     s->doing = "looking how well the data tell";
     lar_status status =
-        r && jacobian ? lar_fit_evaluate(s, u, r) : lar_fail_memory(s->error, values, "a fit");
-    if (!status) status = lar_fit_differentiate(s, u, r, jacobian);
+        r && jacobian ? lar_inverse_evaluate(s, u, r) : lar_fail_memory(s->error, values, "a fit");
+    if (!status) status = lar_inverse_differentiate(s, u, r, jacobian);
     if (!status) {
         result->deviation = deviation_of(s);
         linearise(s, jacobian, result);
@@ -275,47 +265,43 @@ static lar_status know(lar_fit_solver *s, lar_fit_result *result) {
     return status;
 }
 
-static lar_status take(const lar_fit_solver *s, lar_fit_result *result) {
+static lar_status take(const lar_inverse_solver *s, lar_inverse_result *result) {
     result->model = lar_calloc((size_t)s->values, sizeof *result->model);
     if (!result->model) return lar_fail_memory(s->error, (size_t)s->values, s->problem->path);
     memcpy(result->model, s->best_model, (size_t)s->values * sizeof *result->model);
     for (int j = 0; j < s->parameters; j++)
-        result->estimate[j] =
-            (lar_fit_estimate){.value = lar_fit_value(&s->problem->parameter[j], s->best_u[j]),
-                               .low = NAN,
-                               .high = NAN};
+        result->estimate[j] = (lar_inverse_estimate){
+            .value = lar_inverse_value(&s->problem->parameter[j], s->best_u[j]),
+            .low = NAN,
+            .high = NAN};
     return LAR_OK;
 }
 
-lar_status lar_fit_solve(const lar_fit_problem *problem, const lar_fit_options *options,
-                         lar_fit_result *result, lar_error *error) {
-    lar_fit_solver s;
+lar_status lar_inverse_solve(const lar_inverse_problem *problem, const lar_inverse_options *options,
+                             lar_inverse_result *result, lar_error *error) {
+    lar_inverse_solver s;
     lar_error unused;
     if (!error) error = &unused;
-    *result = (lar_fit_result){.parameters = problem->parameters, .deviation = NAN};
-    lar_status status = lar_fit_solver_create(problem, options, &s, error);
+    *result = (lar_inverse_result){.parameters = problem->parameters, .deviation = NAN};
+    lar_status status = lar_inverse_solver_create(problem, options, &s, error);
     result->values = s.values;
-    if (!status && lar_fit_available()) status = try_guess(&s, error);
-    if (!status) status = lar_fit_minimise(&s, &result->converged);
+    if (!status && lar_inverse_available()) status = try_guess(&s, error);
+    if (!status) status = lar_inverse_minimise(&s, &result->converged);
     if (!status) status = take(&s, result);
-    if (!status && !lar_fit_stopped(&s)) {
+    if (!status && !lar_inverse_stopped(&s)) {
         if (!result->converged)
-            lar_fit_note(result, "the squares were still falling when the evaluations were used "
-                                 "up; begin again from here, or free fewer parameters");
+            lar_inverse_note(result,
+                             "the squares were still falling when the evaluations were used "
+                             "up; begin again from here, or free fewer parameters");
         status = know(&s, result);
     }
-    result->interrupted = lar_fit_stopped(&s);
+    result->interrupted = lar_inverse_stopped(&s);
     if (result->interrupted && result->model) status = LAR_OK;
-    if (!status) lar_fit_look_at_residuals(problem, result);
+    if (!status) lar_inverse_look_at_residuals(problem, result);
     if (!status && isnan(result->deviation) && !result->interrupted)
-        lar_fit_note(result, "as many parameters as measured numbers: there are no intervals");
+        lar_inverse_note(result, "as many parameters as measured numbers: there are no intervals");
     result->runs += s.runs;
     result->seconds = lar_clock_seconds() - s.begin;
-    lar_fit_solver_clear(&s);
+    lar_inverse_solver_clear(&s);
     return status;
-}
-
-void lar_fit_result_clear(lar_fit_result *result) {
-    free(result->model);
-    *result = (lar_fit_result){0};
 }

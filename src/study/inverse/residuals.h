@@ -5,12 +5,12 @@
  * 2 / sqrt(n). A law that fails has another shape than the tissue; where it is too soft or too
  * stiff is said in a note.
  */
-#ifndef LAR_STUDY_FIT_RESIDUALS_H
-#define LAR_STUDY_FIT_RESIDUALS_H
+#ifndef LAR_STUDY_INVERSE_RESIDUALS_H
+#define LAR_STUDY_INVERSE_RESIDUALS_H
 
-#include "study/fit/fit.h"
+#include "study/inverse/result.h"
 
 /* Fills result->residuals from result->model, and adds notes. */
-void lar_fit_look_at_residuals(const lar_fit_problem *problem, lar_fit_result *result);
+void lar_inverse_look_at_residuals(const lar_inverse_problem *problem, lar_inverse_result *result);
 
 #endif

@@ -1,4 +1,4 @@
-/* What is fitted to what: the file of `lariat fit` (docs/formats.md), read and checked.
+/* What is asked: parameters of materials, and experiments in which they show.
  *
  *     parameters          of materials, by name, with bounds and a first guess
  *        |
@@ -6,38 +6,38 @@
  *     experiment 2        the same parameters in another scene
  *
  * Of every experiment the model stands here as its scene has it. A run with other parameters takes
- * a shallow copy with materials of its own (study/fit/forward.h), so that mesh and sets are there
- * once, however many runs go at a time.
+ * a shallow copy with materials of its own (study/inverse/forward.h), so that mesh and sets are
+ * there once, however many runs go at a time. The file is read in study/inverse/experiment.h.
  */
-#ifndef LAR_STUDY_FIT_EXPERIMENT_H
-#define LAR_STUDY_FIT_EXPERIMENT_H
+#ifndef LAR_STUDY_INVERSE_PROBLEM_H
+#define LAR_STUDY_INVERSE_PROBLEM_H
 
 #include <stdbool.h>
 
 #include "model/model.h"
 
-enum { LAR_FIT_PARAMETERS_MAX = 12, LAR_FIT_EXPERIMENTS_MAX = 16 };
+enum { LAR_INVERSE_PARAMETERS_MAX = 12, LAR_INVERSE_EXPERIMENTS_MAX = 16 };
 
-typedef enum lar_fit_kind {
-    LAR_FIT_TENSION,     /* force of a moved support over its displacement or the stretch */
-    LAR_FIT_COMPRESSION, /* the same, shorter instead of longer */
-    LAR_FIT_INDENTATION, /* force on a sphere over its depth */
-    LAR_FIT_MARKERS,     /* where points of the body have gone */
-    LAR_FIT_SURFACE,     /* points that lie on the deformed surface */
-    LAR_FIT_KINDS
-} lar_fit_kind;
+typedef enum lar_inverse_kind {
+    LAR_INVERSE_TENSION,     /* force of a moved support over its displacement or the stretch */
+    LAR_INVERSE_COMPRESSION, /* the same, shorter instead of longer */
+    LAR_INVERSE_INDENTATION, /* force on a sphere over its depth */
+    LAR_INVERSE_MARKERS,     /* where points of the body have gone */
+    LAR_INVERSE_SURFACE,     /* points that lie on the deformed surface */
+    LAR_INVERSE_KINDS
+} lar_inverse_kind;
 
-extern const char *const lar_fit_kind_name[LAR_FIT_KINDS];
+extern const char *const lar_inverse_kind_name[LAR_INVERSE_KINDS];
 
-typedef struct lar_fit_parameter {
+typedef struct lar_inverse_parameter {
     char *material, *name; /* the second as in scenes, or g0, g1, time1, ... */
     int line;              /* of the file */
     double guess, low, high;
     bool log; /* positive bounds: what counts are ratios */
-} lar_fit_parameter;
+} lar_inverse_parameter;
 
-typedef struct lar_fit_experiment {
-    lar_fit_kind kind;
+typedef struct lar_inverse_experiment {
+    lar_inverse_kind kind;
     int line; /* of the file */
     char *name, *scene, *data;
     lar_model *model;
@@ -52,20 +52,18 @@ typedef struct lar_fit_experiment {
     double noise;        /* standard deviation of a measured number, or a hundredth of `largest` */
     int move, tool;      /* of the model: what is driven; -1: nothing */
     double direction[3]; /* into the tissue, of a tool */
-} lar_fit_experiment;
+} lar_inverse_experiment;
 
-typedef struct lar_fit_problem {
+typedef struct lar_inverse_problem {
     char *path, *title;
     int parameters, experiments;
-    lar_fit_parameter parameter[LAR_FIT_PARAMETERS_MAX];
-    lar_fit_experiment experiment[LAR_FIT_EXPERIMENTS_MAX];
-} lar_fit_problem;
+    lar_inverse_parameter parameter[LAR_INVERSE_PARAMETERS_MAX];
+    lar_inverse_experiment experiment[LAR_INVERSE_EXPERIMENTS_MAX];
+} lar_inverse_problem;
 
-/* Into a zeroed one; the caller clears in any case. */
-lar_status lar_fit_problem_read(const char *path, lar_fit_problem *problem, lar_error *error);
-void lar_fit_problem_clear(lar_fit_problem *problem); /* idempotent */
+void lar_inverse_problem_clear(lar_inverse_problem *problem); /* idempotent */
 
 /* Measured numbers of all experiments together. */
-int32_t lar_fit_problem_values(const lar_fit_problem *problem);
+int32_t lar_inverse_problem_values(const lar_inverse_problem *problem);
 
 #endif
