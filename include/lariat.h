@@ -1167,8 +1167,7 @@ LAR_API lar_status lar_session_replay(lar_session *session, const char *path, la
  * kept are computed as fast as it goes. */
 LAR_API void lar_session_seek(lar_session *session, double seconds);
 
-/* ---- the viewer's server ----------------------------------------------------------------------
- */
+/* ---- the viewer's server --------------------------------------------------------------------- */
 
 typedef struct lar_server lar_server;
 

@@ -90,8 +90,7 @@ static const changes *changes_of(PyObject *me) {
 /* Ends a call that took `me`. */
 static PyObject *done(PyObject *me, const changes *c, lar_status status, const lar_error *error) {
     c->give(me);
-    if (status) return python_raise(error);
-    Py_RETURN_NONE;
+    return python_answer(status, error);
 }
 
 /* ---- the calls ------------------------------------------------------------------------------ */

@@ -74,6 +74,11 @@ PyObject *python_raise(const lar_error *error) {
     return NULL;
 }
 
+PyObject *python_answer(lar_status status, const lar_error *error) {
+    if (status) return python_raise(error);
+    Py_RETURN_NONE;
+}
+
 static bool refuse(PyObject *class, const char *format, va_list list) {
     PyObject *message = PyUnicode_FromFormatV(format, list);
     if (message) PyErr_SetObject(class, message);

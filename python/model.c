@@ -271,8 +271,7 @@ static PyGetSetDef model_properties[] = {
      "list of str: what the file asks for and Lariat leaves out. Read them.", NULL},
     {"positions", get_positions, NULL,
      "memoryview, float64 [nodes, 3], read only: places of the nodes at rest [m]. The library's "
-     "own "
-     "memory: no copy.",
+     "own memory: no copy.",
      NULL},
     {"hexahedra", get_hexahedra, NULL,
      "memoryview, int32 [elements, 8]: nodes of each element. A copy.", NULL},
@@ -284,8 +283,8 @@ static PyGetSetDef model_properties[] = {
      NULL},
     {"embedded", get_embedded, NULL,
      "None, or the fine surface for display, a dict of memoryviews, read only, no copies: "
-     "triangles "
-     "int32 [t, 3], rest float64 [v, 3] in metres, elements int32 [v], weights float32 [v, 8].",
+     "triangles int32 [t, 3], rest float64 [v, 3] in metres, elements int32 [v], weights float32 "
+     "[v, 8].",
      NULL},
     {NULL, NULL, NULL, NULL, NULL}};
 

@@ -81,8 +81,8 @@ static PyObject *checkpoint_info(PyObject *module, PyObject *source) {
 static PyMethodDef functions[] = {
     {"write_demo", demo, METH_O,
      "write_demo(folder)\n--\n\nWrites the demonstration organ into a folder: uterus.vtu and its "
-     "scenes "
-     "uterus.yaml (pulled by a force) and uterus_live.yaml (to take hold of). Returns the folder."},
+     "scenes uterus.yaml (pulled by a force) and uterus_live.yaml (to take hold of). Returns the "
+     "folder."},
     {"checkpoint_info", checkpoint_info, METH_O,
      "checkpoint_info(path)\n--\n\ndict of a checkpoint: element, nodes, elements, tools, spares, "
      "time_step [s], step. A simulation that shall take it up needs the same."},

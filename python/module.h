@@ -111,6 +111,8 @@ extern unsigned python_generation;
 extern PyObject *python_error_argument, *python_error_state;
 
 PyObject *python_raise(const lar_error *error);
+/* What a call returns that has nothing to say: None, or as python_raise. */
+PyObject *python_answer(lar_status status, const lar_error *error);
 /* An ArgumentError (a ValueError) or a TypeError: PyErr_Format's formats. */
 bool python_refuse(const char *format, ...);
 bool python_refuse_type(const char *format, ...);

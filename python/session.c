@@ -298,20 +298,16 @@ static PyMethodDef session_methods[] = {
      "goes."},
     {"status", status, METH_NOARGS,
      "status($self)\n--\n\ndict: state (playing, paused, stopped), step, time [s], times of steps "
-     "and "
-     "ticks [s], misses, real_time_factor, slow_motion, recoveries, message ... "
+     "and ticks [s], misses, real_time_factor, slow_motion, recoveries, message ... "
      "(lar_session_status)."},
     {"view", FUNCTION(python_view_open), METH_VARARGS | METH_KEYWORDS,
      "view($self, *, open=True, address=None, port=0, token=None, watch_token=None, folder=None, "
      "scan=None, save_folder=None)\n--\n\nServes the viewer and returns a View; open: in the "
-     "browser, "
-     "too. The last value of a notebook's cell shows it there. address other than 127.0.0.1 needs "
-     "a "
-     "token."},
+     "browser, too. The last value of a notebook's cell shows it there. address other than "
+     "127.0.0.1 needs a token."},
     {"close", session_close, METH_NOARGS,
      "close($self)\n--\n\nEnds the thread within a tick, closes the view, devices and the "
-     "recording. "
-     "The simulation may be used again."},
+     "recording. The simulation may be used again."},
     {"__enter__", session_enter, METH_NOARGS, NULL},
     {"__exit__", session_exit, METH_VARARGS, NULL},
     {NULL, NULL, 0, NULL}};

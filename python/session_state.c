@@ -5,8 +5,7 @@
 static PyObject *done(python_session *self, lar_status status, const lar_error *error) {
     python_asked_forget(self->asked);
     python_session_give(self);
-    if (status) return python_raise(error);
-    Py_RETURN_NONE;
+    return python_answer(status, error);
 }
 
 static PyObject *reset(PyObject *me, PyObject *nothing) {
@@ -147,8 +146,7 @@ PyMethodDef python_session_state_methods[] = {
     {"reset", reset, METH_NOARGS, "reset($self)\n--\n\nBack to the state at the start."},
     {"save", save, METH_O,
      "save($self, target)\n--\n\nSaves the state at the end of the tick: a checkpoint at a path, "
-     "or "
-     "into a Saved that Simulation.save made."},
+     "or into a Saved that Simulation.save made."},
     {"load", load, METH_O,
      "load($self, source)\n--\n\nTakes up a checkpoint at a path, or a Saved."},
     {"record", record, METH_O,
@@ -160,8 +158,6 @@ PyMethodDef python_session_state_methods[] = {
      "seek($self, seconds)\n--\n\nGoes to a moment of what is being played [s]."},
     {"snapshot", FUNCTION(snapshot), METH_VARARGS | METH_KEYWORDS,
      "snapshot($self, timeout=5.0)\n--\n\nAll nodes at the end of a tick: a dict with step, time "
-     "[s], "
-     "hash, displacements (memoryview, float64 [nodes, 3], read only, the snapshot's own memory) "
-     "and "
-     "kinetic energy [J]. PeerError when none came within so many seconds."},
+     "[s], hash, displacements (memoryview, float64 [nodes, 3], read only, the snapshot's own "
+     "memory) and kinetic energy [J]. PeerError when none came within so many seconds."},
     {NULL, NULL, 0, NULL}};

@@ -11,11 +11,6 @@ static lar_session *take(PyObject *me, PyObject *tool, int32_t *index, const cha
     return session ? python_session_take((python_session *)me, call) : NULL;
 }
 
-static PyObject *answer(lar_status status, const lar_error *error) {
-    if (status) return python_raise(error);
-    Py_RETURN_NONE;
-}
-
 static PyObject *get_tools(PyObject *me, void *unused) {
     (void)unused;
     lar_tool_info info;
@@ -80,7 +75,7 @@ static PyObject *release(PyObject *me, PyObject *tool) {
     PYTHON_UNLOCKED(status = lar_session_release(session, index, &error));
     python_session_give((python_session *)me);
     if (!status) ((python_session *)me)->asked[index].opening = 1;
-    return answer(status, &error);
+    return python_answer(status, &error);
 }
 
 static bool force_of(PyObject *me, PyObject *tool, const char *call, lar_tool_pose *pose,
@@ -178,7 +173,7 @@ static PyObject *remove_tool(PyObject *me, PyObject *tool) {
     if (!session) return NULL;
     PYTHON_UNLOCKED(status = lar_session_remove_tool(session, index, &error));
     python_session_give((python_session *)me);
-    return answer(status, &error);
+    return python_answer(status, &error);
 }
 
 /* ---- devices -------------------------------------------------------------------------------- */
@@ -196,7 +191,7 @@ static PyObject *attach(PyObject *me, PyObject *args, PyObject *keywords) {
     lar_status status;
     PYTHON_UNLOCKED(status = lar_session_attach(session, index, device, &error));
     python_session_give((python_session *)me);
-    return answer(status, &error);
+    return python_answer(status, &error);
 }
 
 static PyObject *device(PyObject *me, PyObject *tool) {
@@ -219,9 +214,8 @@ static PyObject *device(PyObject *me, PyObject *tool) {
 #define FUNCTION(f) ((PyCFunction)(void (*)(void))(f))
 PyMethodDef python_session_tool_methods[] = {
     {"tool_move", FUNCTION(tool_move), METH_VARARGS | METH_KEYWORDS,
-     "tool_move($self, tool, position, *, orientation=None, opening=None)\n--\n\nWhere the "
-     "tool's hand or device is now; the tool follows, no faster than tool_speed. position: of the "
-     "tip "
+     "tool_move($self, tool, position, *, orientation=None, opening=None)\n--\n\nWhere the tool's "
+     "hand or device is now; the tool follows, no faster than tool_speed. position: of the tip "
      "[m]; orientation: unit quaternion w, x, y, z."},
     {"grasp", FUNCTION(grasp), METH_VARARGS | METH_KEYWORDS,
      "grasp($self, tool, point=None)\n--\n\nTakes hold between two ticks; a hand at `point` [m]. "
@@ -234,12 +228,10 @@ PyMethodDef python_session_tool_methods[] = {
      "wrench($self, tool)\n--\n\nForce [N] and torque [N m] of the last tick, six floats."},
     {"tool_touches", tool_touches, METH_O,
      "tool_touches($self, tool)\n--\n\nlist of dicts, as Simulation.tool_touches, between two "
-     "ticks; "
-     "1024 at most."},
+     "ticks; 1024 at most."},
     {"tool_load", tool_load, METH_O,
      "tool_load($self, tool)\n--\n\ndict: what it had to bear since the session was opened. force "
-     "[N], "
-     "limit [N], reached, grasp_force [N]."},
+     "[N], limit [N], reached, grasp_force [N]."},
     {"force_history", FUNCTION(force_history), METH_VARARGS | METH_KEYWORDS,
      "force_history($self, tool, after=0)\n--\n\nForces [N], one for each tick after tick `after`, "
      "oldest first: (memoryview float32 [k, 3], number of the last tick). 8192 ticks are kept."},
@@ -251,8 +243,7 @@ PyMethodDef python_session_tool_methods[] = {
      "\"udp:HOST:PORT\" or \"gamepad:N\" (docs/devices.md)."},
     {"device", device, METH_O,
      "device($self, tool)\n--\n\nNone, or a dict: name, port, connected, received, answered, "
-     "refused, "
-     "late, lost, timeouts, answer times [s]."},
+     "refused, late, lost, timeouts, answer times [s]."},
     {NULL, NULL, 0, NULL}};
 PyGetSetDef python_session_tool_properties[] = {
     {"tools", get_tools, NULL, "list of dicts, as Simulation.tools.", NULL},

@@ -389,8 +389,7 @@ static PyGetSetDef simulation_properties[] = {
     {"options", get_options, NULL, "dict: the keyword arguments that it was made with.", NULL},
     {"info", get_info, NULL,
      "dict: element, tools, spares, time_step [s], processors, threads, isa, step_parts (parts of "
-     "a "
-     "step now), divided_steps, most_parts.",
+     "a step now), divided_steps, most_parts.",
      NULL},
     {NULL, NULL, NULL, NULL, NULL}};
 

@@ -132,8 +132,7 @@ static PyObject *reset(PyObject *me, PyObject *nothing) {
     PYTHON_UNLOCKED(status = lar_simulation_reset(simulation, &error));
     python_asked_forget(self->asked);
     python_simulation_give(self);
-    if (status) return python_raise(&error);
-    Py_RETURN_NONE;
+    return python_answer(status, &error);
 }
 
 /* To or from a file. */
@@ -152,8 +151,7 @@ static PyObject *on_disk(python_simulation *self, PyObject *target, bool save) {
     if (!save) python_asked_forget(self->asked);
     python_simulation_give(self);
     Py_DECREF(path);
-    if (status) return python_raise(&error);
-    Py_RETURN_NONE;
+    return python_answer(status, &error);
 }
 
 static bool take_saved(python_saved *saved, const char *call) {
@@ -243,20 +241,17 @@ PyMethodDef python_state_methods[] = {
      "number of threads and instruction set; `lariat run` prints it in hexadecimal."},
     {"energies", energies, METH_NOARGS,
      "energies($self)\n--\n\ndict [J]: kinetic + strain + hourglass + damping + contact + viscous "
-     "= "
-     "external (+ what it began with). As long as some steps."},
+     "= external (+ what it began with). As long as some steps."},
     {"contact", contact, METH_NOARGS,
      "contact($self)\n--\n\ndict: touching (nodes in contact with bodies and planes), deepest [m], "
      "searches, tested."},
     {"reset", reset, METH_NOARGS,
      "reset($self)\n--\n\nBack to the state that it was made with, tools and settings too."},
     {"save", FUNCTION(save), METH_VARARGS | METH_KEYWORDS,
-     "save($self, target=None)\n--\n\nSaves the state: into a fresh Saved, which is returned; into "
-     "the "
-     "Saved that is given, which asks for no memory; or as a checkpoint at a path. Nodes, tools, "
-     "settings and what tools felt."},
+     "save($self, target=None)\n--\n\nSaves the state: into a fresh Saved, which is returned; "
+     "into the Saved that is given, which asks for no memory; or as a checkpoint at a path. "
+     "Nodes, tools, settings and what tools felt."},
     {"load", FUNCTION(load), METH_VARARGS | METH_KEYWORDS,
      "load($self, source)\n--\n\nTakes up a Saved or a checkpoint at a path: from then on "
-     "everything "
-     "is as if it had never stopped, on any grid. One of another model is refused."},
+     "everything is as if it had never stopped, on any grid. One of another model is refused."},
     {NULL, NULL, 0, NULL}};

@@ -8,11 +8,6 @@ static lar_simulation *look(PyObject *me, PyObject *tool, int32_t *index, const 
     return simulation && python_simulation_tool(simulation, tool, index) ? simulation : NULL;
 }
 
-static PyObject *answer(lar_status status, const lar_error *error) {
-    if (status) return python_raise(error);
-    Py_RETURN_NONE;
-}
-
 static PyObject *get_tools(PyObject *me, void *unused) {
     (void)unused;
     lar_simulation *simulation = python_simulation_look((python_simulation *)me, "tools");
@@ -86,7 +81,7 @@ static PyObject *release(PyObject *me, PyObject *args, PyObject *keywords) {
     lar_simulation *simulation = look(me, tool, &index, "release");
     if (!simulation) return NULL;
     ((python_simulation *)me)->asked[index].opening = 1;
-    return answer(lar_simulation_release(simulation, index, count, &error), &error);
+    return python_answer(lar_simulation_release(simulation, index, count, &error), &error);
 }
 
 static PyObject *tool_pose(PyObject *me, PyObject *tool) {
@@ -160,32 +155,27 @@ static PyObject *remove_tool(PyObject *me, PyObject *tool) {
     lar_error error;
     lar_simulation *simulation = look(me, tool, &index, "remove_tool");
     if (!simulation) return NULL;
-    return answer(lar_simulation_remove_tool(simulation, index, &error), &error);
+    return python_answer(lar_simulation_remove_tool(simulation, index, &error), &error);
 }
 
 #define FUNCTION(f) ((PyCFunction)(void (*)(void))(f))
 PyMethodDef python_tool_methods[] = {
     {"tool_move", FUNCTION(tool_move), METH_VARARGS | METH_KEYWORDS,
-     "tool_move($self, tool, position, steps=1, *, orientation=None, opening=None)\n--\n\n"
-     "From now on the tool moves evenly to a pose, within so many steps, and rests there. "
-     "position: "
-     "of the tip [m]; orientation: unit quaternion w, x, y, z; opening: 0 closed to 1 open. No "
-     "faster "
-     "than half its radius in a step."},
+     "tool_move($self, tool, position, steps=1, *, orientation=None, opening=None)\n--\n\nFrom "
+     "now on the tool moves evenly to a pose, within so many steps, and rests there. position: of "
+     "the tip [m]; orientation: unit quaternion w, x, y, z; opening: 0 closed to 1 open. No "
+     "faster than half its radius in a step."},
     {"grasp", FUNCTION(grasp), METH_VARARGS | METH_KEYWORDS,
      "grasp($self, tool, point=None, steps=1)\n--\n\nTakes hold: a hand at `point` [m], at once, "
-     "and "
-     "returns how many surface points it has; a grasper closes its jaws within `steps`."},
+     "and returns how many surface points it has; a grasper closes its jaws within `steps`."},
     {"release", FUNCTION(release), METH_VARARGS | METH_KEYWORDS,
      "release($self, tool, steps=1)\n--\n\nLets go: a hand at once, a grasper within `steps`."},
     {"tool_pose", tool_pose, METH_O,
      "tool_pose($self, tool)\n--\n\ndict: position [m], orientation (w, x, y, z), opening; now."},
     {"tool_force", tool_force, METH_O,
      "tool_force($self, tool)\n--\n\ndict: what tissue does to the tool. force [N] and torque "
-     "about "
-     "the tip [N m], means over the last advance; touching and held, surface points; limit [N]; "
-     "depth "
-     "and apart [m]; limited; grasp_force [N]."},
+     "about the tip [N m], means over the last advance; touching and held, surface points; limit "
+     "[N]; depth and apart [m]; limited; grasp_force [N]."},
     {"wrench", wrench, METH_O,
      "wrench($self, tool)\n--\n\nForce [N] and torque about the tip [N m], six floats."},
     {"tool_touches", tool_touches, METH_O,
@@ -194,17 +184,14 @@ PyMethodDef python_tool_methods[] = {
      "rubbed), jaw, face, nodes, weights. Their forces sum up to what the next step begins with."},
     {"add_tool", FUNCTION(add_tool), METH_VARARGS | METH_KEYWORDS,
      "add_tool($self, shape, radius, length=0.0, spread=0.0)\n--\n\nAdds a sphere, capsule or "
-     "grasper "
-     "in the first spare place (Simulation's spares=), above the body, and returns its place. "
-     "Metres "
-     "and radians."},
+     "grasper in the first spare place (Simulation's spares=), above the body, and returns its "
+     "place. Metres and radians."},
     {"remove_tool", remove_tool, METH_O,
      "remove_tool($self, tool)\n--\n\nTakes one that was added away."},
     {NULL, NULL, 0, NULL}};
 PyGetSetDef python_tool_properties[] = {
     {"tools", get_tools, NULL,
      "list of dicts: those of the model, then hands, then places for tools that can be added "
-     "(shape "
-     "\"none\"). Calls name a tool by its place in this list or by its name.",
+     "(shape \"none\"). Calls name a tool by its place in this list or by its name.",
      NULL},
     {NULL, NULL, NULL, NULL, NULL}};

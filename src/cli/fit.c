@@ -9,15 +9,14 @@
 #include "cli/commands.h"
 #include "cli/report/fit.h"
 #include "cli/stop.h"
-#include "study/fit/output.h"
+#include "study/inverse/output.h"
 
 enum { PATH_SIZE = 4096 };
 
-/* ---- progress -----------------------------------------------------------------------------------
- */
+/* ---- progress -------------------------------------------------------------------------------- */
 
 /* Told after every evaluation, on a terminal. */
-static void show_progress(void *context, const lar_fit_progress *p) {
+static void show_progress(void *context, const lar_inverse_progress *p) {
     char left[48] = "";
     (void)context;
     if (p->remaining >= 0) snprintf(left, sizeof left, ", some %.0f s to go", ceil(p->remaining));
@@ -26,8 +25,7 @@ static void show_progress(void *context, const lar_fit_progress *p) {
     fflush(stderr);
 }
 
-/* ---- results ------------------------------------------------------------------------------------
- */
+/* ---- results --------------------------------------------------------------------------------- */
 
 /* Letters, digits, - and _ of a name; the others become _. */
 static void file_name(const char *name, char *to, size_t size) {
@@ -41,28 +39,28 @@ static void file_name(const char *name, char *to, size_t size) {
     to[n] = '\0';
 }
 
-static lar_status write_tissues(const char *folder, const lar_fit_problem *p,
-                                const lar_fit_result *r, lar_error *error) {
+static lar_status write_tissues(const char *folder, const lar_inverse_problem *p,
+                                const lar_inverse_result *r, lar_error *error) {
     char path[PATH_SIZE], name[64];
     lar_status status = LAR_OK;
     for (int j = 0; j < p->parameters && !status; j++) {
-        if (!lar_fit_first_of_material(p, j)) continue;
+        if (!lar_inverse_first_of_material(p, j)) continue;
         file_name(p->parameter[j].material, name, sizeof name);
         snprintf(path, sizeof path, "%.3900s/%s.tissue.yaml", folder, name);
-        status = lar_fit_write_tissue(path, p, r, p->parameter[j].material, error);
+        status = lar_inverse_write_tissue(path, p, r, p->parameter[j].material, error);
     }
     return status;
 }
 
-static lar_status write_all(const char *folder, const lar_fit_problem *p, const lar_fit_result *r,
-                            lar_error *error) {
+static lar_status write_all(const char *folder, const lar_inverse_problem *p,
+                            const lar_inverse_result *r, lar_error *error) {
     char path[PATH_SIZE], name[64];
     lar_part_file out;
     lar_status status = write_tissues(folder, p, r, error);
     for (int k = 0; k < p->experiments && !status; k++) {
         file_name(p->experiment[k].name, name, sizeof name);
         snprintf(path, sizeof path, "%.3900s/%d_%s.svg", folder, k + 1, name);
-        status = lar_fit_write_svg(path, p, r, k, error);
+        status = lar_inverse_write_svg(path, p, r, k, error);
     }
     if (status) return status;
     snprintf(path, sizeof path, "%.3900s/fit.json", folder);
@@ -71,22 +69,21 @@ static lar_status write_all(const char *folder, const lar_fit_problem *p, const 
     return lar_part_close(&out, status);
 }
 
-/* ---- the command
- * ---------------------------------------------------------------------------------- */
+/* ---- the command ----------------------------------------------------------------------------- */
 
 static int complain(const lar_error *error) {
     return cli_complain(&cli_fit, error->status == LAR_ERROR_UNSTABLE ? CLI_UNSTABLE : CLI_FAILED,
                         "%s", error->message);
 }
 
-static int fit(const lar_fit_problem *problem, const char *folder, bool json) {
-    lar_fit_result result;
+static int fit(const lar_inverse_problem *problem, const char *folder, bool json) {
+    lar_inverse_result result;
     lar_error error = {0}, full = {0};
     const bool terminal = isatty(STDERR_FILENO);
-    const lar_fit_options options = {.stop = &cli_stop_asked,
-                                     .progress = terminal ? show_progress : NULL};
+    const lar_inverse_options options = {.stop = &cli_stop_asked,
+                                         .progress = terminal ? show_progress : NULL};
     cli_catch_stop();
-    lar_status failed = lar_fit_solve(problem, &options, &result, &error);
+    lar_status failed = lar_inverse_solve(problem, &options, &result, &error);
     if (terminal) fputs("\r\033[K", stderr);
     int status = CLI_DONE;
     if (failed && cli_stop_asked)
@@ -102,7 +99,7 @@ static int fit(const lar_fit_problem *problem, const char *folder, bool json) {
     if (!status && result.interrupted)
         status = cli_complain(&cli_fit, CLI_INTERRUPTED,
                               "interrupted: these are the best values so far, without intervals");
-    lar_fit_result_clear(&result);
+    lar_inverse_result_clear(&result);
     return status;
 }
 
@@ -117,17 +114,18 @@ static int fit_main(int argc, char **argv) {
         CLI_FLAG("--json", "the answer as one JSON object on standard output", &json), CLI_END};
     int status = cli_parse(&cli_fit, options, argc, argv, &path, 1);
     if (status >= 0) return status;
-    lar_fit_problem problem = {0};
+    lar_inverse_problem problem = {0};
     lar_error error = {0};
-    if (!lar_fit_available())
+    if (!lar_inverse_available())
         return cli_complain(&cli_fit, CLI_FAILED,
                             "this program was built without cminpack, which fits need; apt-get "
                             "install libcminpack-dev, then make");
-    if (lar_fit_problem_read(path, &problem, &error) || (folder && lar_folder_make(folder, &error)))
+    if (lar_inverse_problem_read(path, &problem, &error) ||
+        (folder && lar_folder_make(folder, &error)))
         status = complain(&error);
     else
         status = fit(&problem, folder, json);
-    lar_fit_problem_clear(&problem);
+    lar_inverse_problem_clear(&problem);
     return status;
 }
 

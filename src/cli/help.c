@@ -55,8 +55,7 @@ void cli_tell_help(const cli_command *command, const cli_option *options) {
     }
 }
 
-/* ---- commands that are asked ------------------------------------------------------------------
- */
+/* ---- commands that are asked ----------------------------------------------------------------- */
 
 /* A command's options are known to the command alone: it is asked as a user would. */
 static void ask(const cli_command *command, cli_help_form form, FILE *out) {
@@ -86,8 +85,7 @@ static const cli_command *find(const char *first, const char *second) {
     return NULL;
 }
 
-/* ---- files --------------------------------------------------------------------------------------
- */
+/* ---- files ----------------------------------------------------------------------------------- */
 
 static int cannot_write(const char *path) {
     return cli_complain(&cli_help, CLI_FAILED,
@@ -150,8 +148,7 @@ static int write_all(const char *directory) {
     return status;
 }
 
-/* ---- lariat help --------------------------------------------------------------------------------
- */
+/* ---- lariat help ----------------------------------------------------------------------------- */
 
 static int help_main(int argc, char **argv) {
     static const char *const shells[] = {"bash", "zsh", "fish", NULL};

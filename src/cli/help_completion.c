@@ -193,8 +193,7 @@ static void fish_add(FILE *out, const cli_command *command, const cli_option *op
     }
 }
 
-/* ---- all of them ------------------------------------------------------------------------------
- */
+/* ---- all of them ----------------------------------------------------------------------------- */
 
 void cli_completion_begin(FILE *out, cli_help_form shell) {
     if (shell == CLI_HELP_BASH) bash_begin(out);

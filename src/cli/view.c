@@ -56,8 +56,7 @@ static double now(void) {
     return (double)at.tv_sec + 1e-9 * (double)at.tv_nsec;
 }
 
-/* ---- opening ----------------------------------------------------------------------------------
- */
+/* ---- opening --------------------------------------------------------------------------------- */
 
 static int fail_by(view *v, const lar_error *error) {
     v->failure = error->status;
@@ -182,8 +181,7 @@ static int open_session(view *v) {
     return status;
 }
 
-/* ---- the browser -------------------------------------------------------------------------------
- */
+/* ---- the browser ----------------------------------------------------------------------------- */
 
 static bool has_display(void) {
     const char *x = getenv("DISPLAY"), *wayland = getenv("WAYLAND_DISPLAY");
@@ -211,8 +209,7 @@ static void open_browser(view *v) {
     posix_spawn_file_actions_destroy(&quiet);
 }
 
-/* ---- while it runs ------------------------------------------------------------------------------
- */
+/* ---- while it runs --------------------------------------------------------------------------- */
 
 static void clear_progress(view *v) {
     if (v->progress_at > 0) fputs("\r\033[K", stderr);
@@ -350,8 +347,7 @@ static void look_after(view *v) {
     note_devices(v);
 }
 
-/* ---- the command --------------------------------------------------------------------------------
- */
+/* ---- the command ----------------------------------------------------------------------------- */
 
 static void greet(view *v) {
     FILE *out = v->settings.json ? stderr : stdout;

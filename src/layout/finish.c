@@ -42,8 +42,7 @@ static lar_kind kind_of(const lar_lanes *block) {
     return (lar_kind){block->law, block->shape, block->turn, block->viscous, block->fibrous};
 }
 
-/* ---- rows of four ------------------------------------------------------------------------------
- */
+/* ---- rows of four ---------------------------------------------------------------------------- */
 
 /* The second takes the free half of the first; without a second the row's elements are open again.
  */

@@ -22,8 +22,7 @@ typedef struct planner {
 
 typedef const int32_t (*corners)[8];
 
-/* ---- ways through a mesh ----------------------------------------------------------------------
- */
+/* ---- ways through a mesh --------------------------------------------------------------------- */
 
 static int trace_faces(const lar_row_ways *ways, const lar_draft *draft, lar_gid e, int front,
                        int max, int32_t *run, int32_t (*corner)[8]) {

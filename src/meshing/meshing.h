@@ -1,10 +1,12 @@
 /* A meshing between its making and its files.
  *
- *     meshing.c     reads, meshes, measures ------------------------.
- *     support.c     node sets: what holds it, where it is pulled    +--> starter.c  the scene
- *     extra supports.c        what carries it besides                         |    write.c    all
- * files motion.c      how slowly it moves                             | quality.c     how good it
- * is ---------------------------------'
+ *     meshing.c     reads, meshes, measures
+ *       |
+ *       +--> starter/support.c         node sets: what holds it, where it is pulled
+ *       +--> starter/extra_supports.c  what carries its weight besides
+ *       +--> starter/sag.c             how far it moves under its weight, and how slowly
+ *       +--> quality.c                 deviation, volumes, quality of elements
+ *       '--> write.c                   all files, the scene by starter/starter.c
  */
 #ifndef LAR_MESHING_MESHING_H
 #define LAR_MESHING_MESHING_H

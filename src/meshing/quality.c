@@ -65,7 +65,7 @@ lar_status lar_quality_measure(const lar_mesh *mesh, const lar_triangles *surfac
 
 /* ---- of a model --------------------------------------------------------------------------- */
 
-/* A copy of the surface that rides on the model: closing it may turn triangles. */
+/* A copy of the embedded surface: closing it may turn triangles. */
 static lar_status copy_embedded(const lar_embedded_info *embedded, lar_triangles *copy,
                                 lar_error *error) {
     size_t vertices = (size_t)embedded->vertices, triangles = (size_t)embedded->triangles;

@@ -111,8 +111,7 @@ lar_status lar_computer_look(lar_computer *computer, lar_error *error);
 /* Every other process: does what processor zero says until it ends. */
 lar_status lar_computer_serve(lar_computer *computer, lar_error *error);
 
-/* ---- between computer.c, computer_state.c and computer_contact.c ------------------------------
- */
+/* ---- between computer.c, computer_state.c and computer_contact.c ----------------------------- */
 
 /* Before the processors are made; what cannot be made is cleared by lar_contact_close. */
 lar_status lar_contact_open(lar_computer *computer, lar_error *error);

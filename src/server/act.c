@@ -12,8 +12,7 @@ lar_viewer *lar_server_find(const lar_server *server, uint64_t number) {
     return viewer;
 }
 
-/* ---- files that are saved ---------------------------------------------------------------------
- */
+/* ---- files that are saved -------------------------------------------------------------------- */
 
 static const char CHECKPOINT[] = "checkpoint", RECORDING[] = "recording";
 
@@ -160,8 +159,7 @@ void lar_server_job_ended(lar_server *server, const lar_job_end *end) {
     }
 }
 
-/* ---- commands ----------------------------------------------------------------------------------
- */
+/* ---- commands -------------------------------------------------------------------------------- */
 
 static void ask_frame(lar_viewer *viewer, const lar_command *command) {
     int field = lar_field_index(command->field);

@@ -39,7 +39,8 @@ static bool trusts_host(const lar_server *server, const char *host) {
     return false;
 }
 
-bool lar_server_trusts(const lar_server *server, struct lws *wsi) {
+/* Whether the Host and the Origin of a request are ours. */
+static bool trusts(const lar_server *server, struct lws *wsi) {
     char host[LAR_HOST_BYTES + 8], origin[LAR_HOST_BYTES + 16];
     if (!copy_header(wsi, WSI_TOKEN_HOST, host, sizeof host) || !trusts_host(server, host))
         return false;
@@ -128,7 +129,7 @@ static int answer(lar_server *server, struct lws *wsi, lar_download *download, c
     bool head = lws_hdr_total_length(wsi, WSI_TOKEN_HEAD_URI) > 0;
     if (!download) return -1;
     download->file = NULL;
-    if (!lar_server_trusts(server, wsi))
+    if (!trusts(server, wsi))
         return refuse(wsi, HTTP_STATUS_FORBIDDEN, "This address is not the server's own.");
     if (!get && !head) return refuse(wsi, HTTP_STATUS_METHOD_NOT_ALLOWED, "Only GET and HEAD.");
     const lar_file *file = path ? lar_files_find(&server->files, path) : NULL;
@@ -139,7 +140,7 @@ static int answer(lar_server *server, struct lws *wsi, lar_download *download, c
 /* An upgrade is a viewer's: to a WebSocket, at its path, in our protocol. */
 static int check_upgrade(lar_server *server, struct lws *wsi, const char *to) {
     char path[16], protocol[64];
-    bool good = to && strcasecmp(to, "websocket") == 0 && lar_server_trusts(server, wsi) &&
+    bool good = to && strcasecmp(to, "websocket") == 0 && trusts(server, wsi) &&
                 copy_header(wsi, WSI_TOKEN_GET_URI, path, sizeof path) &&
                 strcmp(path, "/socket") == 0 &&
                 copy_header(wsi, WSI_TOKEN_PROTOCOL, protocol, sizeof protocol) &&

@@ -114,7 +114,8 @@ static uint32_t mix(uint32_t hash, uint32_t word) {
     return ((hash << 5 | hash >> 27) ^ word) * 0x9e3779b1u;
 }
 
-void lar_position_hash(const uint32_t *word, size_t count, uint32_t hash[2]) {
+/* The hash of positions that a frame carries: two words over `count` words. */
+static void position_hash(const uint32_t *word, size_t count, uint32_t hash[2]) {
     hash[0] = hash[1] = 0;
     for (size_t i = 0; i < count; i++) hash[i & 1] = mix(hash[i & 1], word[i]);
 }
@@ -272,8 +273,7 @@ lar_status lar_painter_paint(lar_painter *painter, unsigned wanted, double secon
     uint32_t hash[2];
     status = write_positions(painter, position, error);
     if (status) return status;
-    lar_position_hash((const uint32_t *)(const void *)position, 3 * (size_t)painter->shown.count,
-                      hash);
+    position_hash((const uint32_t *)(const void *)position, 3 * (size_t)painter->shown.count, hash);
     for (int i = first; i < LAR_FIELDS && !status; i++)
         if (wanted & 1u << i)
             status = write_frame(painter, i, position, hash, &picture->frame[i], error);

@@ -51,7 +51,4 @@ void lar_picture_destroy(lar_picture *picture);
 lar_status lar_painter_paint(lar_painter *painter, unsigned wanted, double seconds,
                              lar_picture *picture, lar_error *error);
 
-/* The hash of positions that a frame carries: two words over `count` words. */
-void lar_position_hash(const uint32_t *word, size_t count, uint32_t hash[2]);
-
 #endif

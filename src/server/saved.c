@@ -23,8 +23,7 @@ const char *lar_saved_find(const lar_saved_list *list, const char *name) {
     return NULL;
 }
 
-/* ---- what lies in the folder ------------------------------------------------------------------
- */
+/* ---- what lies in the folder ----------------------------------------------------------------- */
 
 enum { FOUND_MAX = 4096 };
 

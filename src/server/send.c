@@ -5,8 +5,7 @@
 
 #include "server/state.h"
 
-/* ---- hello ------------------------------------------------------------------------------------
- */
+/* ---- hello ----------------------------------------------------------------------------------- */
 
 static void write_materials(lar_json *json, const lar_model *model, int32_t count) {
     lar_json_open(json, "materials", '[');
@@ -165,8 +164,7 @@ lar_status lar_server_make_hello(lar_server *server, lar_error *error) {
     return json->failed ? lar_fail_memory(error, json->length, "what viewers are told") : LAR_OK;
 }
 
-/* ---- status -----------------------------------------------------------------------------------
- */
+/* ---- status ---------------------------------------------------------------------------------- */
 
 static void write_times(lar_json *json, const char *name, double p50, double p99, double p999,
                         double max) {
@@ -283,8 +281,7 @@ static void write_status(const lar_server *server, const lar_viewer *viewer, lar
     lar_json_end(json);
 }
 
-/* ---- notes ------------------------------------------------------------------------------------
- */
+/* ---- notes ----------------------------------------------------------------------------------- */
 
 void lar_viewer_tell(lar_viewer *viewer, lar_json *json) {
     lar_json_end(json);
@@ -324,8 +321,7 @@ void lar_server_tell_hand(void *context, uint64_t number, int32_t hand, int32_t 
     lar_viewer_tell(viewer, json);
 }
 
-/* ---- sending ----------------------------------------------------------------------------------
- */
+/* ---- sending --------------------------------------------------------------------------------- */
 
 static int send_bytes(lar_viewer *viewer, unsigned char *data, size_t length,
                       enum lws_write_protocol kind) {

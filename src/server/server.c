@@ -32,8 +32,7 @@ static const int64_t SLOW = 10 * LAR_SECOND_NS;
 /* Bytes that may come in a second, control frames and all: so many messages of full length. */
 static const double BYTES_A_SECOND = LAR_MESSAGES_A_SECOND * (LAR_MESSAGE_MAX + 8.0);
 
-/* ---- the timer ---------------------------------------------------------------------------------
- */
+/* ---- the timer ------------------------------------------------------------------------------- */
 
 void lar_server_take_status(lar_server *server) {
     lar_session_status_get(server->session, &server->status);
@@ -135,8 +134,7 @@ static void on_timer(lws_sorted_usec_list_t *sul) {
     lws_sul_schedule(server->context, 0, &server->timer, on_timer, pause);
 }
 
-/* ---- the thread ---------------------------------------------------------------------------------
- */
+/* ---- the thread ------------------------------------------------------------------------------ */
 
 static void wake(void *context) {
     lws_cancel_service(((lar_server *)context)->context);
@@ -170,8 +168,7 @@ static void *run(void *argument) {
     return NULL;
 }
 
-/* ---- opening ------------------------------------------------------------------------------------
- */
+/* ---- opening --------------------------------------------------------------------------------- */
 
 static const lws_retry_bo_t idle_policy = {.secs_since_valid_ping = 5,
                                            .secs_since_valid_hangup = 15};
@@ -360,8 +357,7 @@ lar_status lar_server_open(lar_session *session, const lar_model *model,
     return status;
 }
 
-/* ---- the rest -----------------------------------------------------------------------------------
- */
+/* ---- the rest -------------------------------------------------------------------------------- */
 
 const char *lar_server_url(const lar_server *server) {
     return server ? server->url : "";

@@ -25,8 +25,7 @@ void lar_viewer_close(lar_viewer *viewer, lar_close code, const char *reason) {
     lar_viewer_wants(viewer, 0);
 }
 
-/* ---- the beginning and the end ----------------------------------------------------------------
- */
+/* ---- the beginning and the end --------------------------------------------------------------- */
 
 /* Takes the same time whatever is wrong, so that nobody can find a token letter by letter. */
 static bool same_secret(const char *given, const char *secret) {
@@ -98,8 +97,7 @@ static void end(lar_server *server, lar_viewer *viewer) {
     viewer->notes = 0;
 }
 
-/* ---- what comes in -----------------------------------------------------------------------------
- */
+/* ---- what comes in --------------------------------------------------------------------------- */
 
 /* So many messages a second, and as many at once after a rest. */
 static bool may_speak(lar_viewer *viewer) {

@@ -178,8 +178,6 @@ void lar_server_promote(lar_server *server, const struct lws *wsi);
 /* For connections that are not viewers yet; libwebsockets calls it. */
 int lar_server_http(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in,
                     size_t length);
-/* Whether the Host and the Origin of a request are ours. */
-bool lar_server_trusts(const lar_server *server, struct lws *wsi);
 
 /* ---- socket.c ----------- */
 

@@ -79,8 +79,7 @@ void lar_coupling_reset(lar_coupling *c, const lar_tool_pose *pose) {
             c->felt[i] = c->turned[i] = c->step[i] = 0;
 }
 
-/* ---- where the tool goes ----------------------------------------------------------------------
- */
+/* ---- where the tool goes --------------------------------------------------------------------- */
 
 /* The hand has moved: what it has put in, and how fast it is. */
 static void move_hand(lar_coupling *c, const lar_tool_pose *hand) {
@@ -158,8 +157,7 @@ void lar_coupling_follow(lar_coupling *coupling, const lar_tool_pose *hand, lar_
     *tool = coupling->tool;
 }
 
-/* ---- what the hand feels ----------------------------------------------------------------------
- */
+/* ---- what the hand feels --------------------------------------------------------------------- */
 
 /* From two forces and the way between them; forgotten slowly, for a touch comes and goes. */
 static void see_stiffness(lar_coupling *c, const double force[3]) {

@@ -14,7 +14,8 @@ struct lar_field_plan {
 
 /* ---- stress and energy ---------------------------------------------------------------------- */
 
-lar_status lar_field_plan_create(const lar_domain *whole, lar_field_plan **out, lar_error *error) {
+/* Prepares all elements of the model. */
+static lar_status plan_create(const lar_domain *whole, lar_field_plan **out, lar_error *error) {
     const lar_mesh *mesh = &whole->model->mesh;
     size_t elements = (size_t)mesh->element_count;
     bool prepares = whole->kind == LAR_ELEMENT_HEX8;
@@ -73,9 +74,10 @@ static void corners_of(const lar_mesh *mesh, lar_gid e, const double (*u)[3], do
     for (int a = 0; a < 8; a++) memcpy(corner[a], u[mesh->element[e][a]], sizeof corner[a]);
 }
 
-lar_status lar_field_of_elements(const lar_field_plan *plan, const lar_domain *whole,
-                                 lar_field field, const double (*u)[3], float *out,
-                                 lar_error *error) {
+/* A field of stress or energy at u, [nodes][3] in the mesh's order, into out [nodes]. An element
+ * that is inside out has none: it is left out; a node with no other one has 0. */
+static lar_status of_elements(const lar_field_plan *plan, const lar_domain *whole, lar_field field,
+                              const double (*u)[3], float *out, lar_error *error) {
     const lar_mesh *mesh = &whole->model->mesh;
     size_t nodes = (size_t)mesh->node_count;
     node_mean *mean = lar_calloc(nodes, sizeof *mean);
@@ -105,7 +107,7 @@ static lar_status find_plan(const lar_simulation *simulation, lar_field_plan **p
     *plan = __atomic_load_n(kept, __ATOMIC_ACQUIRE);
     if (*plan) return LAR_OK;
     lar_field_plan *made;
-    lar_status status = lar_field_plan_create(&simulation->domain, &made, error);
+    lar_status status = plan_create(&simulation->domain, &made, error);
     if (status) return status;
     if (__atomic_compare_exchange_n(kept, plan, made, false, __ATOMIC_ACQ_REL, __ATOMIC_ACQUIRE))
         *plan = made;
@@ -242,8 +244,7 @@ lar_status lar_simulation_field(const lar_simulation *simulation, lar_field fiel
     case LAR_FIELD_PRESSURE:
     case LAR_FIELD_ENERGY:
         status = find_plan(simulation, &plan, error);
-        return status ? status
-                      : lar_field_of_elements(plan, &simulation->domain, field, u, out, error);
+        return status ? status : of_elements(plan, &simulation->domain, field, u, out, error);
     case LAR_FIELD_VELOCITY:
         break;
     }

@@ -8,18 +8,8 @@
 #ifndef LAR_SIMULATION_FIELD_H
 #define LAR_SIMULATION_FIELD_H
 
-#include "step/domain.h"
-
 typedef struct lar_field_plan lar_field_plan;
 
-/* Prepares all elements of the model. */
-lar_status lar_field_plan_create(const lar_domain *whole, lar_field_plan **plan, lar_error *error);
 void lar_field_plan_destroy(lar_field_plan *plan); /* accepts NULL */
-
-/* A field of stress or energy at u, [nodes][3] in the mesh's order, into out [nodes]. An element
- * that is inside out has none: it is left out; a node with no other one has 0. */
-lar_status lar_field_of_elements(const lar_field_plan *plan, const lar_domain *whole,
-                                 lar_field field, const double (*u)[3], float *out,
-                                 lar_error *error);
 
 #endif

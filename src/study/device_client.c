@@ -34,8 +34,7 @@ typedef struct client {
     lar_histogram trip;
 } client;
 
-/* ---- where the hand is ------------------------------------------------------------------------
- */
+/* ---- where the hand is ----------------------------------------------------------------------- */
 
 static void pose_at(client *c, double time, lar_tool_pose *pose) {
     const lar_device_client_options *o = c->options;
@@ -52,8 +51,7 @@ static void pose_at(client *c, double time, lar_tool_pose *pose) {
     }
 }
 
-/* ---- the network ------------------------------------------------------------------------------
- */
+/* ---- the network ----------------------------------------------------------------------------- */
 
 static lar_status reach(client *c, lar_error *error) {
     const char *text = c->options->address;
@@ -141,8 +139,7 @@ static void listen_until(client *c, int64_t end) {
     }
 }
 
-/* ---- all of it --------------------------------------------------------------------------------
- */
+/* ---- all of it ------------------------------------------------------------------------------- */
 
 static bool is_stopped(const client *c) {
     return c->options->stop && *c->options->stop;

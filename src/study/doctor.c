@@ -12,7 +12,7 @@
 #include "comm/mpi_world.h"
 #include "simulation/simulation.h"
 #include "study/bench/step.h"
-#include "study/fit/solver.h"
+#include "study/inverse/solver.h"
 #include "study/implicit/linear_solver.h"
 #include "study/real_time.h"
 
@@ -80,7 +80,7 @@ void lar_features_look(lar_feature feature[LAR_FEATURES]) {
         {"metis", "lariat partition --method metis", "apt-get install libmetis-dev, then make",
          metis},
         {"fit", "lariat fit, parameters of tissue from experiments",
-         "apt-get install libcminpack-dev, then make", lar_fit_available()},
+         "apt-get install libcminpack-dev, then make", lar_inverse_available()},
         {"ucx", "--comm ucx, processors of a cluster", "apt-get install libucx-dev, then make",
          backend("ucx")},
         {"openmpi", "processors that Open MPI's mpirun starts",

@@ -16,7 +16,7 @@
 #include "model/mesh/mesh.h"
 
 static inline lar_mesh brick_mesh(int nx, int ny, int nz) {
-    lar_mesh mesh = {.source = lar_strdup("lattice"),
+    lar_mesh mesh = {.source = lar_strdup("brick"),
                      .node_count = (nx + 1) * (ny + 1) * (nz + 1),
                      .element_count = nx * ny * nz};
     mesh.position = lar_calloc((size_t)mesh.node_count, sizeof *mesh.position);

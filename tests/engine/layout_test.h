@@ -166,8 +166,7 @@ TEST_UNUSED static share what_is_in(const lar_layout *layout, int32_t elements) 
     return in;
 }
 
-/* ---- meshes -----------------------------------------------------------------------------------
- */
+/* ---- meshes ---------------------------------------------------------------------------------- */
 
 TEST_UNUSED static uint32_t chance_state;
 

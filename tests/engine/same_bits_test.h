@@ -39,7 +39,8 @@ static course course_with(const lar_model *model, lar_options options) {
     return c;
 }
 
-static void check_golden(const same_bits *body) {
+static void the_hash_is_golden(void **state) {
+    const same_bits *body = *state;
     static const lar_isa sets[] = {LAR_ISA_C, LAR_ISA_NEON, LAR_ISA_AVX2, LAR_ISA_AVX512};
     lar_model *model = body->model(&tool_brick);
     const lar_kernels *kernels;
@@ -58,7 +59,8 @@ static void check_golden(const same_bits *body) {
     lar_model_destroy(model);
 }
 
-static void check_grids_and_threads(const same_bits *body) {
+static void grids_and_threads_agree(void **state) {
+    const same_bits *body = *state;
     static const char *const grids[] = {"1x1x1", "2x1x1", "2x2x1", "1x2x3"};
     lar_model *model = body->model(&tool_brick);
     for (int grid = 0; grid < 4; grid++)
@@ -70,7 +72,8 @@ static void check_grids_and_threads(const same_bits *body) {
     lar_model_destroy(model);
 }
 
-static void check_lean_blocks(const same_bits *body) {
+static void lean_blocks_and_whole_ones_agree(void **state) {
+    const same_bits *body = *state;
     lar_model *model = body->model(&tool_brick);
     setenv("LARIAT_BLOCKS", "lean", 1);
     course c = course_with(model, setting(NULL, 0));
@@ -141,7 +144,8 @@ static void check_saved_runs(const same_bits *body) {
 }
 
 /* What processes tell each other: of a finer body more than one packet. */
-static void check_processes(const same_bits *body) {
+static void processes_agree(void **state) {
+    const same_bits *body = *state;
     for (int fine = 0; fine < 2; fine++) {
         lar_model *model = body->model(fine ? &fine_tool_brick : &tool_brick);
         course straight = course_with(model, setting(NULL, 0));
@@ -161,6 +165,18 @@ static void check_processes(const same_bits *body) {
         end_fleet(&f);
         lar_model_destroy(model);
     }
+}
+
+/* For the list of a program's tests: those that are the same for every body. */
+#define SAME_BITS_TESTS(body)                                                                      \
+    cmocka_unit_test_prestate(the_hash_is_golden, &(body)),                                        \
+        cmocka_unit_test_prestate(grids_and_threads_agree, &(body)),                               \
+        cmocka_unit_test_prestate(lean_blocks_and_whole_ones_agree, &(body)),                      \
+        cmocka_unit_test_prestate(processes_agree, &(body))
+
+/* What is in a body or has left it; the account is even where it grows as `external` does. */
+static double sum_of(const lar_energy *e) {
+    return e->kinetic + e->strain + e->hourglass + e->damping + e->contact + e->viscous;
 }
 
 #endif

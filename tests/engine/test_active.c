@@ -49,22 +49,7 @@ static lar_model *active_tool_model(const brick *b) {
 
 /* ---- the same bits -------------------------------------------------------------------------- */
 
-static const same_bits body = {active_tool_model, PATH, {0xba9e7afd4603ead8, 0x74e95519de464b58}};
-
-static void the_hash_is_golden(void **unused) {
-    (void)unused;
-    check_golden(&body);
-}
-
-static void grids_and_threads_agree(void **unused) {
-    (void)unused;
-    check_grids_and_threads(&body);
-}
-
-static void lean_blocks_and_whole_ones_agree(void **unused) {
-    (void)unused;
-    check_lean_blocks(&body);
-}
+static same_bits body = {active_tool_model, PATH, {0xba9e7afd4603ead8, 0x74e95519de464b58}};
 
 static void a_saved_run_goes_on(void **unused) {
     (void)unused;
@@ -76,11 +61,6 @@ static void a_saved_run_goes_on(void **unused) {
     assert_int_not_equal(lar_simulation_load(wrong, PATH, &error), LAR_OK);
     assert_non_null(strstr(error.message, "material"));
     finish(wrong, faster);
-}
-
-static void processes_agree(void **unused) {
-    (void)unused;
-    check_processes(&body);
 }
 
 /* ---- what is set ---------------------------------------------------------------------------- */
@@ -311,10 +291,6 @@ static void waves_are_where_they_should_be(void **unused) {
 
 /* ---- energy --------------------------------------------------------------------------------- */
 
-static double sum_of(const lar_energy *e) {
-    return e->kinetic + e->strain + e->hourglass + e->damping + e->contact + e->viscous;
-}
-
 /* 0 curve, 1 wave, 2 what is set at random every millisecond, 3 all of them; from 4 on on two
  * processors, and stiffer so that steps are divided. */
 static void every_joule_is_accounted_for(void **unused) {
@@ -407,11 +383,8 @@ static void what_cannot_be_is_refused(void **unused) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_hash_is_golden),
-        cmocka_unit_test(grids_and_threads_agree),
-        cmocka_unit_test(lean_blocks_and_whole_ones_agree),
+        SAME_BITS_TESTS(body),
         cmocka_unit_test(a_saved_run_goes_on),
-        cmocka_unit_test(processes_agree),
         cmocka_unit_test(live_changes_have_the_same_bits),
         cmocka_unit_test(what_was_set_is_kept_and_forgotten),
         cmocka_unit_test(forged_files_are_refused),

@@ -46,27 +46,7 @@ static lar_model *fibrous_tool_model(const brick *b) {
 
 /* ---- the same bits -------------------------------------------------------------------------- */
 
-static const same_bits body = {fibrous_tool_model, PATH, {0x69eb4a885b97b185, 0x5255899b32ec3a63}};
-
-static void the_hash_is_golden(void **unused) {
-    (void)unused;
-    check_golden(&body);
-}
-
-static void grids_and_threads_agree(void **unused) {
-    (void)unused;
-    check_grids_and_threads(&body);
-}
-
-static void lean_blocks_and_whole_ones_agree(void **unused) {
-    (void)unused;
-    check_lean_blocks(&body);
-}
-
-static void processes_agree(void **unused) {
-    (void)unused;
-    check_processes(&body);
-}
+static same_bits body = {fibrous_tool_model, PATH, {0x69eb4a885b97b185, 0x5255899b32ec3a63}};
 
 /* The same turned elements in rows and boxes, and loose. */
 static uint64_t styled(const lar_model *model, lar_layout_style style) {
@@ -226,10 +206,6 @@ static void steps_know_how_stiff_fibres_are(void **unused) {
 
 /* ---- energy --------------------------------------------------------------------------------- */
 
-static double sum_of(const lar_energy *e) {
-    return e->kinetic + e->strain + e->hourglass + e->damping + e->contact + e->viscous;
-}
-
 /* A thrown body with a load and a moved support. */
 static void every_joule_is_accounted_for(void **unused) {
     (void)unused;
@@ -306,12 +282,9 @@ static void what_cannot_be_is_refused(void **unused) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_hash_is_golden),
-        cmocka_unit_test(grids_and_threads_agree),
-        cmocka_unit_test(lean_blocks_and_whole_ones_agree),
+        SAME_BITS_TESTS(body),
         cmocka_unit_test(rows_and_loose_elements_agree),
         cmocka_unit_test(a_saved_run_goes_on),
-        cmocka_unit_test(processes_agree),
         cmocka_unit_test(kernels_agree_with_the_plain_element),
         cmocka_unit_test(a_pulled_block_has_the_closed_form),
         cmocka_unit_test(steps_know_how_stiff_fibres_are),

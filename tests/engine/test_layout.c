@@ -64,8 +64,7 @@ static share check_model(lar_model *model) {
     return in;
 }
 
-/* ---- tests --------------------------------------------------------------------------------------
- */
+/* ---- tests ----------------------------------------------------------------------------------- */
 
 static void bricks_of_all_sizes(void **unused) {
     (void)unused;

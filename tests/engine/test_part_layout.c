@@ -98,8 +98,7 @@ static double cost_of_part(const lar_model *model, const lar_layout *whole, cons
     return cost;
 }
 
-/* ---- tests --------------------------------------------------------------------------------------
- */
+/* ---- tests ----------------------------------------------------------------------------------- */
 
 /* Threads in slabs or at random, some elements elsewhere, batches at random. */
 static void fill_at_random(const lar_mesh *mesh, slice *s) {

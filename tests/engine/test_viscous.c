@@ -24,27 +24,7 @@ static lar_model *viscous_tool_model(const brick *b) {
 
 /* ---- the same bits -------------------------------------------------------------------------- */
 
-static const same_bits body = {viscous_tool_model, PATH, {0xd6555355d2b218e6, 0x9d0960999b85d8db}};
-
-static void the_hash_is_golden(void **unused) {
-    (void)unused;
-    check_golden(&body);
-}
-
-static void grids_and_threads_agree(void **unused) {
-    (void)unused;
-    check_grids_and_threads(&body);
-}
-
-static void lean_blocks_and_whole_ones_agree(void **unused) {
-    (void)unused;
-    check_lean_blocks(&body);
-}
-
-static void processes_agree(void **unused) {
-    (void)unused;
-    check_processes(&body);
-}
+static same_bits body = {viscous_tool_model, PATH, {0xd6555355d2b218e6, 0x9d0960999b85d8db}};
 
 static void a_saved_run_goes_on(void **unused) {
     (void)unused;
@@ -129,10 +109,6 @@ static void a_pulled_cube_relaxes_by_the_closed_form(void **unused) {
 
 /* ---- energy --------------------------------------------------------------------------------- */
 
-static double sum_of(const lar_energy *e) {
-    return e->kinetic + e->strain + e->hourglass + e->damping + e->contact + e->viscous;
-}
-
 /* A thrown body with a load and a moved support: every joule is accounted for, and what the terms
  * take stops its swing. */
 static void every_joule_is_accounted_for(void **unused) {
@@ -196,11 +172,8 @@ static void what_cannot_be_is_refused(void **unused) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_hash_is_golden),
-        cmocka_unit_test(grids_and_threads_agree),
-        cmocka_unit_test(lean_blocks_and_whole_ones_agree),
+        SAME_BITS_TESTS(body),
         cmocka_unit_test(a_saved_run_goes_on),
-        cmocka_unit_test(processes_agree),
         cmocka_unit_test(elastic_models_have_no_history),
         cmocka_unit_test(a_pulled_cube_relaxes_by_the_closed_form),
         cmocka_unit_test(every_joule_is_accounted_for),

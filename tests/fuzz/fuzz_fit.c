@@ -7,7 +7,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "study/fit/experiment.h"
+#include "study/inverse/experiment.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
@@ -77,10 +77,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
         size_t length = section(from, end, &at);
         write_file(own[i], from, length);
     }
-    lar_fit_problem problem = {0};
+    lar_inverse_problem problem = {0};
     snprintf(path, sizeof path, "%s/fit.yaml", folder);
-    if (lar_fit_problem_read(path, &problem, &error) && !*error.message) abort();
-    lar_fit_problem_clear(&problem);
+    if (lar_inverse_problem_read(path, &problem, &error) && !*error.message) abort();
+    lar_inverse_problem_clear(&problem);
     lar_model *model = NULL;
     snprintf(path, sizeof path, "%s/tissue.yaml", folder);
     if (lar_model_open(path, &model, &error) && !*error.message) abort();

@@ -8,15 +8,17 @@
 # server includes only lariat.h, base and its own, the command study besides; files do not include
 # each other in a circle; vector intrinsics stay in simd.h and the kernels; no library file ends the
 # process or prints. The Python module (python/) includes lariat.h, Python.h, the C library's headers
-# and its own module.h. And what docs/architecture.md calls a file of a room is there.
+# and its own module.h. Files, levels of rooms and arrows that go up within a room have limits
+# (sizes.awk). And what docs/architecture.md calls a file of a room is there.
 set -eu
 
 check_tree() {
     root=$1
     # shellcheck disable=SC2046
-    set -- $(cd "$root" && find src -name '*.[ch]' | LC_ALL=C sort)
+    set -- $(cd "$root" && find src -name '*.[ch]' -o -name '*.inc' | LC_ALL=C sort)
     [ $# -gt 0 ] || { echo "layers: no sources below $root/src"; return 1; }
     (cd "$root" && awk -f "$here/rooms.awk" -f "$here/rules.awk" "$@") || return 1
+    (cd "$root" && awk -f "$here/rooms.awk" -f "$here/sizes.awk" "$@") || return 1
     check_python "$root" || return 1
     check_page "$root"
 }
@@ -136,6 +138,30 @@ self_test() {
         echo "self-test: a circle of three files was not found"
         failures=$((failures + 1))
     fi
+
+    # too_much WORDS: the tree as it is now is refused with these.
+    too_much() {
+        if ! check_tree "$scratch/tree" | grep -q "$1"; then
+            echo "self-test: not found: $1"
+            failures=$((failures + 1))
+        fi
+    }
+    fresh
+    yes '/* a line */' | head -n 601 >"$scratch/tree/src/base/long.c"
+    too_much 'base/long.c has more than 600 lines'
+    fresh
+    for i in $(seq 31); do echo '/* one of many */' >"$scratch/tree/src/base/b$i.h"; done
+    too_much 'src/base has more than 30 files'
+    # Five pairs that know each other; four are borne.
+    fresh
+    for i in 1 2 3 4 5; do
+        check_tree "$scratch/tree" >/dev/null || too_much 'refused too early'
+        printf '#include "model/y%s.h"\n' $i >"$scratch/tree/src/model/x$i.h"
+        printf '#include "model/y%s.h"\n' $i >"$scratch/tree/src/model/y$i.c"
+        printf '#include "model/x%s.h"\n' $i >>"$scratch/tree/src/model/y$i.c"
+        echo '/* nothing */' >"$scratch/tree/src/model/y$i.h"
+    done
+    too_much 'src/model: 5 arrows go up'
     [ $failures -eq 0 ] && echo "layers: every planted violation was found"
 }
 

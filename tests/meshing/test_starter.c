@@ -369,13 +369,13 @@ static void an_interface_is_no_cut(void **state) {
 static void quality_of_a_model_is_that_of_its_meshing(void **state) {
     (void)state;
     lar_meshing_info info;
-    lar_mesh_quality riding, file, scaled;
+    lar_mesh_quality embedded, file, scaled;
     lar_model *model = model_of(TORUS, (lar_meshing_options){0}, &info);
-    assert_int_equal(lar_model_quality(model, NULL, 1, &riding, &error), LAR_OK);
+    assert_int_equal(lar_model_quality(model, NULL, 1, &embedded, &error), LAR_OK);
     assert_int_equal(lar_model_quality(model, TORUS, 1, &file, &error), LAR_OK);
     assert_int_equal(lar_model_quality(model, TORUS, 1.01, &scaled, &error), LAR_OK);
-    assert_below(fabs(riding.volume / info.quality.volume - 1), 1e-12);
-    assert_below(fabs(riding.deviation_mean / info.quality.deviation_mean - 1), 1e-6);
+    assert_below(fabs(embedded.volume / info.quality.volume - 1), 1e-12);
+    assert_below(fabs(embedded.deviation_mean / info.quality.deviation_mean - 1), 1e-6);
     assert_below(fabs(file.deviation_mean / info.quality.deviation_mean - 1), 1e-6);
     assert_below(fabs(file.true_volume / info.quality.true_volume - 1), 1e-3);
     assert_below(fabs(scaled.true_volume / file.true_volume - 1.01 * 1.01 * 1.01), 1e-6);

@@ -1,95 +1,7 @@
 /* FEBio decks: what is read, what is refused and where, and damaged files. */
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
+#include "model/feb_deck.h"
 
-#include <cmocka.h>
-
-#include "model/format/mesh_io.h"
-#include "model/model.h"
-
-/* ---- decks made of pieces ---------------------------------------------------------------------
- */
-
-#define HEAD4 "<?xml version=\"1.0\"?>\n<febio_spec version=\"4.0\">\n<Module type=\"solid\"/>\n"
-#define CONTROL(analysis)                                                                          \
-    "<Control><analysis>" analysis                                                                 \
-    "</analysis><time_steps>10</time_steps><step_size>0.1</step_size></Control>\n"
-#define MATERIAL                                                                                   \
-    "<Material><material id=\"7\" name=\"soft\" type=\"neo-Hookean\"><density>1000</density>"      \
-    "<E>3000</E><v>0.25</v></material></Material>\n"
-/* Two cubes side by side in x, and a node that nothing uses. */
-#define NODES                                                                                      \
-    "<Nodes name=\"all\">\n<node id=\"1\">0,0,0</node><node id=\"2\">1,0,0</node>"                 \
-    "<node id=\"3\">1,1,0</node><node id=\"4\">0,1,0</node><node id=\"5\">0,0,1</node>"            \
-    "<node id=\"6\">1,0,1</node><node id=\"7\">1,1,1</node><node id=\"8\">0,1,1</node>"            \
-    "<node id=\"9\">2,0,0</node><node id=\"10\">2,1,0</node><node id=\"11\">2,0,1</node>"          \
-    "<node id=\"12\">2,1,1</node><node id=\"99\">5,5,5</node>\n</Nodes>\n"
-#define PARTS                                                                                      \
-    "<Elements type=\"hex8\" name=\"left\"><elem id=\"1\">1,2,3,4,5,6,7,8</elem></Elements>\n"     \
-    "<Elements type=\"hex8\" name=\"right\"><elem id=\"2\">2,9,10,3,6,11,12,7</elem></Elements>\n"
-#define SETS4                                                                                      \
-    "<NodeSet name=\"wall\">1,4,\n5,8</NodeSet>\n<NodeSet name=\"tip\">9, 10 11,12</NodeSet>\n"    \
-    "<ElementSet name=\"one\">2</ElementSet>\n"                                                    \
-    "<Surface name=\"end\"><quad4 id=\"1\">9,10,12,11</quad4></Surface>\n"                         \
-    "<Surface name=\"inward\"><quad4 id=\"1\">9,11,12,10</quad4></Surface>\n"                      \
-    "<PartList name=\"both\">left, right</PartList>\n"
-#define MESH4 "<Mesh>\n" NODES PARTS SETS4 "</Mesh>\n"
-#define DOMAINS                                                                                    \
-    "<MeshDomains><SolidDomain name=\"left\" mat=\"soft\"/><SolidDomain name=\"right\" "           \
-    "mat=\"soft\"/></MeshDomains>\n"
-#define BASE4 HEAD4 CONTROL("DYNAMIC") MATERIAL MESH4 DOMAINS
-#define CURVE(id, interpolate, extend, points)                                                     \
-    "<load_controller id=\"" id "\" type=\"loadcurve\"><interpolate>" interpolate                  \
-    "</interpolate><extend>" extend "</extend><points>" points "</points></load_controller>"
-#define LINEAR1                                                                                    \
-    "<LoadData>" CURVE("1", "LINEAR", "CONSTANT", "<pt>0,0</pt><pt>1,2</pt>") "</LoadData>\n"
-#define TAIL "</febio_spec>\n"
-
-static lar_status parse_bytes(const char *text, size_t size, lar_model **model, lar_error *error) {
-    /* A copy of the exact size, so that the address sanitizer sees reads beyond it. */
-    lar_bytes bytes = {malloc(size + 1), size};
-    assert_non_null(bytes.data);
-    memcpy(bytes.data, text, size);
-    bytes.data[size] = 0;
-    lar_status status = lar_feb_parse("deck.feb", &bytes, model, error);
-    free(bytes.data);
-    return status;
-}
-
-static lar_model *read_deck(const char *text) {
-    lar_error error = {0};
-    lar_model *model = NULL;
-    if (parse_bytes(text, strlen(text), &model, &error)) fail_msg("%s", error.message);
-    return model;
-}
-
-/* The deck must fail with this status and a message that begins with deck.feb:LINE: (line 0: any)
- * and holds the words. */
-static void expect_failure(const char *text, lar_status status, int line, const char *words) {
-    lar_error error = {0};
-    lar_model *model = NULL;
-    lar_status got = parse_bytes(text, strlen(text), &model, &error);
-    char start[40];
-    snprintf(start, sizeof start, "deck.feb:%d: ", line);
-    if (got != status || !strstr(error.message, words) ||
-        (line && strncmp(error.message, start, strlen(start)) != 0))
-        fail_msg("status %d (wanted %d), message '%s', wanted '%s...%s'", got, status,
-                 error.message, start, words);
-    assert_null(model);
-}
-
-static int notices_with(const lar_model *model, const char *words) {
-    int count = 0;
-    for (int i = 0; i < model->notice_count; i++) count += strstr(model->notice[i], words) != NULL;
-    return count;
-}
-
-/* ---- mesh and materials ------------------------------------------------------------------------
- */
+/* ---- mesh and materials ---------------------------------------------------------------------- */
 
 static void check_two_cubes(const lar_model *model) {
     const lar_mesh *mesh = &model->mesh;
@@ -381,186 +293,7 @@ static void test_bad_meshes(void **state) {
     expect_failure(HEAD4 "<Mesh from=\"x.feb\"/>" TAIL, LAR_ERROR_UNSUPPORTED, 4, "another file");
 }
 
-/* ---- conditions --------------------------------------------------------------------------------
- */
-
-static void test_supports(void **state) {
-    (void)state;
-    lar_model *model = read_deck(
-        BASE4 "<Boundary><bc type=\"zero displacement\" node_set=\"wall\"><x_dof>1</x_dof>"
-              "<y_dof>0</y_dof><z_dof>1</z_dof></bc>"
-              "<bc type=\"fixed displacement\" node_set=\"@part_list:both\"><dofs>y</dofs></bc>"
-              "<bc type=\"prescribed displacement\" node_set=\"@surface:end\"><dof>x</dof>"
-              "<value lc=\"1\">-0.25</value><relative>0</relative></bc>"
-              "<bc type=\"prescribed displacement\" node_set=\"@elem_set:one\"><dof>z</dof>"
-              "<value>1e-3</value></bc></Boundary>" LINEAR1 TAIL);
-    assert_int_equal(model->fix_count, 2);
-    assert_int_equal(model->fix[0].axes, LAR_AXIS_X | LAR_AXIS_Z);
-    assert_int_equal(model->fix[0].nodes.count, 4);
-    assert_int_equal(model->fix[0].nodes.node[1], 3);
-    assert_int_equal(model->fix[1].axes, LAR_AXIS_Y);
-    assert_int_equal(model->fix[1].nodes.count, 12);
-    assert_int_equal(model->move_count, 2);
-    assert_int_equal(model->move[0].nodes.count, 4);
-    assert_int_equal(model->move[0].nodes.node[0], 8);
-    assert_true(model->move[0].by == -0.25);
-    assert_true(lar_curve_value(&model->curve[model->move[0].curve], 0.5) == 1.0);
-    assert_int_equal(model->move[1].nodes.count, 8);
-    assert_true(lar_curve_value(&model->curve[model->move[1].curve], 0.0) == 1.0);
-    assert_int_equal(model->curve_count, 2);
-    lar_model_destroy(model);
-}
-
-static void test_loads(void **state) {
-    (void)state;
-    lar_model *model = read_deck(
-        BASE4 "<Loads><nodal_load type=\"nodal_force\" node_set=\"tip\"><value lc=\"1\">1,2,3"
-              "</value></nodal_load><nodal_load type=\"nodal_load\" node_set=\"wall\"><dof>y</dof>"
-              "<scale lc=\"1\">-4</scale></nodal_load>"
-              "<surface_load type=\"pressure\" surface=\"end\"><pressure lc=\"1\">50</pressure>"
-              "<linear>1</linear></surface_load>"
-              "<surface_load type=\"pressure\" surface=\"inward\"><pressure>50</pressure>"
-              "<symmetric_stiffness>1</symmetric_stiffness></surface_load>"
-              "<body_load type=\"const\" elem_set=\"@part_list:both\"><x>0</x><z lc=\"1\">9.81</z>"
-              "</body_load></Loads><Initial><ic type=\"velocity\" node_set=\"tip\">"
-              "<value>0,0,-2</value></ic></Initial>" LINEAR1 TAIL);
-    assert_int_equal(model->load_count, 2);
-    assert_true(model->load[0].force[2] == 3.0 && model->load[0].nodes.count == 4);
-    assert_true(model->load[1].force[1] == -4.0 && model->load[1].force[0] == 0.0);
-    assert_int_equal(model->pressure_count, 2);
-    assert_true(model->pressure[0].pressure == 50.0 && model->pressure[0].face[0] == 7);
-    assert_true(model->pressure[1].pressure == -50.0 && model->pressure[1].count == 1);
-    assert_int_equal(notices_with(model, "<linear>"), 1);
-    assert_int_equal(notices_with(model, "normals into the body"), 1);
-    assert_true(model->gravity[2] == -9.81 && model->gravity[0] == 0.0);
-    assert_int_equal(model->gravity_curve[2], model->load[0].curve);
-    assert_int_equal(model->gravity_curve[1], -1);
-    assert_int_equal(model->initial_count, 1);
-    assert_true(model->initial[0].velocity[2] == -2.0 && model->initial[0].nodes.count == 4);
-    lar_model_destroy(model);
-}
-
-#define BC(type, set, content)                                                                     \
-    BASE4 "<Boundary>\n<bc type=\"" type "\" node_set=\"" set "\">\n" content                      \
-          "</bc></Boundary>" LINEAR1 TAIL
-enum { BC_LINE = 22 };
-
-static void test_bad_supports(void **state) {
-    (void)state;
-    expect_failure(BC("zero displacement", "none", "<x_dof>1</x_dof>"), LAR_ERROR_FORMAT, BC_LINE,
-                   "node set 'none'");
-    expect_failure(BC("zero displacement", "@edge:e", "<x_dof>1</x_dof>"), LAR_ERROR_UNSUPPORTED,
-                   BC_LINE, "@edge:e");
-    expect_failure(BC("zero displacement", "@surface:no", "<x_dof>1</x_dof>"), LAR_ERROR_FORMAT,
-                   BC_LINE, "surface 'no'");
-    expect_failure(BC("normal displacement", "tip", ""), LAR_ERROR_UNSUPPORTED, BC_LINE,
-                   "'normal displacement'");
-    expect_failure(BC("fix", "tip", "<dofs>x,u</dofs>"), LAR_ERROR_UNSUPPORTED, BC_LINE + 1, "'u'");
-    expect_failure(BC("prescribed displacement", "tip", "<value lc=\"1\">1</value>"),
-                   LAR_ERROR_FORMAT, BC_LINE, "no <dof>");
-    expect_failure(BC("prescribed displacement", "tip", "<dof>x</dof>\n"), LAR_ERROR_FORMAT,
-                   BC_LINE, "no <value>");
-    expect_failure(BC("prescribed displacement", "tip", "<dof>x</dof>\n<value lc=\"3\">1</value>"),
-                   LAR_ERROR_FORMAT, BC_LINE + 2, "load controller 3");
-    expect_failure(
-        BC("prescribed displacement", "tip", "<dof>x</dof>\n<value type=\"map\">m</value>"),
-        LAR_ERROR_UNSUPPORTED, BC_LINE + 2, "is a map");
-    expect_failure(BC("prescribed displacement", "tip",
-                      "<dof>x</dof><value>1</value>\n<relative>1</relative>"),
-                   LAR_ERROR_UNSUPPORTED, BC_LINE + 2, "<relative>");
-    expect_failure(BASE4 "<Boundary>\n<rigid/></Boundary>" TAIL, LAR_ERROR_UNSUPPORTED, BC_LINE,
-                   "<rigid>");
-    expect_failure(BASE4 "<Boundary>\n<bc type=\"fix\"><dofs>x</dofs></bc></Boundary>" TAIL,
-                   LAR_ERROR_FORMAT, BC_LINE, "no attribute node_set");
-}
-
-static void test_bad_loads(void **state) {
-    (void)state;
-    expect_failure(BASE4 "<Loads>\n<surface_load type=\"traction\" surface=\"end\"/></Loads>" TAIL,
-                   LAR_ERROR_UNSUPPORTED, BC_LINE, "'traction'");
-    expect_failure(BASE4 "<Loads>\n<surface_load type=\"pressure\" surface=\"no\"><pressure>1"
-                         "</pressure></surface_load></Loads>" TAIL,
-                   LAR_ERROR_FORMAT, BC_LINE, "surface 'no'");
-    expect_failure(BASE4 "<Loads>\n<body_load type=\"centrifugal\"/></Loads>" TAIL,
-                   LAR_ERROR_UNSUPPORTED, BC_LINE, "'centrifugal'");
-    expect_failure(BASE4 "<Loads>\n<body_load type=\"const\"/></Loads>" TAIL, LAR_ERROR_FORMAT,
-                   BC_LINE, "neither");
-    expect_failure(BASE4 "<Loads>\n<body_load type=\"const\" elem_set=\"left\"><z>1</z>"
-                         "</body_load></Loads>" TAIL,
-                   LAR_ERROR_UNSUPPORTED, BC_LINE, "'left' only");
-    expect_failure(BASE4 "<Loads>\n<edge_load/></Loads>" TAIL, LAR_ERROR_UNSUPPORTED, BC_LINE,
-                   "<edge_load>");
-    expect_failure(BASE4 "<Loads>\n<nodal_load type=\"nodal_force\" node_set=\"tip\"><value>1,2"
-                         "</value></nodal_load></Loads>" TAIL,
-                   LAR_ERROR_FORMAT, BC_LINE, "holds 2 values");
-    expect_failure(BASE4 "<Initial>\n<ic type=\"temperature\" node_set=\"tip\"/></Initial>" TAIL,
-                   LAR_ERROR_UNSUPPORTED, BC_LINE, "'temperature'");
-}
-
-/* ---- curves ------------------------------------------------------------------------------------
- */
-
-#define USE(curve)                                                                                 \
-    BASE4                                                                                          \
-    "<Boundary><bc type=\"prescribe\" node_set=\"tip\"><dof>x</dof><scale lc=\"1\">1</scale>"      \
-    "</bc></Boundary>\n<LoadData>\n" curve "</LoadData>" TAIL
-
-static double deck_curve(const char *deck, double time) {
-    lar_model *model = read_deck(deck);
-    double value = lar_curve_value(&model->curve[model->move[0].curve], time);
-    lar_model_destroy(model);
-    return value;
-}
-
-static void test_curves(void **state) {
-    (void)state;
-    const char *step = USE(CURVE("1", "STEP", "CONSTANT", "<pt>0,1</pt><pt>1,2</pt><pt>2,3</pt>"));
-    assert_true(deck_curve(step, 0.5) == 2.0);
-    assert_true(deck_curve(step, 1.5) == 3.0);
-    const char *two = USE(CURVE("1", "SMOOTH", "CONSTANT", "<pt>0,0</pt><pt>1,1</pt>"));
-    assert_true(fabs(deck_curve(two, 0.25) - 0.25) < 1e-12);
-    /* t^2 is its own parabola, blended or not */
-    const char *four =
-        USE(CURVE("1", "SMOOTH", "CONSTANT", "<pt>0,0</pt><pt>1,1</pt><pt>2,4</pt><pt>3,9</pt>"));
-    for (double t = 0.0; t < 3.0; t += 0.37) assert_true(fabs(deck_curve(four, t) - t * t) < 1e-3);
-    const char *rise = USE(CURVE("1", "SMOOTH STEP", "CONSTANT", "<pt>0,0</pt><pt>1,1</pt>"));
-    assert_true(fabs(deck_curve(rise, 0.25) - 0.103515625) < 1e-4);
-    const char *jump =
-        USE(CURVE("1", "LINEAR", "CONSTANT", "<pt>0,0</pt><pt>1,1</pt><pt>1,5</pt>"));
-    assert_true(deck_curve(jump, 2.0) == 5.0);
-    /* the run ends with the curve, so its extension does not matter */
-    const char *covered = USE(CURVE("1", "LINEAR", "REPEAT", "<pt>0,0</pt><pt>1,1</pt>"));
-    assert_true(deck_curve(covered, 0.5) == 0.5);
-}
-
-static void test_bad_curves(void **state) {
-    (void)state;
-    enum { LINE = BC_LINE + 1 };
-    expect_failure(USE(CURVE("1", "LINEAR", "REPEAT", "<pt>0,0</pt><pt>0.5,1</pt>")),
-                   LAR_ERROR_UNSUPPORTED, LINE, "extended beyond");
-    expect_failure(USE(CURVE("1", "CONTROL POINTS", "CONSTANT", "<pt>0,0</pt>")),
-                   LAR_ERROR_UNSUPPORTED, LINE, "interpolation that is not read");
-    expect_failure(USE("<load_controller id=\"1\" type=\"math\"><math>t</math></load_controller>"),
-                   LAR_ERROR_UNSUPPORTED, LINE, "not of type loadcurve");
-    expect_failure(USE(CURVE("1", "LINEAR", "CONSTANT", "")), LAR_ERROR_FORMAT, LINE, "no points");
-    expect_failure(USE(CURVE("1", "LINEAR", "CONSTANT", "<pt>1,0</pt>\n<pt>0,0</pt>")),
-                   LAR_ERROR_FORMAT, LINE + 1, "before");
-    expect_failure(USE(CURVE("1", "LINEAR", "CONSTANT", "\n<pt>1,inf</pt>")), LAR_ERROR_FORMAT,
-                   LINE + 1, "'inf'");
-    expect_failure(USE(CURVE("1", "LINEAR", "CONSTANT",
-                             "<pt>1,1</pt>") "\n" CURVE("1", "LINEAR", "CONSTANT", "<pt>1,1</pt>")),
-                   LAR_ERROR_FORMAT, LINE + 1, "second load controller");
-    expect_failure(USE(CURVE("1", "SMOOTH", "CONSTANT", "<pt>0,0</pt><pt>0,1</pt><pt>1,1</pt>")),
-                   LAR_ERROR_UNSUPPORTED, LINE, "two points at the same time");
-    /* unused, it harms nobody */
-    lar_model *model = read_deck(BASE4 "<LoadData>" CURVE("1", "CONTROL POINTS", "CONSTANT",
-                                                          "<pt>0,0</pt>") "</LoadData>" TAIL);
-    assert_int_equal(model->curve_count, 0);
-    lar_model_destroy(model);
-}
-
-/* ---- sections ----------------------------------------------------------------------------------
- */
+/* ---- sections -------------------------------------------------------------------------------- */
 
 static void test_static_and_step(void **state) {
     (void)state;
@@ -633,8 +366,7 @@ static void test_sections(void **state) {
     expect_failure("<a>\n<b></a>", LAR_ERROR_FORMAT, 2, "well-formed");
 }
 
-/* ---- the mesh alone ----------------------------------------------------------------------------
- */
+/* ---- the mesh alone -------------------------------------------------------------------------- */
 
 static void test_mesh_only(void **state) {
     (void)state;
@@ -655,8 +387,7 @@ static void test_mesh_only(void **state) {
     lar_bytes_free(&bytes);
 }
 
-/* ---- hostile files -----------------------------------------------------------------------------
- */
+/* ---- hostile files --------------------------------------------------------------------------- */
 
 static void test_entities(void **state) {
     (void)state;
@@ -706,158 +437,14 @@ static void test_damage(void **state) {
     free(copy);
 }
 
-/* ---- real decks --------------------------------------------------------------------------------
- */
-
-static void read_shared(const char *name, lar_status wanted, lar_model **model, lar_error *error) {
-    char path[1000];
-    snprintf(path, sizeof path, "%s/data/bench/febio/%s", LAR_TEST_SHARED, name);
-    FILE *file = fopen(path, "rb");
-    if (!file) {
-        print_message("skipped: no shared data\n");
-        skip();
-    }
-    fclose(file);
-    if (lar_feb_read(path, model, error) != wanted) fail_msg("%s: %s", name, error->message);
-}
-
-typedef struct expected_deck {
-    const char *name;
-    int nodes, elements, curves, law, notices;
-    double duration;
-    int fix_nodes[3]; /* of the three supports; 0: none */
-    unsigned fix_axes[3];
-    int move_nodes;
-    unsigned move_axes;
-    double move_by;
-} expected_deck;
-
-/* Counted in the files by other means. */
-static const expected_deck expected[] = {
-    {"dy01.feb", 8, 1, 3, LAR_LAW_coupled_neo_hookean, 0, 1.0, {0}, {0}, 0, 0, 0},
-    {"dy02.feb",
-     189,
-     80,
-     3,
-     LAR_LAW_coupled_neo_hookean,
-     0,
-     16.8,
-     {9, 9, 9},
-     {LAR_AXIS_Z, LAR_AXIS_Y, LAR_AXIS_X},
-     0,
-     0,
-     0},
-    {"mi27.feb",
-     396,
-     250,
-     1,
-     LAR_LAW_mooney_rivlin,
-     1,
-     1.0,
-     {36, 66, 66},
-     {LAR_AXIS_X, LAR_AXIS_Y, LAR_AXIS_Z},
-     36,
-     LAR_AXIS_X,
-     1.0},
-    {"tu01.feb",
-     756,
-     500,
-     1,
-     LAR_LAW_mooney_rivlin,
-     1,
-     1.0,
-     {72, 72, 36},
-     {LAR_AXIS_Z, LAR_AXIS_Y, LAR_AXIS_X},
-     36,
-     LAR_AXIS_X,
-     1.0},
-    {"ma01.feb",
-     225,
-     128,
-     1,
-     LAR_LAW_ogden,
-     1,
-     1.0,
-     {50, 50, 25},
-     {LAR_AXIS_Z, LAR_AXIS_Y, LAR_AXIS_X},
-     25,
-     LAR_AXIS_X,
-     1.0},
-    {"ma61.feb",
-     27,
-     8,
-     1,
-     LAR_LAW_yeoh,
-     1,
-     1.0,
-     {9, 9, 9},
-     {LAR_AXIS_X, LAR_AXIS_Y, LAR_AXIS_Z},
-     9,
-     LAR_AXIS_Z,
-     2.0},
-};
-
-static void check_deck(const expected_deck *want) {
-    lar_error error = {0};
-    lar_model *model = NULL;
-    read_shared(want->name, LAR_OK, &model, &error);
-    assert_int_equal(model->mesh.node_count, want->nodes);
-    assert_int_equal(model->mesh.element_count, want->elements);
-    assert_int_equal(model->curve_count, want->curves);
-    assert_int_equal(model->material[0].law, want->law);
-    assert_int_equal(model->notice_count, want->notices);
-    assert_true(fabs(model->duration - want->duration) < 1e-9);
-    assert_int_equal(model->fix_count, want->fix_nodes[0] ? 3 : 0);
-    for (int i = 0; i < model->fix_count; i++) {
-        assert_int_equal(model->fix[i].nodes.count, want->fix_nodes[i]);
-        assert_int_equal(model->fix[i].axes, want->fix_axes[i]);
-    }
-    assert_int_equal(model->move_count, want->move_nodes ? 1 : 0);
-    if (model->move_count) {
-        assert_int_equal(model->move[0].nodes.count, want->move_nodes);
-        assert_int_equal(model->move[0].axes, want->move_axes);
-        assert_true(model->move[0].by == want->move_by);
-    }
-    lar_model_destroy(model);
-}
-
-static void test_real_decks(void **state) {
-    (void)state;
-    for (size_t i = 0; i < sizeof expected / sizeof expected[0]; i++) check_deck(&expected[i]);
-    lar_error error = {0};
-    lar_model *model = NULL;
-    read_shared("dy01.feb", LAR_OK, &model, &error);
-    assert_true(model->gravity[2] == -1.0 && model->gravity[0] == 0.0);
-    assert_true(lar_curve_value(&model->curve[model->gravity_curve[2]], 0.3) == 1.0);
-    lar_model_destroy(model);
-}
-
-static void test_real_refusals(void **state) {
-    (void)state;
-    static const char *const decks[][2] = {{"co01.feb", "co01.feb:149: <contact> of type "
-                                                        "'sliding-facet-on-facet'"},
-                                           {"co02.feb", "'sliding-node-on-facet' asks for contact"},
-                                           {"ex01.feb", "part 'Part3' are a rigid body"}};
-    for (int i = 0; i < 3; i++) {
-        lar_error error = {0};
-        lar_model *model = NULL;
-        read_shared(decks[i][0], LAR_ERROR_UNSUPPORTED, &model, &error);
-        if (!strstr(error.message, decks[i][1])) fail_msg("%s", error.message);
-    }
-}
-
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_version_4),       cmocka_unit_test(test_version_3),
         cmocka_unit_test(test_materials),       cmocka_unit_test(test_stiffening_laws),
         cmocka_unit_test(test_bad_materials),   cmocka_unit_test(test_bad_meshes),
-        cmocka_unit_test(test_supports),        cmocka_unit_test(test_loads),
-        cmocka_unit_test(test_bad_supports),    cmocka_unit_test(test_bad_loads),
-        cmocka_unit_test(test_curves),          cmocka_unit_test(test_bad_curves),
         cmocka_unit_test(test_static_and_step), cmocka_unit_test(test_sections),
         cmocka_unit_test(test_mesh_only),       cmocka_unit_test(test_entities),
-        cmocka_unit_test(test_damage),          cmocka_unit_test(test_real_decks),
-        cmocka_unit_test(test_real_refusals),
+        cmocka_unit_test(test_damage),
     };
     return cmocka_run_group_tests_name("feb", tests, NULL, NULL);
 }

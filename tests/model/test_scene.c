@@ -1,58 +1,6 @@
 /* Scenes that are right: every key, every selector, what ends up in the model. The meshes are the
  * bricks of brick.h. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
-#include <math.h>
-#include <stdio.h>
-
-#include "brick.h"
-#include "model/scene/scene.h"
-
-#define HEAD "lariat: 1\nmesh: brick.vtu\n"
-#define MATERIAL                                                                                   \
-    "materials: [{cells: all, law: neo-hookean, density: 1050, shear_modulus: 4.0e3, "             \
-    "bulk_modulus: 4.0e5}]\n"
-
-static lar_model *scene(const char *text) {
-    lar_bytes bytes = {(unsigned char *)lar_strdup(text), strlen(text)};
-    lar_model *model = NULL;
-    lar_error error = {0};
-    lar_status status = lar_scene_parse_with("s.yaml", &bytes, brick_read, &model, &error);
-    lar_bytes_free(&bytes);
-    if (status) fail_msg("%s", error.message);
-    return model;
-}
-
-static void same(double a, double b) {
-    if (!(fabs(a - b) <= 1e-12 * (1.0 + fabs(b)))) fail_msg("%.17g instead of %.17g", a, b);
-}
-
-/* A selection as text: the indices, separated by blanks. */
-static void indices(const int32_t *index, int32_t count, char *text, size_t size) {
-    size_t used = 0;
-    text[0] = '\0';
-    for (int32_t i = 0; i < count && used < size; i++)
-        used += (size_t)snprintf(text + used, size - used, "%s%d", i ? " " : "", (int)index[i]);
-}
-
-static void selects(const char *kind, const char *selector, const char *expected) {
-    char text[600], found[400];
-    snprintf(text, sizeof text,
-             HEAD
-             "sets:\n  - {name: edge, nodes: {list: [1, 2, 3]}}\n  - {name: it, %s: %s}\n" MATERIAL,
-             kind, selector);
-    lar_model *model = scene(text);
-    const lar_set *set = &model->mesh.set[model->mesh.set_count - 1];
-    assert_string_equal(set->name, "it");
-    indices(set->index, set->count, found, sizeof found);
-    if (strcmp(found, expected) != 0)
-        fail_msg("%s: %s gives \"%s\" instead of \"%s\"", kind, selector, found, expected);
-    lar_model_destroy(model);
-}
+#include "model/scene_test.h"
 
 static void test_node_selectors(void **state) {
     (void)state;
@@ -352,134 +300,6 @@ static void test_output(void **state) {
     lar_model_destroy(model);
 }
 
-static void test_contact(void **state) {
-    (void)state;
-    lar_model *model = scene(
-        HEAD MATERIAL "contact:\n"
-                      "  - {self: true}\n"
-                      "  - {self: lid}\n"
-                      "  - {self: all}\n"
-                      "  - {between: [lid, bottom]}\n"
-                      "  - {faces: [lid, bottom], plane: {through: [0, 0, -0.001], normal: "
-                      "[0, 0, 2]}}\n"
-                      "  - {faces: all, plane: {through: [5, 0, 0.02], normal: [0, 0, -1]}}\n");
-    assert_int_equal(model->contact_count, 6);
-    const lar_contact *c = model->contact;
-    const int kind[] = {LAR_CONTACT_SELF,    LAR_CONTACT_SELF,  LAR_CONTACT_SELF,
-                        LAR_CONTACT_BETWEEN, LAR_CONTACT_PLANE, LAR_CONTACT_PLANE};
-    const int faces[] = {24, 4, 24, 4, 8, 24};
-    for (int i = 0; i < 6; i++) {
-        assert_int_equal(c[i].kind, kind[i]);
-        assert_int_equal(c[i].face_count, faces[i]);
-        assert_int_equal(c[i].against_count, i == 3 ? 4 : 0);
-    }
-    assert_memory_equal(c[0].face, model->surface.face, 24 * sizeof(int32_t));
-    assert_memory_equal(c[2].face, model->surface.face, 24 * sizeof(int32_t));
-    assert_int_equal(c[3].face[0], 4 * 6 + 5);
-    assert_int_equal(c[3].against[0], 4);
-    same(c[4].through[2], -0.001);
-    same(c[4].normal[2], 1);
-    same(c[5].normal[2], -1);
-    lar_model_destroy(model);
-}
-
-/* Where a tool's axis `axis` points. */
-static void axis_of(const lar_tool *tool, int axis, double out[3]) {
-    const double *q = tool->rest.orientation;
-    double column[3][3] = {{1 - 2 * (q[2] * q[2] + q[3] * q[3]), 2 * (q[1] * q[2] + q[0] * q[3]),
-                            2 * (q[1] * q[3] - q[0] * q[2])},
-                           {2 * (q[1] * q[2] - q[0] * q[3]), 1 - 2 * (q[1] * q[1] + q[3] * q[3]),
-                            2 * (q[2] * q[3] + q[0] * q[1])},
-                           {2 * (q[1] * q[3] + q[0] * q[2]), 2 * (q[2] * q[3] - q[0] * q[1]),
-                            1 - 2 * (q[1] * q[1] + q[2] * q[2])}};
-    memcpy(out, column[axis], sizeof column[axis]);
-}
-
-static void points(const lar_tool *tool, int axis, double x, double y, double z) {
-    double v[3], length = sqrt(x * x + y * y + z * z);
-    axis_of(tool, axis, v);
-    same(v[0], x / length);
-    same(v[1], y / length);
-    same(v[2], z / length);
-}
-
-static void test_tools(void **state) {
-    (void)state;
-    lar_model *model = scene(
-        HEAD MATERIAL
-        "tools:\n"
-        "  - {name: probe, shape: sphere, radius: 0.005, at: [0.01, 0.01, 0.025]}\n"
-        "  - {name: stick, shape: capsule, radius: 0.003, length: 0.2, at: [-0.01, 0, 0], towards: "
-        "[2, 0, 0]}\n"
-        "  - {name: up, shape: capsule, radius: 0.003, length: 0.2, at: [0, 0, -0.01], towards: "
-        "[0, 0, 1]}\n"
-        "  - {name: any, shape: capsule, radius: 0.003, length: 0.2, at: [1, 1, 1], towards: "
-        "[-3, 2, 6]}\n"
-        "  - {name: jaws, shape: grasper, radius: 0.001, length: 0.02, at: [0, 0, 0.1]}\n"
-        "  - {name: turned, shape: grasper, radius: 0.001, length: 0.02, spread: 90, turn: 90,\n"
-        "     at: [0, 0, 0.1], towards: [0, 1, 0]}\n");
-    assert_int_equal(lar_model_tool_count(model), 6);
-    const char *const names[] = {"probe", "stick", "up", "any", "jaws", "turned"};
-    lar_tool_info info;
-    for (int i = 0; i < 6; i++) {
-        assert_int_equal(lar_model_tool(model, i, &info, NULL), LAR_OK);
-        assert_string_equal(info.name, names[i]);
-        same(info.rest.opening, 1);
-    }
-    const lar_tool *tool = model->tool;
-    assert_int_equal(tool[0].shape, LAR_TOOL_SPHERE);
-    assert_int_equal(tool[1].shape, LAR_TOOL_CAPSULE);
-    assert_int_equal(tool[4].shape, LAR_TOOL_GRASPER);
-    same(tool[0].radius, 0.005);
-    same(tool[0].length, 0);
-    same(tool[0].rest.position[2], 0.025);
-    same(tool[1].length, 0.2);
-    same(tool[1].spread, 0);
-    same(tool[4].spread, acos(-1) / 3);
-    same(tool[5].spread, acos(-1) / 2);
-    points(&tool[0], 2, 0, 0, 1);
-    points(&tool[1], 2, -1, 0, 0); /* the shaft lies behind the tip */
-    points(&tool[2], 2, 0, 0, -1);
-    points(&tool[3], 2, 3, -2, -6);
-    points(&tool[4], 0, 1, 0, 0); /* the jaws open along the tool's own x */
-    points(&tool[5], 2, 0, -1, 0);
-    points(&tool[5], 0, 0, 0, 1);
-    lar_model_destroy(model);
-}
-
-/* Tools that just touch, at faces, edges and corners, and in between jaws, are outside. */
-static void test_tools_beside_the_body(void **state) {
-    (void)state;
-    static const char *const beside[] = {
-        "shape: sphere, radius: 0.005, at: [-0.005, 0.013, 0.007]",
-        "shape: sphere, radius: 0.005, at: [-0.003, 0.01, -0.004]",
-        "shape: sphere, radius: 0.007, at: [0.022, 0.023, -0.006]",
-        "shape: capsule, radius: 0.002, length: 1, at: [0.5, 0.01, 0.022], towards: [1, 0, 0]",
-        ("shape: capsule, radius: 0.0141421356, length: 1, at: [0.265, 0.28, -0.22], "
-         "towards: [1, 1, -1]"),
-        "shape: grasper, radius: 0.001, length: 0.04, spread: 120, at: [0.01, 0.01, 0.037]"};
-    for (size_t i = 0; i < sizeof beside / sizeof beside[0]; i++) {
-        char text[600];
-        snprintf(text, sizeof text, HEAD MATERIAL "tools: [{name: a, %s}]\n", beside[i]);
-        lar_model_destroy(scene(text));
-    }
-}
-
-/* A thin tool finds its way between the points at which a face of 10 mm feels it. */
-static void test_thin_tools(void **state) {
-    (void)state;
-    lar_model *model =
-        scene(HEAD MATERIAL "tools:\n"
-                            "  - {name: enough, shape: sphere, radius: 0.0012, at: [0, 0, 1]}\n"
-                            "  - {name: thin, shape: sphere, radius: 0.0011, at: [0, 0, 1]}\n");
-    assert_int_equal(model->notice_count, 1);
-    assert_string_equal(model->notice[0],
-                        "s.yaml: the tool \"thin\" has a radius of 0.0011 m, and the surface has "
-                        "edges of up to 0.01 m: large faces feel it only where it meets one of "
-                        "their 36 points; give it a radius of 0.0012 m, or refine the mesh");
-    lar_model_destroy(model);
-}
-
 static void test_several_meshes(void **state) {
     (void)state;
     lar_model *model = scene("lariat: 1\nmesh: [brick.vtu, {file: two.vtu, tag: 9}]\n" MATERIAL
@@ -590,10 +410,6 @@ int main(void) {
         cmocka_unit_test(test_motion_and_loads),
         cmocka_unit_test(test_surface),
         cmocka_unit_test(test_output),
-        cmocka_unit_test(test_contact),
-        cmocka_unit_test(test_tools),
-        cmocka_unit_test(test_tools_beside_the_body),
-        cmocka_unit_test(test_thin_tools),
         cmocka_unit_test(test_several_meshes),
         cmocka_unit_test(test_mesh_stands_beside_the_scene),
         cmocka_unit_test(test_every_key),

@@ -24,8 +24,7 @@ enum {
     PONG = 10
 };
 
-/* ---- a served session -------------------------------------------------------------------------
- */
+/* ---- a served session ------------------------------------------------------------------------ */
 
 typedef struct served {
     bench b;
@@ -88,8 +87,7 @@ TEST_UNUSED static void end_serving(served *s) {
     close_bench(&s->b);
 }
 
-/* ---- connections ------------------------------------------------------------------------------
- */
+/* ---- connections ----------------------------------------------------------------------------- */
 
 typedef struct client {
     int fd;
@@ -193,8 +191,7 @@ TEST_UNUSED static void close_client(client *c) {
     *c = (client){.fd = -1};
 }
 
-/* ---- frames ------------------------------------------------------------------------------------
- */
+/* ---- frames ---------------------------------------------------------------------------------- */
 
 /* One frame with any first byte; masked as clients must, unless told otherwise. */
 TEST_UNUSED static bool put_frame(client *c, int first, const void *payload, size_t length,

@@ -19,8 +19,7 @@ static lar_coupling couple(const lar_tool_info *tool, double tool_speed, double 
     return coupling;
 }
 
-/* ---- tissue: a wall at z = 0, elastic, felt as the mean over a tick's even way ----------------
- */
+/* ---- tissue: a wall at z = 0, elastic, felt as the mean over a tick's even way --------------- */
 
 typedef struct wall {
     double stiffness; /* [N/m] */
@@ -81,8 +80,7 @@ static double move(double at, double *velocity, double target, double accelerati
     return at + *velocity * TICK;
 }
 
-/* ---- energy -----------------------------------------------------------------------------------
- */
+/* ---- energy ---------------------------------------------------------------------------------- */
 
 static const double REFILL = 1e-3; /* of the account [W] */
 
@@ -229,8 +227,7 @@ static void test_device_rests_on_stiff_wall(void **state) {
     }
 }
 
-/* ---- bounds -----------------------------------------------------------------------------------
- */
+/* ---- bounds ---------------------------------------------------------------------------------- */
 
 static void test_force_and_speed_are_bounded(void **state) {
     (void)state;
@@ -319,8 +316,7 @@ static void test_hand_pulls_no_harder(void **state) {
     }
 }
 
-/* ---- following --------------------------------------------------------------------------------
- */
+/* ---- following ------------------------------------------------------------------------------- */
 
 /* A hand may be allowed to pull hard: its device is told no more than a device can give. */
 static void test_strong_hand_feels_no_more(void **state) {

@@ -14,8 +14,7 @@ static lar_position_packet sample(uint32_t sequence) {
         .pose = {.position = {1, -2, 0.5}, .orientation = {0.5, -0.5, 0.5, -0.5}, .opening = 0.25}};
 }
 
-/* ---- packets ----------------------------------------------------------------------------------
- */
+/* ---- packets --------------------------------------------------------------------------------- */
 
 static void test_packets_there_and_back(void **state) {
     (void)state;
@@ -110,8 +109,7 @@ static void test_what_is_no_packet(void **state) {
     assert_false(lar_position_packet_decode(bytes, LAR_PACKET_BYTES, &out));
 }
 
-/* ---- the link ---------------------------------------------------------------------------------
- */
+/* ---- the link -------------------------------------------------------------------------------- */
 
 static const lar_tool_pose ORIGIN = {.orientation = {1, 0, 0, 0}, .opening = 1};
 static const lar_link_address HE = {{1}}, SHE = {{2}};

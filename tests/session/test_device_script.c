@@ -141,7 +141,8 @@ static void test_bad_scripts_are_refused(void **state) {
         {"time,x,y,z\n0,0,0,0,0\n", "device_bad.csv:2: more values"},
         {"time,x,y,z\n0,0,0,1000\n", "device_bad.csv:2: z is 1000 m"},
         {"time,x,y,z,opening\n0,0,0,0,2\n", "device_bad.csv:2: an opening of 2"},
-        {"time,x,y,z,qw,qx,qy,qz\n0,0,0,0,0,0,0,0\n", "device_bad.csv:2: the orientation has length 0"},
+        {"time,x,y,z,qw,qx,qy,qz\n0,0,0,0,0,0,0,0\n",
+         "device_bad.csv:2: the orientation has length 0"},
     };
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         write_file("device_bad.csv", bad[i].text);
@@ -150,8 +151,7 @@ static void test_bad_scripts_are_refused(void **state) {
     assert_refused("script:missing.csv", LAR_ERROR_IO, "missing.csv");
 }
 
-/* ---- the device's axes ------------------------------------------------------------------------
- */
+/* ---- the device's axes ----------------------------------------------------------------------- */
 
 static void test_axes_scale_and_place(void **state) {
     (void)state;
@@ -178,8 +178,7 @@ static void test_axes_scale_and_place(void **state) {
     }
 }
 
-/* ---- the trocar -------------------------------------------------------------------------------
- */
+/* ---- the trocar ------------------------------------------------------------------------------ */
 
 static double distance_to_shaft(const lar_tool_pose *pose, const double point[3]) {
     double way[3], along[3];

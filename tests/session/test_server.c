@@ -3,8 +3,7 @@
 
 #include "session/server_test.h"
 
-/* ---- what a viewer sees ------------------------------------------------------------------------
- */
+/* ---- what a viewer sees ---------------------------------------------------------------------- */
 
 static void says_hello_and_shows_the_surface(void **unused) {
     (void)unused;
@@ -180,8 +179,7 @@ static void one_frame_is_under_way_at_most(void **unused) {
     end_serving(&s);
 }
 
-/* ---- what a viewer does ------------------------------------------------------------------------
- */
+/* ---- what a viewer does ---------------------------------------------------------------------- */
 
 /* Where the body's free end is in a frame: its mean height, and one of its corners. */
 static double height_of(const client *c, float corner[3]) {
@@ -401,8 +399,7 @@ static void a_tool_that_tissue_stops_says_so(void **unused) {
     end_serving(&s);
 }
 
-/* ---- commands ----------------------------------------------------------------------------------
- */
+/* ---- commands -------------------------------------------------------------------------------- */
 
 static void plays_pauses_steps_and_resets(void **unused) {
     (void)unused;

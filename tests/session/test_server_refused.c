@@ -130,8 +130,7 @@ static void who_may_only_watch_does_nothing_else(void **unused) {
     end_serving(&s);
 }
 
-/* ---- files ------------------------------------------------------------------------------------
- */
+/* ---- files ----------------------------------------------------------------------------------- */
 
 static void write_file(const char *folder, const char *name, const char *text) {
     char path[512];
@@ -231,8 +230,7 @@ static void files_and_nothing_else_are_served(void **unused) {
     end_serving(&s);
 }
 
-/* ---- opening ----------------------------------------------------------------------------------
- */
+/* ---- opening --------------------------------------------------------------------------------- */
 
 static void expect_refusal(const lar_server_options *options, lar_status status, const char *word) {
     bench b = {.model = served_model()};

@@ -65,8 +65,7 @@ static double let_in(const char *address) {
     return heard ? seconds : -1;
 }
 
-/* ---- the crowd --------------------------------------------------------------------------------
- */
+/* ---- the crowd ------------------------------------------------------------------------------- */
 
 typedef enum kind { SILENT, HALF, FILES, WRONG, WITHOUT, KINDS } kind;
 static const char *const kind_name[] = {"silent", "half a request", "GET", "a wrong token",
@@ -146,8 +145,7 @@ static void viewers_get_in(void **unused) {
     }
 }
 
-/* ---- limits -----------------------------------------------------------------------------------
- */
+/* ---- limits ---------------------------------------------------------------------------------- */
 
 static int count_open(const int *fd, int count) {
     int open = 0;

@@ -5,8 +5,8 @@
 
 #include "testing.h"
 
-#include "study/fit/fit.h"
-#include "study/fit/forward.h"
+#include "study/inverse/inverse.h"
+#include "study/inverse/forward.h"
 
 enum { TWIN_TEXT = 4096, TWIN_ROWS = 400 };
 
@@ -53,10 +53,10 @@ TEST_UNUSED static void twin_block(const char *name, const int n[3], const doubl
     assert_int_equal(fclose(out), 0);
 }
 
-TEST_UNUSED static void twin_read(const char *name, lar_fit_problem *problem) {
+TEST_UNUSED static void twin_read(const char *name, lar_inverse_problem *problem) {
     lar_error error = {0};
-    *problem = (lar_fit_problem){0};
-    if (lar_fit_problem_read(twin_path(name), problem, &error)) fail_msg("%s", error.message);
+    *problem = (lar_inverse_problem){0};
+    if (lar_inverse_problem_read(twin_path(name), problem, &error)) fail_msg("%s", error.message);
 }
 
 /* A scene with one material, gel, of all elements. */
@@ -86,20 +86,21 @@ TEST_UNUSED static void write_fit(const char *name, const char *parameters, cons
 
 /* What experiment 0 of this problem would measure with these parameters. */
 TEST_UNUSED static void twin_measure(const char *name, const double *truth, double *measured) {
-    lar_fit_problem problem;
+    lar_inverse_problem problem;
     lar_error error = {0};
     twin_read(name, &problem);
     assert_in_range(problem.experiment[0].values, 1, TWIN_ROWS);
-    if (lar_fit_forward(&problem, 0, truth, NULL, measured, &error)) fail_msg("%s", error.message);
-    lar_fit_problem_clear(&problem);
+    if (lar_inverse_forward(&problem, 0, truth, NULL, measured, &error))
+        fail_msg("%s", error.message);
+    lar_inverse_problem_clear(&problem);
 }
 
-TEST_UNUSED static void twin_fit(const char *name, lar_fit_result *result) {
-    lar_fit_problem problem;
+TEST_UNUSED static void twin_fit(const char *name, lar_inverse_result *result) {
+    lar_inverse_problem problem;
     lar_error error = {0};
     twin_read(name, &problem);
-    if (lar_fit_solve(&problem, NULL, result, &error)) fail_msg("%s", error.message);
-    lar_fit_problem_clear(&problem);
+    if (lar_inverse_solve(&problem, NULL, result, &error)) fail_msg("%s", error.message);
+    lar_inverse_problem_clear(&problem);
 }
 
 /* Normal numbers that are the same everywhere (Box and Muller over xorshift). */

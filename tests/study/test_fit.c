@@ -2,8 +2,8 @@
  * intervals that hold what they promise. */
 #include "fit_twin.h"
 
-#include "study/fit/output.h"
-#include "study/fit/parameters.h"
+#include "study/inverse/output.h"
+#include "study/inverse/parameters.h"
 
 #define FACE(z) "{ plane: { point: [0, 0, " z "], normal: [0, 0, 1] } }"
 #define NEO     "law: neo-hookean, density: 1050, shear_modulus: 1.0e3, bulk_modulus: 4.0e4"
@@ -35,7 +35,7 @@ static const double ONES[6] = {1, 1, 1, 1, 1, 1};
 static void curve_is_fitted(const char *kind, const char *conditions) {
     const double truth[1] = {2.3e3};
     double force[3];
-    lar_fit_result r;
+    lar_inverse_result r;
     twin_block("fine.vtk", (const int[3]){5, 5, 10}, SIZE);
     twin_block("coarse.vtk", (const int[3]){4, 4, 8}, SIZE);
     write_scene("fine.yaml", "fine.vtk", NEO, conditions);
@@ -53,7 +53,7 @@ static void curve_is_fitted(const char *kind, const char *conditions) {
     assert_below(fabs(r.estimate[0].value / truth[0] - 1), 0.01);
     print_message("%s: %.6g instead of %g, %d runs, %.3g s\n", kind, r.estimate[0].value, truth[0],
                   r.runs, r.seconds);
-    lar_fit_result_clear(&r);
+    lar_inverse_result_clear(&r);
 }
 
 static void tension_is_fitted(void **state) {
@@ -73,7 +73,7 @@ static void two_constants_are_fitted(void **state) {
                       FREED[] = FREE("c1", "2.0e3", "1.0e2", "1.0e5") FREE("m1", "5", "2", "40");
     const double truth[2] = {1.4e3, 12};
     double force[6];
-    lar_fit_result r;
+    lar_inverse_result r;
     twin_block("small.vtk", (const int[3]){2, 2, 4}, SIZE);
     write_scene("ogden.yaml", "small.vtk", OGDEN, CLAMPED);
     write_curve("ogden.csv", "displacement", WAY, 6, ONES, false);
@@ -88,7 +88,7 @@ static void two_constants_are_fitted(void **state) {
     }
     print_message("ogden: %.6g, %.6g, %d runs, %.3g s\n", r.estimate[0].value, r.estimate[1].value,
                   r.runs, r.seconds);
-    lar_fit_result_clear(&r);
+    lar_inverse_result_clear(&r);
 }
 
 /* A pull and what is left of its force: shear modulus, share and time of one term. */
@@ -101,7 +101,7 @@ static void relaxation_is_fitted(void **state) {
     enum { ROWS = 14 };
     const double truth[3] = {2.0e3, 0.8, 0.15};
     double row[ROWS][2], force[ROWS], ones[ROWS];
-    lar_fit_result r;
+    lar_inverse_result r;
     for (int i = 0; i < ROWS; i++) {
         row[i][0] = 0.1 + 0.06 * i;
         row[i][1] = 0.003;
@@ -122,7 +122,7 @@ static void relaxation_is_fitted(void **state) {
         assert_true(r.estimate[j].told);
         assert_below(fabs(r.estimate[j].value / truth[j] - 1), 0.01);
     }
-    lar_fit_result_clear(&r);
+    lar_inverse_result_clear(&r);
 }
 
 /* A sphere into a pad. The tool begins just above it. The mesh tells 2 % under a ball of two
@@ -136,7 +136,7 @@ static void indentation_is_fitted(void **state) {
              "tools: [ { name: ball, shape: sphere, radius: 0.008, at: [0.02, 0.02, 0.02801] } ]\n";
     const double truth[1] = {2.3e3};
     double force[2];
-    lar_fit_result r;
+    lar_inverse_result r;
     const bool full = test_in_full();
     char finer[1024];
     snprintf(finer, sizeof finer, "%s%s", PRESSED, full ? "" : "time_step: 1.0e-4\n");
@@ -156,7 +156,7 @@ static void indentation_is_fitted(void **state) {
                   r.residuals[0].relative, r.runs, r.seconds);
     assert_true(r.estimate[0].told);
     assert_below(fabs(r.estimate[0].value / truth[0] - 1), 0.01);
-    lar_fit_result_clear(&r);
+    lar_inverse_result_clear(&r);
 }
 
 /* ---- points --------------------------------------------------------------------------------- */
@@ -170,7 +170,7 @@ static void points_are_fitted(const char *kind, bool after_only) {
     const double truth[1] = {700};
     double moved[3 * MARKERS], from[MARKERS][3];
     char text[8192], of_fine[64];
-    lar_fit_result r;
+    lar_inverse_result r;
     size_t used = (size_t)snprintf(text, sizeof text, "x,y,z,to_x,to_y,to_z\n");
     twin_block("fine.vtk", (const int[3]){6, 6, 12}, SIZE);
     twin_block("coarse.vtk", (const int[3]){5, 5, 10}, SIZE);
@@ -206,7 +206,7 @@ static void points_are_fitted(const char *kind, bool after_only) {
     print_message("%s: %.6g, %d runs, %.3g s\n", kind, r.estimate[0].value, r.runs, r.seconds);
     assert_true(r.estimate[0].told);
     assert_below(fabs(r.estimate[0].value / truth[0] - 1), 0.01);
-    lar_fit_result_clear(&r);
+    lar_inverse_result_clear(&r);
 }
 
 static void markers_are_fitted(void **state) {
@@ -219,8 +219,7 @@ static void surfaces_are_fitted(void **state) {
     points_are_fitted("surface", true);
 }
 
-/* ---- what is known ----------------------------------------------------------------------------
- */
+/* ---- what is known --------------------------------------------------------------------------- */
 
 static const char FREELY[] =
     "fix: [ { nodes: " FACE("0") ", axes: z }, { nodes: { nearest: [0, 0, 0] }, axes: xy }, "
@@ -235,7 +234,7 @@ static void bulk_modulus_cannot_be_told(void **state) {
     const double truth[2] = {2.0e3, 2.0e5};
     double force[6];
     uint64_t seed = 88172645463325252u;
-    lar_fit_result r;
+    lar_inverse_result r;
     twin_block("one.vtk", (const int[3]){1, 1, 1}, SIZE);
     write_scene("one.yaml", "one.vtk", NEO, FREELY);
     write_curve("one.csv", "displacement", WAY, 6, ONES, false);
@@ -254,7 +253,7 @@ static void bulk_modulus_cannot_be_told(void **state) {
     assert_true(r.estimate[0].told);
     assert_below(fabs(r.estimate[0].value / truth[0] - 1), 0.05);
     print_message("cannot be told: %d runs, %.3g s\n", r.runs, r.seconds);
-    lar_fit_result_clear(&r);
+    lar_inverse_result_clear(&r);
 }
 
 /* With noise the interval covers the truth in 95 of 100 fits. */
@@ -272,13 +271,13 @@ static void intervals_cover_the_truth(void **state) {
               "one.yaml", "cover.csv", "");
     twin_measure("cover_fit.yaml", truth, clean);
     for (int k = 0; k < fits; k++) {
-        lar_fit_result r;
+        lar_inverse_result r;
         for (int i = 0; i < 6; i++) force[i] = clean[i] + 0.02 * clean[5] * twin_noise(&seed);
         write_curve("cover.csv", "displacement", WAY, 6, force, false);
         twin_fit("cover_fit.yaml", &r);
         covered += r.estimate[0].low <= truth[0] && truth[0] <= r.estimate[0].high;
         begin += r.seconds;
-        lar_fit_result_clear(&r);
+        lar_inverse_result_clear(&r);
     }
     print_message("%d of %d intervals cover the truth, %.3g s\n", covered, fits, begin);
     if (test_in_full()) assert_in_range(covered, 180, 196);
@@ -293,7 +292,7 @@ static void a_wrong_law_is_pointed_out(void **state) {
     const double truth[1] = {2.0e3};
     double row[ROWS][2], ones[ROWS], force[ROWS];
     bool said = false;
-    lar_fit_result r;
+    lar_inverse_result r;
     for (int i = 0; i < ROWS; i++) {
         row[i][0] = 0.0005 * (i + 1);
         ones[i] = 1;
@@ -312,7 +311,7 @@ static void a_wrong_law_is_pointed_out(void **state) {
     for (int i = 0; i < r.notes; i++) said = said || strstr(r.note[i], "too soft at large strain");
     assert_true(said);
     assert_true(r.residuals[0].systematic);
-    lar_fit_result_clear(&r);
+    lar_inverse_result_clear(&r);
 }
 
 /* Two experiments of one tissue: what neither tells alone they tell together. */
@@ -326,7 +325,7 @@ static void experiments_share_parameters(void **state) {
     const double truth[2] = {2.0e3, 6.0e4};
     double force[6];
     char text[TWIN_TEXT];
-    lar_fit_result r;
+    lar_inverse_result r;
     twin_block("one.vtk", (const int[3]){1, 1, 1}, SIZE);
     write_scene("one.yaml", "one.vtk", NEO, FREELY);
     write_scene("confined.yaml", "one.vtk", NEO, CONFINED);
@@ -353,7 +352,7 @@ static void experiments_share_parameters(void **state) {
         assert_true(r.estimate[j].told);
         assert_below(fabs(r.estimate[j].value / truth[j] - 1), 0.01);
     }
-    lar_fit_result_clear(&r);
+    lar_inverse_result_clear(&r);
 }
 
 /* A tissue file is a material of a scene again. */
@@ -362,7 +361,7 @@ static void tissues_go_into_scenes(void **state) {
     static const char VISCOUS[] =
         "law: ogden, density: 1050, c1: 2.0e3, m1: 5, bulk_modulus: 4.0e4, "
         "viscous: { part: isochoric, g0: 0.9, terms: [ { g: 0.4, time: 0.2 } ] }";
-    lar_fit_problem problem;
+    lar_inverse_problem problem;
     lar_error error = {0};
     lar_model *model = NULL;
     twin_block("one.vtk", (const int[3]){1, 1, 1}, SIZE);
@@ -371,8 +370,9 @@ static void tissues_go_into_scenes(void **state) {
     write_fit("tissue_fit.yaml", FREE("c1", "1.0e3", "1.0e2", "1.0e5"), "tension",
               "tissue_from.yaml", "tissue.csv", "");
     twin_read("tissue_fit.yaml", &problem);
-    lar_fit_result r = {.estimate = {{.value = 3.5e3, .low = 3.4e3, .high = 3.6e3, .told = true}}};
-    if (lar_fit_write_tissue(twin_path("gel.tissue.yaml"), &problem, &r, "gel", &error))
+    lar_inverse_result r = {
+        .estimate = {{.value = 3.5e3, .low = 3.4e3, .high = 3.6e3, .told = true}}};
+    if (lar_inverse_write_tissue(twin_path("gel.tissue.yaml"), &problem, &r, "gel", &error))
         fail_msg("%s", error.message);
     char text[TWIN_TEXT];
     snprintf(text, sizeof text, "lariat: 1\nmesh: %s\nmaterials: [ { cells: all, tissue: %s } ]\n",
@@ -384,7 +384,7 @@ static void tissues_go_into_scenes(void **state) {
     assert_true(m->parameter[0] == 3.5e3 && m->viscosity.rest == 0.9 && m->density == 1050);
     assert_true(m->viscosity.terms == 1 && m->viscosity.share[0] == 0.4);
     lar_model_destroy(model);
-    lar_fit_problem_clear(&problem);
+    lar_inverse_problem_clear(&problem);
 }
 
 static void student_is_as_in_tables(void **state) {
@@ -397,7 +397,7 @@ static void student_is_as_in_tables(void **state) {
 
 static int need_cminpack(void **state) {
     (void)state;
-    if (lar_fit_available()) return 0;
+    if (lar_inverse_available()) return 0;
     print_message("skipped: built without cminpack\n");
     exit(77);
 }

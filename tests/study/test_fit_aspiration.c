@@ -2,7 +2,7 @@
  * of another mesh and a finer step. */
 #include "fit_twin.h"
 
-#include "study/fit/aspiration.h"
+#include "study/inverse/aspiration.h"
 
 /* A quarter of a round piece under a tube of 5 mm, whose rim is 2 mm wide [m]. */
 static const double TUBE = 0.005, RIM = 0.007, OUTER = 0.02, DEEP = 0.015;
@@ -150,7 +150,7 @@ static void aspiration_is_fitted(void **state) {
     static const double pressure[2] = {1.5e3, 3.0e3}, truth[1] = {2.7e3};
     static const char FREED[] = FREE("shear_modulus", "4.0e3", "1.0e2", "1.0e5");
     double z[VALUES];
-    lar_fit_result r;
+    lar_inverse_result r;
     write_piece("piece_fine.vtk", 5, 5, 2, 5, 9);
     write_piece("piece.vtk", 4, 4, 2, 4, 7);
     write_scene("piece_fine.yaml", "piece_fine.vtk", NEO, HELD);
@@ -167,7 +167,7 @@ static void aspiration_is_fitted(void **state) {
                   r.estimate[0].value, z[PLACES], r.residuals[0].relative, r.runs, r.seconds);
     assert_true(r.converged && r.estimate[0].told);
     assert_below(fabs(r.estimate[0].value / truth[0] - 1), 0.01);
-    lar_fit_result_clear(&r);
+    lar_inverse_result_clear(&r);
 }
 
 /* Tissue that creeps, in the time of the experiment: suction in 0.2 s, then held. Shear modulus,
@@ -181,7 +181,7 @@ static void creep_is_fitted(void **state) {
     const double truth[3] = {2.7e3, 0.9, 0.3};
     double time[MOMENTS], z[VALUES];
     char held[1600], finer[1700], keys[600];
-    lar_fit_result r;
+    lar_inverse_result r;
     for (int i = 0; i < MOMENTS; i++) time[i] = 0.1 + 0.08 * i;
     snprintf(held, sizeof held, "%sdamping: 60\n", HELD);
     snprintf(finer, sizeof finer, "%stime_step: 3.0e-5\n", held);
@@ -204,7 +204,7 @@ static void creep_is_fitted(void **state) {
         assert_true(r.estimate[j].told);
         assert_below(fabs(r.estimate[j].value / truth[j] - 1), 0.01);
     }
-    lar_fit_result_clear(&r);
+    lar_inverse_result_clear(&r);
 }
 
 /* Profiles read to 30 um: the interval covers the truth in 95 of 100 fits. The bulk modulus is told
@@ -219,7 +219,7 @@ static void intervals_cover_the_truth(void **state) {
     double clean[3 * PLACES], z[3 * PLACES];
     uint64_t seed = 88172645463325252u;
     int covered = 0;
-    lar_fit_result r;
+    lar_inverse_result r;
     write_piece("small.vtk", 2, 2, 1, 2, 3);
     write_scene("small.yaml", "small.vtk", NEO, HELD);
     write_profiles("cover.csv", 3, NULL, pressure, NULL);
@@ -231,7 +231,7 @@ static void intervals_cover_the_truth(void **state) {
         write_profiles("cover.csv", 3, NULL, pressure, z);
         twin_fit("cover_fit.yaml", &r);
         covered += r.estimate[0].low <= truth[0] && truth[0] <= r.estimate[0].high;
-        lar_fit_result_clear(&r);
+        lar_inverse_result_clear(&r);
     }
     print_message("%d of %d intervals cover the truth\n", covered, fits);
     if (test_in_full()) assert_in_range(covered, 180, 196);
@@ -241,7 +241,7 @@ static void intervals_cover_the_truth(void **state) {
     print_message("bulk modulus between %.3g and %.3g\n", r.estimate[1].low, r.estimate[1].high);
     assert_true(r.estimate[0].told);
     assert_false(r.estimate[1].told);
-    lar_fit_result_clear(&r);
+    lar_inverse_result_clear(&r);
 }
 
 /* A surface that is a parabola is read as one, between nodes and on the axis; a plane that is
@@ -249,33 +249,33 @@ static void intervals_cover_the_truth(void **state) {
 static void profiles_are_read(void **state) {
     (void)state;
     static const double pressure[2] = {1.5e3, 3.0e3};
-    lar_fit_problem problem;
+    lar_inverse_problem problem;
     write_piece("small.vtk", 2, 2, 1, 2, 3);
     write_scene("small.yaml", "small.vtk", NEO, HELD);
     write_profiles("read.csv", 2, NULL, pressure, NULL);
     write_fit("read_fit.yaml", FREE("shear_modulus", "4.0e3", "1.0e2", "1.0e5"), "aspiration",
               "small.yaml", "read.csv", QUARTER);
     twin_read("read_fit.yaml", &problem);
-    const lar_fit_experiment *e = &problem.experiment[0];
+    const lar_inverse_experiment *e = &problem.experiment[0];
     const lar_mesh *mesh = &e->model->mesh;
     double(*u)[3] = calloc((size_t)mesh->node_count, sizeof *u);
     assert_non_null(u);
-    assert_below(fabs(lar_fit_tube_reach(e) - TUBE), 1e-9);
+    assert_below(fabs(lar_inverse_tube_reach(e) - TUBE), 1e-9);
     for (int32_t n = 0; n < mesh->node_count; n++) {
         double r = hypot(mesh->position[n][0], mesh->position[n][1]);
         u[n][2] = 0.003 - 100 * r * r;
     }
     for (int k = 0; k <= 20; k++) {
-        double r = 0.005 * k / 20, z = lar_fit_tube_height(e, (const double(*)[3])u, r);
+        double r = 0.005 * k / 20, z = lar_inverse_tube_height(e, (const double(*)[3])u, r);
         assert_below(fabs(z - (0.003 - 100 * r * r)), 1e-9);
     }
     free(u);
-    lar_fit_problem_clear(&problem);
+    lar_inverse_problem_clear(&problem);
 }
 
 static int need_cminpack(void **state) {
     (void)state;
-    if (lar_fit_available()) return 0;
+    if (lar_inverse_available()) return 0;
     print_message("skipped: built without cminpack\n");
     exit(77);
 }

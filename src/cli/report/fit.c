@@ -3,21 +3,21 @@
 #include <math.h>
 
 #include "base/json/write.h"
-#include "study/fit/parameters.h"
+#include "study/inverse/parameters.h"
 
-static const char *unit_of(const lar_fit_problem *problem, int j) {
-    const lar_fit_parameter *p = &problem->parameter[j];
-    return lar_fit_unit(lar_fit_material(problem, p->material), p->name);
+static const char *unit_of(const lar_inverse_problem *problem, int j) {
+    const lar_inverse_parameter *p = &problem->parameter[j];
+    return lar_inverse_unit(lar_inverse_material(problem, p->material), p->name);
 }
 
 /* ---- for machines --------------------------------------------------------------------------- */
 
-static void write_parameters(lar_json *json, const lar_fit_problem *problem,
-                             const lar_fit_result *r) {
+static void write_parameters(lar_json *json, const lar_inverse_problem *problem,
+                             const lar_inverse_result *r) {
     lar_json_open(json, "parameters", '[');
     for (int j = 0; j < problem->parameters; j++) {
-        const lar_fit_parameter *p = &problem->parameter[j];
-        const lar_fit_estimate *e = &r->estimate[j];
+        const lar_inverse_parameter *p = &problem->parameter[j];
+        const lar_inverse_estimate *e = &r->estimate[j];
         lar_json_open(json, NULL, '{');
         lar_json_text(json, "material", p->material);
         lar_json_text(json, "parameter", p->name);
@@ -37,16 +37,16 @@ static void write_parameters(lar_json *json, const lar_fit_problem *problem,
     lar_json_close(json);
 }
 
-static void write_experiments(lar_json *json, const lar_fit_problem *problem,
-                              const lar_fit_result *r) {
+static void write_experiments(lar_json *json, const lar_inverse_problem *problem,
+                              const lar_inverse_result *r) {
     const double *model = r->model;
     lar_json_open(json, "experiments", '[');
     for (int k = 0; k < problem->experiments; model += problem->experiment[k++].values) {
-        const lar_fit_experiment *e = &problem->experiment[k];
-        const lar_fit_residuals *left = &r->residuals[k];
+        const lar_inverse_experiment *e = &problem->experiment[k];
+        const lar_inverse_residuals *left = &r->residuals[k];
         lar_json_open(json, NULL, '{');
         lar_json_text(json, "name", e->name);
-        lar_json_text(json, "kind", lar_fit_kind_name[e->kind]);
+        lar_json_text(json, "kind", lar_inverse_kind_name[e->kind]);
         lar_json_text(json, "scene", e->scene);
         lar_json_text(json, "data", e->data);
         lar_json_boolean(json, "in_time", e->in_time);
@@ -65,7 +65,7 @@ static void write_experiments(lar_json *json, const lar_fit_problem *problem,
     lar_json_close(json);
 }
 
-void fit_report_json(const lar_fit_problem *problem, const lar_fit_result *r, FILE *out) {
+void fit_report_json(const lar_inverse_problem *problem, const lar_inverse_result *r, FILE *out) {
     lar_json json = lar_json_to(out);
     lar_json_text(&json, "file", problem->path);
     lar_json_text(&json, "title", problem->title);
@@ -85,10 +85,10 @@ void fit_report_json(const lar_fit_problem *problem, const lar_fit_result *r, FI
 
 /* ---- for people ----------------------------------------------------------------------------- */
 
-static void print_parameter(const lar_fit_problem *problem, const lar_fit_result *r, int j,
+static void print_parameter(const lar_inverse_problem *problem, const lar_inverse_result *r, int j,
                             FILE *out) {
-    const lar_fit_parameter *p = &problem->parameter[j];
-    const lar_fit_estimate *e = &r->estimate[j];
+    const lar_inverse_parameter *p = &problem->parameter[j];
+    const lar_inverse_estimate *e = &r->estimate[j];
     const char *unit = unit_of(problem, j);
     fprintf(out, "%-16s%s: ", p->material, p->name);
     if (r->interrupted)
@@ -103,7 +103,8 @@ static void print_parameter(const lar_fit_problem *problem, const lar_fit_result
                 e->low, e->high, e->profiled ? " (by its profile)" : "");
 }
 
-static void print_correlations(const lar_fit_problem *problem, const lar_fit_result *r, FILE *out) {
+static void print_correlations(const lar_inverse_problem *problem, const lar_inverse_result *r,
+                               FILE *out) {
     static const double STRONG = 0.9;
     for (int i = 0; i < problem->parameters; i++)
         for (int j = 0; j < i; j++)
@@ -112,14 +113,14 @@ static void print_correlations(const lar_fit_problem *problem, const lar_fit_res
                         problem->parameter[i].name, r->correlation[i][j]);
 }
 
-void fit_report_table(const lar_fit_problem *problem, const lar_fit_result *r, FILE *out) {
+void fit_report_table(const lar_inverse_problem *problem, const lar_inverse_result *r, FILE *out) {
     for (int j = 0; j < problem->parameters; j++) print_parameter(problem, r, j, out);
     print_correlations(problem, r, out);
     for (int k = 0; k < problem->experiments; k++)
         fprintf(out, "%-16s%s: %d values, residual %.3g %s, %.2g %% of the largest%s\n",
                 k ? "" : "experiments", problem->experiment[k].name,
                 (int)problem->experiment[k].values, r->residuals[k].rms,
-                problem->experiment[k].kind < LAR_FIT_ASPIRATION ? "N" : "m",
+                problem->experiment[k].kind < LAR_INVERSE_ASPIRATION ? "N" : "m",
                 100 * r->residuals[k].relative, r->residuals[k].systematic ? ", systematic" : "");
     fprintf(out, "%-16s%d simulations in %.3g s\n", r->converged ? "converged" : "NOT CONVERGED",
             r->runs, r->seconds);

@@ -4,9 +4,11 @@
 
 #include <stdio.h>
 
-#include "study/fit/fit.h"
+#include "study/inverse/inverse.h"
 
-void fit_report_table(const lar_fit_problem *problem, const lar_fit_result *result, FILE *out);
-void fit_report_json(const lar_fit_problem *problem, const lar_fit_result *result, FILE *out);
+void fit_report_table(const lar_inverse_problem *problem, const lar_inverse_result *result,
+                      FILE *out);
+void fit_report_json(const lar_inverse_problem *problem, const lar_inverse_result *result,
+                     FILE *out);
 
 #endif

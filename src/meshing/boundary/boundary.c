@@ -229,8 +229,8 @@ typedef struct line_test {
     int crossings;
 } line_test;
 
-/* Crossings of the line from the point along +x; sides of edges as in lattice_fill.c, but in
- * floating point: good enough for a picture. */
+/* Crossings of the line from the point along +x; sides of edges as in
+ * grid/voxel_grid_fill.c, but in floating point: good enough for a picture. */
 static bool cross_triangle(void *context, int32_t t) {
     line_test *test = context;
     const lar_boundary *boundary = test->boundary;

@@ -60,8 +60,7 @@ lar_status lar_fit_rows_create(lar_fit_work *work, const lar_unfitted_mesh *unfi
     return LAR_OK;
 }
 
-/* ---- how far ----------------------------------------------------------------------------------
- */
+/* ---- how far --------------------------------------------------------------------------------- */
 
 /* The part of the grid that a face's nodes come from. */
 static void span(const lar_fit_work *work, int32_t face, int32_t lower[3], int32_t upper[3]) {
@@ -93,8 +92,7 @@ void lar_fit_rows_measure(lar_fit_work *work) {
     }
 }
 
-/* ---- the sweep --------------------------------------------------------------------------------
- */
+/* ---- the sweep ------------------------------------------------------------------------------- */
 
 typedef struct sweep {
     lar_fit_work *work;

@@ -28,8 +28,7 @@ lar_status lar_voxel_grid_check_thickness(const lar_boundary *boundary, const la
                     (int)elements);
 }
 
-/* ---- what the cells are near to ---------------------------------------------------------------
- */
+/* ---- what the cells are near to -------------------------------------------------------------- */
 
 static bool cell_is_near(const lar_voxel_grid *voxel_grid, const double point[3]) {
     enum { NEAR = 2 };

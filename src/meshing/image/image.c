@@ -100,8 +100,7 @@ const char *lar_image_name(const lar_image *image, int32_t index, int32_t *label
     return image->name[index].name;
 }
 
-/* ---- what is in it ----------------------------------------------------------------------------
- */
+/* ---- what is in it --------------------------------------------------------------------------- */
 
 void lar_image_count(const lar_image *image, int64_t *count) {
     memset(count, 0, (LAR_IMAGE_LABEL_MAX + 1) * sizeof *count);

@@ -6,6 +6,7 @@
 
 #include "base/union_find.h"
 #include "base/vector.h"
+#include "mechanics/hex8.h"
 
 /* ---- elements ------------------------------------------------------------------------------- */
 
@@ -27,22 +28,18 @@ static inline void to_modes(const double *const node[8], int n, double *modal) {
     }
 }
 
-/* 64 V = [a,b,c] + ([e,d,c] + [f,b,d] + [a,f,e]) / 3 with a..f the modes 0..5 of the corners, and
- * V B_m its derivatives. */
+/* V and its derivatives V B_m, by the terms of hex8.h. */
 static void prepare_gradients(lar_elastic_element *e, const double X[7][3]) {
-    static const struct {
-        int8_t mode, left, right;
-        double factor;
-    } term[12] = {{0, 1, 2, 1},      {0, 5, 4, 1. / 3}, {1, 2, 0, 1},      {1, 3, 5, 1. / 3},
-                  {2, 0, 1, 1},      {2, 4, 3, 1. / 3}, {3, 2, 4, 1. / 3}, {3, 5, 1, 1. / 3},
-                  {4, 3, 2, 1. / 3}, {4, 0, 5, 1. / 3}, {5, 1, 3, 1. / 3}, {5, 4, 0, 1. / 3}};
     memset(e->gradient, 0, sizeof e->gradient);
     e->volume = 0;
-    for (int t = 0; t < 12; t++) {
-        double area[3];
-        lar_cross(X[term[t].left], X[term[t].right], area);
-        for (int i = 0; i < 3; i++) e->gradient[term[t].mode][i] += term[t].factor / 64 * area[i];
-    }
+    for (int m = 0; m < LAR_HEX8_GRADIENTS; m++)
+        for (int t = 0; t < 2; t++) {
+            double area[3];
+            lar_cross(X[LAR_HEX8_VOLUME_TERM[m][t].left], X[LAR_HEX8_VOLUME_TERM[m][t].right],
+                      area);
+            for (int i = 0; i < 3; i++)
+                e->gradient[m][i] += LAR_HEX8_VOLUME_TERM[m][t].factor / 64 * area[i];
+        }
     for (int m = 0; m < 6; m++) e->volume += lar_dot(e->gradient[m], X[m]) / 3;
     for (int m = 0; m < 6; m++)
         for (int i = 0; i < 3; i++) e->gradient[m][i] /= e->volume;
@@ -50,7 +47,7 @@ static void prepare_gradients(lar_elastic_element *e, const double X[7][3]) {
 
 static void prepare(lar_elastic_element *e, const double corner[8][3],
                     const lar_elastic_material *material) {
-    static const double FACTOR = 1.58 / 64; /* mechanics/hex8.h */
+    static const double FACTOR = LAR_HOURGLASS_FACTOR / 64;
     const double *node[8];
     double X[7][3];
     for (int a = 0; a < 8; a++) node[a] = corner[a];

@@ -84,7 +84,7 @@ static lar_status begin(search *s, const lar_meshing *meshing, const bool *held,
                   .sags = lar_calloc(nodes, sizeof *s->sags),
                   .all = lar_calloc(nodes, sizeof *s->all)};
     if (!s->sag || !s->length || !s->piece || !s->sags || !s->all)
-        return lar_fail_memory(error, 22 * nodes, "pads");
+        return lar_fail_memory(error, 22 * nodes, "extra supports");
     memcpy(s->all, held, nodes * sizeof *held);
     lar_status status = lar_mesh_boundary(&meshing->mesh, &s->face, &s->faces, error);
     if (status) return status;

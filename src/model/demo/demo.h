@@ -1,4 +1,4 @@
-/* The demonstration organ: a uterus with tubes, ovaries and ligaments, made by our own generator.
+/* The demonstration organ: a uterus with tubes, ovaries and ligaments.
  *
  * It stands for the organ of the thesis (T 3.2.2, figures 2.5 and 3.6): 1840 hexahedra, about 12 cm
  * from left to right. Its 2,567 nodes lie within 2 % of the thesis's 2,528. How it is made is in
@@ -16,8 +16,8 @@
 
 enum { LAR_DEMO_ELEMENTS = 1840 };
 
-/* Fills a zeroed mesh, in metres; the same bits on every machine. Takes about a second. The caller
- * clears it, also on failure. Fails only without memory. */
+/* Fills a zeroed mesh, in metres; the same bits on every machine. The caller clears it, also on
+ * failure. Fails only without memory. */
 lar_status lar_demo_mesh(lar_mesh *mesh, lar_error *error);
 
 #endif

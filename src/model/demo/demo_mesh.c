@@ -1,4 +1,4 @@
-/* From the fitted half to the whole mesh: mirror, number, name. */
+/* From the half to the whole mesh: mirror, number, name. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -134,9 +134,7 @@ static lar_status assemble(const lar_demo_half *half, lar_mesh *mesh, lar_error 
 
 lar_status lar_demo_mesh(lar_mesh *mesh, lar_error *error) {
     lar_demo_half half = {0};
-    const lar_demo_shape shape = lar_demo_shape_create();
     lar_status status = lar_demo_grid(&half, error);
-    if (!status) status = lar_demo_fit(&half, &shape, error);
     if (!status) status = assemble(&half, mesh, error);
     lar_demo_half_clear(&half);
     return status;

@@ -4,8 +4,7 @@
     "# All numbers are in SI units: metres, kilograms, seconds, newtons, pascals.\n"               \
     "# x points to the patient's left, y to the back, z up.\n"
 
-/* ---- uterus.yaml: pulled by a force -----------------------------------------------------------
- */
+/* ---- uterus.yaml: pulled by a force ---------------------------------------------------------- */
 
 /* The moduli are chosen for the explicit scheme: the stable step is that of a pressure wave across
  * the smallest element, and 1840 elements in 12 cm leave them about 4 mm. */
@@ -58,8 +57,7 @@ static const char pulled_end[] =
     "    - { name: ovary_left, set: ovary_left }\n"
     "    - { name: cervix_reaction, set: cervix, sum: reaction } # force of the supports\n";
 
-/* ---- uterus_live.yaml: pulled by a person ------------------------------------------------------
- */
+/* ---- uterus_live.yaml: pulled by a person ---------------------------------------------------- */
 
 /* The slowest motion, the fundus swaying back and forth, takes about 0.4 s: 20 1/s is 0.7 of what
  * would just keep it from swaying. */

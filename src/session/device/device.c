@@ -28,8 +28,7 @@ struct lar_device {
     lar_trocar_angles angles; /* of the last pose */
 };
 
-/* ---- what the spec says -----------------------------------------------------------------------
- */
+/* ---- what the spec says ---------------------------------------------------------------------- */
 
 static const char COMMON_OPTIONS[] = " at axes scale trocar ";
 
@@ -159,8 +158,7 @@ static lar_status read_spec(char *text, lar_device_spec *spec, const lar_device_
     return LAR_OK;
 }
 
-/* ---- the device's axes and the scene's --------------------------------------------------------
- */
+/* ---- the device's axes and the scene's ------------------------------------------------------- */
 
 /* `spec` as open has left it. */
 static void place(lar_device *device, const lar_device_spec *spec, const lar_tool_info *tool) {
@@ -210,8 +208,7 @@ static void into_device(const lar_device *device, const lar_tool_pose *pose, lar
     own->opening = pose->opening;
 }
 
-/* ---- the interface ----------------------------------------------------------------------------
- */
+/* ---- the interface --------------------------------------------------------------------------- */
 
 lar_status lar_device_open(const char *spec, const lar_tool_info *tool, lar_device **device,
                            lar_error *error) {

@@ -40,8 +40,7 @@ static const double SPEED = 0.05, ROLL = 1.5;        /* at full stick [m/s] [rad
 static const double DEAD = 0.12, LEAD = 0.01;        /* of a stick's way; [m] */
 static const double RUMBLE_FULL = 5, SLOW = 1 / 5.0; /* [N] */
 
-/* ---- SDL, loaded ------------------------------------------------------------------------------
- */
+/* ---- SDL, loaded ----------------------------------------------------------------------------- */
 
 #define SDL_CALLS(X)                                                                               \
     X(SDL_SetHint)                                                                                 \
@@ -85,8 +84,7 @@ static lar_status load_sdl(const lar_device_spec *spec, lar_error *error) {
     return LAR_OK;
 }
 
-/* ---- the device -------------------------------------------------------------------------------
- */
+/* ---- the device ------------------------------------------------------------------------------ */
 
 typedef struct gamepad_sample {
     _Atomic int16_t axis[SDL_CONTROLLER_AXIS_MAX];

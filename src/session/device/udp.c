@@ -65,8 +65,7 @@ static int64_t real_time(void) {
     return (int64_t)at.tv_sec * 1000000000 + at.tv_nsec;
 }
 
-/* ---- opening ----------------------------------------------------------------------------------
- */
+/* ---- opening --------------------------------------------------------------------------------- */
 
 static bool is_loopback(const struct sockaddr *address) {
     if (address->sa_family == AF_INET)
@@ -155,8 +154,7 @@ static lar_status udp_open(lar_device_spec *spec, void **data, lar_error *error)
     return bind_socket(state, spec, error);
 }
 
-/* ---- packets in -------------------------------------------------------------------------------
- */
+/* ---- packets in ------------------------------------------------------------------------------ */
 
 static int64_t arrival(struct msghdr *message) {
     struct cmsghdr *control = CMSG_FIRSTHDR(message);
@@ -233,8 +231,7 @@ static bool udp_poll(void *data, const lar_device_tick *tick, lar_tool_pose *pos
     return here;
 }
 
-/* ---- forces out -------------------------------------------------------------------------------
- */
+/* ---- forces out ------------------------------------------------------------------------------ */
 
 static lar_force_packet force_packet(const udp_state *state, const lar_device_tick *tick,
                                      const lar_tool_force *force, const lar_tool_pose *pose) {

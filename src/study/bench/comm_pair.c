@@ -47,7 +47,8 @@ static lar_status share_time(lar_pair_job *j, lar_error *error) {
     return lar_comm_put(p->comm[1], 0, 0, NULL, 0, step, error);
 }
 
-lar_status lar_pair_run(lar_pair_job *j, lar_error *error) {
+/* Both ends, once, with j->rounds. The caller is end 0, or the process's own end. */
+static lar_status run_pair(lar_pair_job *j, lar_error *error) {
     pthread_t thread;
     if (j->with->launched) {
         int self = j->with->launched->self;
@@ -70,7 +71,7 @@ lar_status lar_pair_run(lar_pair_job *j, lar_error *error) {
 lar_status lar_pair_measure(lar_pair_job *j, double min, uint64_t *rounds, lar_error *error) {
     for (;;) {
         j->rounds = *rounds;
-        lar_status status = lar_pair_run(j, error);
+        lar_status status = run_pair(j, error);
         if (status || j->seconds >= min || *rounds >= 1 << 20) return status;
         *rounds *= 2;
     }
@@ -174,12 +175,12 @@ lar_status lar_pair_open(lar_pair *p, const int cores[2], lar_error *error) {
     else if (!p->launched)
         status = lar_comm_listen("127.0.0.1:0", &p->listener, p->master, error);
     lar_pair_job j = {.with = p, .run = open_end, .cores = cores};
-    return status ? status : lar_pair_run(&j, error);
+    return status ? status : run_pair(&j, error);
 }
 
 void lar_pair_close(lar_pair *p, const int cores[2]) {
     lar_pair_job j = {.with = p, .run = close_end, .cores = cores};
-    if (p->comm[0] || p->comm[1]) lar_pair_run(&j, NULL);
+    if (p->comm[0] || p->comm[1]) run_pair(&j, NULL);
     lar_comm_team_destroy(p->team);
     for (int end = 0; end < 2; end++) free(p->buffer[end]);
     free(p->word);

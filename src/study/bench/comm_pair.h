@@ -67,9 +67,6 @@ void lar_pair_close(lar_pair *pair, const int cores[2]);
 lar_status lar_pair_put(lar_pair_job *job, int end, lar_error *error);
 lar_status lar_pair_await(lar_pair_job *job, int end, lar_error *error);
 
-/* Both ends, once, with job->rounds. The caller is end 0, or the process's own end. */
-lar_status lar_pair_run(lar_pair_job *job, lar_error *error);
-
 /* With twice the rounds again and again until it takes `min` seconds. *rounds is where to begin
  * and what was found. */
 lar_status lar_pair_measure(lar_pair_job *job, double min, uint64_t *rounds, lar_error *error);

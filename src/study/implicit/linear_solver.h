@@ -3,7 +3,7 @@
  *     own      conjugate gradients with the diagonal as preconditioner: needs nothing, serves tests
  *     PETSc    its Krylov solvers and preconditioners, from the module liblariat-petsc.so that the
  *              build makes where PETSc is installed (study/implicit/petsc_shim.h); loaded when
- * asked for
+ *              asked for
  *
  * That a system cannot be solved is a result, not an error: it is what the comparison is about
  * (T 2.2.4, table 2.1).

@@ -3,14 +3,10 @@
 #include <math.h>
 
 #include "base/clock.h"
-#include "study/precision/precision_cases.h"
 #include "study/precision/single.h"
 #include "study/precision/single_domain.h"
 
 const char *const lar_precision_names[LAR_PRECISION_COUNT] = {"double", "mixed", "single"};
-const char *const lar_precision_case_names[LAR_CASE_COUNT] = {
-    "vibration", "rest", "path", "turn", "creep", "creep 1 m away", "model"};
-
 /* One way of computing the model. */
 typedef struct run {
     lar_simulation *simulation;

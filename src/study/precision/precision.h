@@ -14,6 +14,7 @@
 
 #include "lariat.h"
 #include "study/bench/kernel.h"
+#include "study/precision/precision_cases.h"
 
 typedef enum lar_precision {
     LAR_PRECISION_DOUBLE,
@@ -23,20 +24,6 @@ typedef enum lar_precision {
 } lar_precision;
 
 extern const char *const lar_precision_names[LAR_PRECISION_COUNT];
-
-/* What is computed. */
-typedef enum lar_precision_case {
-    LAR_CASE_VIBRATION, /* a clamped block swings, without damping */
-    LAR_CASE_REST,      /* it sags under gravity, and hangs still */
-    LAR_CASE_PATH,      /* gravity comes and goes: back to zero? */
-    LAR_CASE_TURN,      /* a free block turns and drifts away, without damping */
-    LAR_CASE_CREEP,     /* overdamped sagging: slower and slower */
-    LAR_CASE_FAR,       /* the same, a metre from where the mesh was */
-    LAR_CASE_MODEL,     /* somebody's model */
-    LAR_CASE_COUNT
-} lar_precision_case;
-
-extern const char *const lar_precision_case_names[LAR_CASE_COUNT];
 
 enum { LAR_PRECISION_LOOKS = 20 }; /* times that the three are compared */
 

@@ -2,6 +2,10 @@
 
 #include "base/memory.h"
 #include "model/model.h"
+#include "study/bench/kernel.h"
+
+const char *const lar_precision_case_names[LAR_CASE_COUNT] = {
+    "vibration", "rest", "path", "turn", "creep", "creep 1 m away", "model"};
 
 static const double FAR_AWAY = 1; /* [m] */
 

@@ -8,7 +8,7 @@ export type Vector = readonly [number, number, number];
 
 const SEND_MS = 80; // a slider is dragged through many values: not all of them are sent
 const OWN_MS = 700; // the user's choice stands until the engine has heard of it
-const GRAVITY_MOST = 20; // [m/s²]
+const GRAVITY_MAX = 20; // [m/s²]
 const DIRECTIONS: Record<string, Vector> = {
     '-z': [0, 0, -1], '+z': [0, 0, 1], '-x': [-1, 0, 0], '+x': [1, 0, 0], '-y': [0, -1, 0], '+y': [0, 1, 0],
 };
@@ -71,7 +71,7 @@ export class BodyCard {
         this.card.hidden = !hello.body; // an engine of before
         if (!hello.body) return;
         this.max = Math.max(200, 10 * hello.body.damping);
-        this.gravity.max = String(Math.max(GRAVITY_MOST, 2 * sizeOf(hello.body.gravity)));
+        this.gravity.max = String(Math.max(GRAVITY_MAX, 2 * sizeOf(hello.body.gravity)));
         const names = hello.materials.map((material, i) => material.name || `organ ${i + 1}`);
         this.which.replaceChildren(new Option('all', '-1'), ...names.map((name, i) => new Option(name, String(i))));
         element('stiffness-row').hidden = names.length < 2;

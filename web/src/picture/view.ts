@@ -36,7 +36,7 @@ export class View {
     private mesh: Surface | null = null;
     private processors: Uint32Array = new Uint32Array(0); // of the mesh's surface nodes
     private organ: Organ | null = null; // the mesh's own surface
-    private fineOrgan: Organ | null = null; // what rides on it
+    private fineOrgan: Organ | null = null; // the embedded one
     private edges: Edges | null = null;
     private edgesShown = false;
     private fineShown = true;

@@ -55,8 +55,7 @@ static lar_status refuse_flag(lar_feb *feb, const xmlNode *at, const char *name)
                         "<%s> other than 0 is not read; set it to 0", name);
 }
 
-/* ---- boundary ----------------------------------------------------------------------------------
- */
+/* ---- boundary -------------------------------------------------------------------------------- */
 
 /* x_dof, y_dof, z_dof: 0 or 1 each (version 4). */
 static lar_status read_axis_flags(lar_feb *feb, const xmlNode *at, unsigned *axes) {
@@ -163,8 +162,7 @@ lar_status lar_feb_read_boundary(lar_feb *feb, const xmlNode *section) {
     return status;
 }
 
-/* ---- loads -------------------------------------------------------------------------------------
- */
+/* ---- loads ----------------------------------------------------------------------------------- */
 
 /* The force vector and curve of a nodal load of either form. */
 static lar_status read_nodal_force(lar_feb *feb, const xmlNode *at, const char *type,
@@ -385,8 +383,7 @@ lar_status lar_feb_read_loads(lar_feb *feb, const xmlNode *section) {
     return status;
 }
 
-/* ---- initial -----------------------------------------------------------------------------------
- */
+/* ---- initial --------------------------------------------------------------------------------- */
 
 static lar_status read_ic(lar_feb *feb, const xmlNode *ic) {
     static const char *const known[] = {"value", NULL};

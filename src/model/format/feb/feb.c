@@ -8,8 +8,7 @@
 #include "model/format/mesh_io.h"
 #include "model/rest.h"
 
-/* ---- control -----------------------------------------------------------------------------------
- */
+/* ---- control --------------------------------------------------------------------------------- */
 
 static lar_status read_duration(lar_feb *feb, const xmlNode *control) {
     const xmlNode *steps = lar_feb_child(control, "time_steps");
@@ -75,8 +74,7 @@ static lar_status notice_solver_damping(lar_feb *feb, const xmlNode *control) {
     return lar_feb_notice(feb, damping, "<dyn_damping> %g was left out", factor);
 }
 
-/* ---- sections ----------------------------------------------------------------------------------
- */
+/* ---- sections -------------------------------------------------------------------------------- */
 
 /* Sections that are read elsewhere, or whose content does not change the answer. */
 static bool is_harmless(const xmlNode *section) {
@@ -199,8 +197,7 @@ static lar_status check_domains(lar_feb *feb) {
     return LAR_OK;
 }
 
-/* ---- the whole ---------------------------------------------------------------------------------
- */
+/* ---- the whole ------------------------------------------------------------------------------- */
 
 static lar_status read_model(lar_feb *feb) {
     const xmlNode *step = NULL;

@@ -85,8 +85,7 @@ lar_status lar_feb_part_material(lar_feb *feb, const xmlNode *elements,
                         (const char *)at->name, wanted);
 }
 
-/* ---- parameters --------------------------------------------------------------------------------
- */
+/* ---- parameters ------------------------------------------------------------------------------ */
 
 lar_status lar_feb_parameter(lar_feb *feb, const xmlNode *material, const char *name, bool required,
                              double *value) {
@@ -184,8 +183,7 @@ static lar_status refuse_type(lar_feb *feb, const xmlNode *node, const char *typ
                         "material type '%.60s' is not read; of FEBio's, Lariat has %s", type, list);
 }
 
-/* ---- fibres ---------------------------------------------------------------------------------
- */
+/* ---- fibres ---------------------------------------------------------------------------------- */
 
 /* The law in a "trans iso" type, LAR_LAW_COUNT: it is none. */
 static lar_law trans_iso_law(const char *type) {
@@ -251,8 +249,7 @@ static lar_status read_trans_iso(lar_feb *feb, const xmlNode *node, lar_law law,
     return status ? status : lar_feb_read_trans_iso(feb, node, &material->fibre);
 }
 
-/* ---- viscosity ---------------------------------------------------------------------------------
- */
+/* ---- viscosity ------------------------------------------------------------------------------- */
 
 enum { FEB_TERMS = 6 }; /* that FEBio has */
 

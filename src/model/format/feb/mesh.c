@@ -269,8 +269,7 @@ lar_status lar_feb_read_mesh(lar_feb *feb) {
     return status;
 }
 
-/* ---- references --------------------------------------------------------------------------------
- */
+/* ---- references ------------------------------------------------------------------------------ */
 
 xmlNode *lar_feb_find_surface(lar_feb *feb, const char *name) {
     xmlNode *section = lar_feb_child(feb->root, "Mesh");

@@ -79,7 +79,6 @@ bool inp_parameter(const inp_card *card, const char *name, lar_span *value);
 
 /* The set, made when new. */
 lar_status inp_open_set(inp_reader *reader, lar_span name, bool of_nodes, inp_set **set);
-inp_set *inp_find_set(const inp_reader *reader, lar_span name, bool of_nodes);
 lar_status inp_add_entry(inp_reader *reader, inp_set *set, int64_t id, int line);
 
 /* Fails with "expected WHAT, found 'text'". */

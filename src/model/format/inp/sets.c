@@ -5,7 +5,7 @@
 
 #include "model/format/inp/reader.h"
 
-inp_set *inp_find_set(const inp_reader *reader, lar_span name, bool of_nodes) {
+static inp_set *find_set(const inp_reader *reader, lar_span name, bool of_nodes) {
     for (size_t s = 0; s < reader->set_count; s++)
         if (reader->set[s].of_nodes == of_nodes && lar_span_equal_nocase(name, reader->set[s].name))
             return &reader->set[s];
@@ -13,7 +13,7 @@ inp_set *inp_find_set(const inp_reader *reader, lar_span name, bool of_nodes) {
 }
 
 lar_status inp_open_set(inp_reader *reader, lar_span name, bool of_nodes, inp_set **set) {
-    *set = inp_find_set(reader, name, of_nodes);
+    *set = find_set(reader, name, of_nodes);
     if (*set) return LAR_OK;
     if (reader->set_count >= LAR_MESH_SETS_MAX)
         return lar_fail(reader->error, LAR_ERROR_UNSUPPORTED,
@@ -103,7 +103,7 @@ static lar_status add_list(inp_reader *reader, inp_set *set, lar_span line, int 
         if (lar_span_int64(field, &id)) {
             status = inp_add_entry(reader, set, id, at);
         } else {
-            const inp_set *other = inp_find_set(reader, field, set->of_nodes);
+            const inp_set *other = find_set(reader, field, set->of_nodes);
             if (!other) return fail_set_name(reader, at, field, set->of_nodes);
             /* A set may name itself: it gets the entries it has now once more. */
             for (size_t i = 0, count = other->count; i < count && !status; i++)
@@ -193,7 +193,7 @@ static lar_status read_faces(inp_reader *reader, lar_span line, int at) {
         lar_status status = spend_entry(reader, at);
         return status ? status : add_face(reader, id, label, at);
     }
-    const inp_set *set = inp_find_set(reader, first, false);
+    const inp_set *set = find_set(reader, first, false);
     if (!set) return fail_set_name(reader, at, first, false);
     lar_status status = LAR_OK;
     for (size_t i = 0; i < set->count && !status; i++) {
@@ -265,7 +265,7 @@ static lar_status build_quad(inp_reader *reader, const inp_set *set, const inp_b
 
 static lar_status build_element_set(inp_reader *reader, const inp_set *set) {
     lar_span name = {set->name, strlen(set->name)};
-    bool nodes_too = !inp_find_set(reader, name, true);
+    bool nodes_too = !find_set(reader, name, true);
     lar_status status = LAR_OK;
     for (size_t i = 0; i < set->count && !status; i++) {
         const inp_boundary *boundary = find_boundary(reader, set->entry[i].id);

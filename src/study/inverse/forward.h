@@ -1,0 +1,25 @@
+/* One experiment computed with given parameters: what would have been measured.
+ *
+ *     to rest    level 1 --ramp--> at rest? --> force --ramp--> level 2 --> at rest? --> force ...
+ *     in time    0 ------ measured motion, straight between rows ------> force at each row's time
+ *
+ * Elastic tissue knows no history, so each level of a curve is ramped to and followed to rest
+ * (simulation/rest.h), with the damping of static decks whatever the scene says: at rest that makes
+ * no difference, and nothing comes to rest sooner. Tissue that relaxes is computed in the time of
+ * the experiment, with the scene's own damping. Where the body is at rest to 1e-5 (rest.h), forces
+ * are exact to about as much, which decides how far apart differences are taken
+ * (study/inverse/inverse.h).
+ */
+#ifndef LAR_STUDY_INVERSE_FORWARD_H
+#define LAR_STUDY_INVERSE_FORWARD_H
+
+#include <signal.h>
+
+#include "study/inverse/experiment.h"
+
+/* Into model[values] of experiment k, with value[parameters]. Ends early with LAR_ERROR_ARGUMENT
+ * and an empty message when *stop (may be NULL) is not 0. Any thread; runs share nothing. */
+lar_status lar_inverse_forward(const lar_inverse_problem *problem, int k, const double *value,
+                               const volatile sig_atomic_t *stop, double *model, lar_error *error);
+
+#endif

@@ -1,0 +1,324 @@
+#include "study/inverse/inverse.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/clock.h"
+#include "base/memory.h"
+#include "study/inverse/parameters.h"
+#include "study/inverse/profile.h"
+#include "study/inverse/residuals.h"
+
+enum { P = LAR_INVERSE_PARAMETERS_MAX };
+
+/* How exact a run is, of the largest measured number: the least deviation that is believed. */
+static const double EXACT = 1e-4;
+/* Wider than this, in u on one side, an interval is looked at with a profile. */
+static const double WIDE = 0.69; /* ln 2 */
+/* Nearer to a bound than this part of the way between both is at it. */
+static const double AT_BOUND = 2e-3;
+
+/* ---- statistics ------------------------------------------------------------------------------ */
+
+/* With T = sqrt(n) tan(a) the density of Student is cos(a)^(n - 1), up to a constant. */
+static double area_to(double angle, int n) {
+    enum { PIECES = 400 };
+    double sum = 0, h = angle / PIECES;
+    for (int i = 0; i <= PIECES; i++)
+        sum += (i == 0 || i == PIECES ? 1 : i % 2 ? 4 : 2) * pow(cos(i * h), n - 1);
+    return sum * h / 3;
+}
+
+double lar_student_95(int n) {
+    static const double RIGHT = 1.57079632679489662;
+    double low = 0, high = RIGHT, all = area_to(RIGHT, n);
+    for (int i = 0; i < 50; i++) {
+        double middle = 0.5 * (low + high);
+        if (area_to(middle, n) < 0.95 * all)
+            low = middle;
+        else
+            high = middle;
+    }
+    return sqrt(n) * tan(low);
+}
+
+/* Eigenvalues of a symmetric matrix, and its eigenvectors as columns of v, by Jacobi's rotations.
+ */
+static void eigen(int n, double a[P][P], double v[P][P]) {
+    for (int i = 0; i < n; i++)
+        for (int j = 0; j < n; j++) v[i][j] = i == j;
+    for (int sweep = 0; sweep < 30; sweep++)
+        for (int p = 0; p < n; p++)
+            for (int q = p + 1; q < n; q++) {
+                if (fabs(a[p][q]) <= 1e-17 * sqrt(fabs(a[p][p] * a[q][q]))) continue;
+                double angle = 0.5 * atan2(2 * a[p][q], a[q][q] - a[p][p]);
+                double c = cos(angle), s = sin(angle);
+                for (int k = 0; k < n; k++) {
+                    double x = a[k][p], y = a[k][q];
+                    a[k][p] = c * x - s * y;
+                    a[k][q] = s * x + c * y;
+                }
+                for (int k = 0; k < n; k++) {
+                    double x = a[p][k], y = a[q][k];
+                    a[p][k] = c * x - s * y;
+                    a[q][k] = s * x + c * y;
+                    x = v[k][p], y = v[k][q];
+                    v[k][p] = c * x - s * y;
+                    v[k][q] = s * x + c * y;
+                }
+            }
+}
+
+/* s: the root of what is left for each degree of freedom, not less than runs are exact. */
+static double deviation_of(const lar_inverse_solver *s) {
+    const lar_inverse_problem *p = s->problem;
+    int freedom = s->values - s->parameters;
+    double exact = 0;
+    for (int k = 0; k < p->experiments; k++) {
+        const lar_inverse_experiment *e = &p->experiment[k];
+        exact += e->values * pow(EXACT * e->largest / e->noise, 2);
+    }
+    if (freedom <= 0) return NAN;
+    return sqrt(fmax(s->best_squares / freedom, exact / s->values));
+}
+
+/* ---- the linear picture ---------------------------------------------------------------------- */
+
+/* A direction that the data hardly see: which parameters share it. */
+static void note_direction(const lar_inverse_problem *p, double v[P][P], int d, double width,
+                           lar_inverse_result *result) {
+    static const double SHARE = 0.3;
+    char names[200] = "";
+    size_t used = 0;
+    int count = 0;
+    for (int j = 0; j < p->parameters; j++) {
+        if (fabs(v[j][d]) < SHARE || used >= sizeof names) continue;
+        int wrote = snprintf(names + used, sizeof names - used, "%s%s of %s", count ? ", " : "",
+                             p->parameter[j].name, p->parameter[j].material);
+        used += wrote > 0 ? (size_t)wrote : 0;
+        count++;
+    }
+    if (count > 1)
+        lar_inverse_note(
+            result,
+            "these data cannot tell apart: %s; they can change together by a factor of "
+            "%.3g and more unseen",
+            names, exp(fmin(width, 20)));
+}
+
+/* Covariances, intervals, correlations and the directions that are not seen. */
+static void linearise(const lar_inverse_solver *s, const double *jacobian,
+                      lar_inverse_result *result) {
+    static const double UNSEEN = 1e-12; /* of the largest eigenvalue: rounding */
+    const lar_inverse_problem *p = s->problem;
+    int n = s->parameters, m = s->values;
+    double a[P][P], v[P][P], covariance[P][P] = {{0}}, largest = 0;
+    for (int i = 0; i < n; i++)
+        for (int j = 0; j < n; j++) {
+            a[i][j] = 0;
+            for (int k = 0; k < m; k++) a[i][j] += jacobian[i * m + k] * jacobian[j * m + k];
+        }
+    for (int j = 0; j < n; j++) result->estimate[j].sensitivity = sqrt(a[j][j]);
+    eigen(n, a, v);
+    for (int d = 0; d < n; d++) largest = fmax(largest, a[d][d]);
+    double t = m > n ? lar_student_95(m - n) : NAN, deviation = result->deviation;
+    for (int d = 0; d < n; d++) {
+        double seen = fmax(a[d][d], UNSEEN * largest + 1e-300), width = t * deviation / sqrt(seen);
+        for (int i = 0; i < n; i++)
+            for (int j = 0; j < n; j++)
+                covariance[i][j] += deviation * deviation * v[i][d] * v[j][d] / seen;
+        if (width > WIDE) note_direction(p, v, d, width, result);
+    }
+    for (int i = 0; i < n; i++) {
+        double half = t * sqrt(covariance[i][i]), u = s->best_u[i];
+        lar_inverse_estimate *e = &result->estimate[i];
+        const lar_inverse_parameter *own = &p->parameter[i];
+        double range = lar_inverse_u_high(own) - lar_inverse_u_low(own);
+        e->low = m > n ? lar_inverse_value(own, u - half) : NAN;
+        e->high = m > n ? lar_inverse_value(own, u + half) : NAN;
+        e->told = half < fmin(WIDE, 0.25 * range) &&
+                  u - lar_inverse_u_low(own) > AT_BOUND * range &&
+                  lar_inverse_u_high(own) - u > AT_BOUND * range;
+        for (int j = 0; j < n; j++)
+            result->correlation[i][j] =
+                i == j ? 1 : covariance[i][j] / sqrt(covariance[i][i] * covariance[j][j]);
+    }
+}
+
+/* ---- what cannot be told --------------------------------------------------------------------- */
+
+static void note_open(const lar_inverse_parameter *p, const lar_inverse_estimate *e, bool low,
+                      bool high, lar_inverse_result *result) {
+    if (low && high)
+        lar_inverse_note(
+            result,
+            "%s of %s cannot be told from these data: everything between its bounds, %.4g "
+            "to %.4g, fits as well; measure something else that depends on it, or fix it",
+            p->name, p->material, p->low, p->high);
+    else if (high)
+        lar_inverse_note(result,
+                         "%s of %s cannot be told from these data: everything from %.4g up to its "
+                         "bound %.4g fits as well",
+                         p->name, p->material, e->low, p->high);
+    else if (low)
+        lar_inverse_note(
+            result,
+            "%s of %s cannot be told from these data: everything from its bound %.4g up "
+            "to %.4g fits as well",
+            p->name, p->material, p->low, e->high);
+}
+
+/* Parameters whose interval is wide or ends at a bound. */
+static lar_status profile_suspects(const lar_inverse_solver *s, lar_inverse_result *result) {
+    const lar_inverse_problem *p = s->problem;
+    int freedom = s->values - s->parameters;
+    if (freedom <= 0) return LAR_OK;
+    double grown = lar_student_95(freedom) * result->deviation;
+    lar_status status = LAR_OK;
+    for (int j = 0; j < s->parameters && !status && !lar_inverse_stopped(s); j++) {
+        lar_inverse_estimate *e = &result->estimate[j];
+        bool low, high;
+        if (e->told) continue;
+        status =
+            lar_inverse_profile(s, j, grown * grown, &e->low, &e->high, &low, &high, &result->runs);
+        if (status) break;
+        e->profiled = true;
+        e->told = !low && !high;
+        note_open(&p->parameter[j], e, low, high, result);
+    }
+    return status;
+}
+
+/* ---- the guess ------------------------------------------------------------------------------- */
+
+/* By how much all that the model answers would have to grow to fit, least squares. */
+static double ratio_of(const lar_inverse_experiment *e, const double *model) {
+    double up = 0, down = 0;
+    for (int32_t i = 0; i < e->values; i++) {
+        up += model[i] * e->measured[i];
+        down += model[i] * model[i];
+    }
+    return down > 0 ? up / down : 1;
+}
+
+static lar_status complain_profile(const lar_inverse_problem *p, const lar_inverse_experiment *e,
+                                   double ratio, lar_error *error) {
+    if (ratio < 0)
+        return lar_fail(error, LAR_ERROR_MODEL,
+                        "%s:%d: the heights of %s have the opposite sign of the model's; z grows "
+                        "out of the tissue, along the axis: turn axis, or say scale: {z: -1}",
+                        p->path, e->line, e->data);
+    return lar_fail(
+        error, LAR_ERROR_MODEL,
+        "%s:%d: the heights of %s are %.2g times those of the model at the guess; is a "
+        "unit wrong (kPa or mbar instead of Pa: scale: {pressure: 1000}, mm: scale: {z: "
+        "0.001}), or the guess? Give a nearer one",
+        p->path, e->line, e->data, ratio);
+}
+
+/* Forces that are far from those of the guess are of another unit, or of another sign. */
+static lar_status check_units(const lar_inverse_solver *s, lar_error *error) {
+    static const double FAR = 300;
+    const lar_inverse_problem *p = s->problem;
+    const double *model = s->best_model;
+    for (int k = 0; k < p->experiments; model += p->experiment[k++].values) {
+        const lar_inverse_experiment *e = &p->experiment[k];
+        if (e->kind > LAR_INVERSE_ASPIRATION) continue;
+        double ratio = ratio_of(e, model);
+        if (e->kind == LAR_INVERSE_ASPIRATION && !(ratio >= 1 / FAR && ratio <= FAR))
+            return complain_profile(p, e, ratio, error);
+        if (ratio < 0)
+            return lar_fail(error, LAR_ERROR_MODEL,
+                            "%s:%d: the forces of %s have the opposite sign of the model's; force "
+                            "and way are positive in the direction in which the scene moves the "
+                            "support or the tool goes in: say scale: {force: -1}",
+                            p->path, e->line, e->data);
+        if (ratio > FAR || ratio < 1 / FAR)
+            return lar_fail(error, LAR_ERROR_MODEL,
+                            "%s:%d: the forces of %s are %.2g times those of the model at the "
+                            "guess; is a unit wrong (mN or kPa instead of N and Pa: scale: {force: "
+                            "0.001}), or the guess? Give a nearer one",
+                            p->path, e->line, e->data, ratio);
+    }
+    return LAR_OK;
+}
+
+static lar_status try_guess(lar_inverse_solver *s, lar_error *error) {
+    double *r = lar_calloc((size_t)s->values, sizeof *r);
+    if (!r) return lar_fail_memory(error, (size_t)s->values, s->problem->path);
+    lar_status status = lar_inverse_evaluate(s, s->start, r);
+    free(r);
+    if (status == LAR_ERROR_UNSTABLE || status == LAR_ERROR_MODEL) {
+        lar_error why = *error;
+        return lar_fail(error, status,
+                        "%s: no answer with the first guess: %.600s; give another guess, or look "
+                        "with lariat run what the scene does",
+                        s->problem->path, why.message);
+    }
+    return status ? status : check_units(s, error);
+}
+
+/* ---- the fit --------------------------------------------------------------------------------- */
+
+static lar_status know(lar_inverse_solver *s, lar_inverse_result *result) {
+    size_t values = (size_t)s->values;
+    double *r = lar_calloc(values, sizeof *r);
+    double *jacobian = lar_calloc((size_t)s->parameters * values, sizeof *jacobian);
+    double u[P]; /* the best moves along in an evaluation */
+    memcpy(u, s->best_u, sizeof u);
+    s->doing = "looking how well the data tell";
+    lar_status status =
+        r && jacobian ? lar_inverse_evaluate(s, u, r) : lar_fail_memory(s->error, values, "a fit");
+    if (!status) status = lar_inverse_differentiate(s, u, r, jacobian);
+    if (!status) {
+        result->deviation = deviation_of(s);
+        linearise(s, jacobian, result);
+        status = profile_suspects(s, result);
+    }
+    free(r);
+    free(jacobian);
+    return status;
+}
+
+static lar_status take(const lar_inverse_solver *s, lar_inverse_result *result) {
+    result->model = lar_calloc((size_t)s->values, sizeof *result->model);
+    if (!result->model) return lar_fail_memory(s->error, (size_t)s->values, s->problem->path);
+    memcpy(result->model, s->best_model, (size_t)s->values * sizeof *result->model);
+    for (int j = 0; j < s->parameters; j++)
+        result->estimate[j] = (lar_inverse_estimate){
+            .value = lar_inverse_value(&s->problem->parameter[j], s->best_u[j]),
+            .low = NAN,
+            .high = NAN};
+    return LAR_OK;
+}
+
+lar_status lar_inverse_solve(const lar_inverse_problem *problem, const lar_inverse_options *options,
+                             lar_inverse_result *result, lar_error *error) {
+    lar_inverse_solver s;
+    lar_error unused;
+    if (!error) error = &unused;
+    *result = (lar_inverse_result){.parameters = problem->parameters, .deviation = NAN};
+    lar_status status = lar_inverse_solver_create(problem, options, &s, error);
+    result->values = s.values;
+    if (!status && lar_inverse_available()) status = try_guess(&s, error);
+    if (!status) status = lar_inverse_minimise(&s, &result->converged);
+    if (!status) status = take(&s, result);
+    if (!status && !lar_inverse_stopped(&s)) {
+        if (!result->converged)
+            lar_inverse_note(result,
+                             "the squares were still falling when the evaluations were used "
+                             "up; begin again from here, or free fewer parameters");
+        status = know(&s, result);
+    }
+    result->interrupted = lar_inverse_stopped(&s);
+    if (result->interrupted && result->model) status = LAR_OK;
+    if (!status) lar_inverse_look_at_residuals(problem, result);
+    if (!status && isnan(result->deviation) && !result->interrupted)
+        lar_inverse_note(result, "as many parameters as measured numbers: there are no intervals");
+    result->runs += s.runs;
+    result->seconds = lar_clock_seconds() - s.begin;
+    lar_inverse_solver_clear(&s);
+    return status;
+}

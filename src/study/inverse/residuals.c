@@ -1,0 +1,84 @@
+#include "study/inverse/residuals.h"
+
+#include <math.h>
+
+/* Residuals of less than this, of the largest measured number, are the mesh's or the run's. */
+static const double TINY = 5e-4;
+enum { ENOUGH = 8 }; /* values that chance can be told in */
+
+static void test_runs(lar_inverse_residuals *r, const double *left, int n) {
+    double up = 0, down = 0;
+    r->runs = 0;
+    for (int i = 0; i < n; i++) {
+        bool above = left[i] > 0;
+        *(above ? &up : &down) += 1;
+        if (i == 0 || above != (left[i - 1] > 0)) r->runs++;
+    }
+    double mean = 2 * up * down / n + 1;
+    double variance = (mean - 1) * (mean - 2) / (n - 1);
+    if (up == 0 || down == 0)
+        r->runs_z = -INFINITY;
+    else
+        r->runs_z = variance > 0 ? (r->runs - mean) / sqrt(variance) : 0;
+}
+
+static double lag_of(const double *left, int n) {
+    double with = 0, all = 0;
+    for (int i = 0; i < n; i++) {
+        all += left[i] * left[i];
+        if (i > 0) with += left[i] * left[i - 1];
+    }
+    return all > 0 ? with / all : 0;
+}
+
+/* Mean of what is left where the way is longest, or shortest: a third of the way each. */
+static double mean_at(const lar_inverse_experiment *e, const double *left, bool large) {
+    double far = 0, sum = 0;
+    int count = 0;
+    for (int32_t i = 0; i < e->rows; i++) far = fmax(far, fabs(e->along[i]));
+    for (int32_t i = 0; i < e->rows; i++) {
+        double at = fabs(e->along[i]) / far;
+        if (large ? at < 2.0 / 3 : at > 1.0 / 3 || at == 0) continue;
+        sum += left[i];
+        count++;
+    }
+    return count ? sum / count : 0;
+}
+
+static void note_shape(const lar_inverse_experiment *e, const lar_inverse_residuals *r,
+                       const double *left, lar_inverse_result *result) {
+    const char *at = "";
+    bool curve = e->kind <= LAR_INVERSE_INDENTATION && e->along;
+    double large = curve ? mean_at(e, left, true) : 0, sign = 0;
+    for (int32_t i = 0; curve && i < e->rows; i++) sign += e->measured[i];
+    if (sign < 0) large = -large;
+    if (curve && large > 0.3 * r->rms) at = "; the law is too soft at large strain";
+    if (curve && large < -0.3 * r->rms) at = "; the law is too stiff at large strain";
+    lar_inverse_note(result,
+                     "%s: what is left is no chance (%d changes of sign in %d values, neighbours "
+                     "correlate by %.2f), %.2g %% of the largest measured%s%s",
+                     e->name, r->runs - 1, (int)e->values, r->lag, 100 * r->relative, at,
+                     r->relative > 0.01 ? ": try another law, or look at mesh and supports" : "");
+}
+
+void lar_inverse_look_at_residuals(const lar_inverse_problem *problem, lar_inverse_result *result) {
+    double *model = result->model; /* becomes what is left, and the model again */
+    for (int k = 0; k < problem->experiments; model += problem->experiment[k++].values) {
+        const lar_inverse_experiment *e = &problem->experiment[k];
+        lar_inverse_residuals *r = &result->residuals[k];
+        int n = e->values;
+        double squares = 0;
+        for (int i = 0; i < n; i++) {
+            model[i] = e->measured[i] - model[i];
+            squares += model[i] * model[i];
+        }
+        r->rms = sqrt(squares / n);
+        r->relative = r->rms / e->largest;
+        r->lag = lag_of(model, n);
+        test_runs(r, model, n);
+        r->systematic = e->kind < LAR_INVERSE_MARKERS && n >= ENOUGH && r->relative > TINY &&
+                        (r->runs_z < -1.96 || r->lag > 2 / sqrt(n));
+        if (r->systematic) note_shape(e, r, model, result);
+        for (int i = 0; i < n; i++) model[i] = e->measured[i] - model[i];
+    }
+}

@@ -1,0 +1,186 @@
+/* Supports, loads and curves of FEBio decks. */
+#include "model/feb_deck.h"
+
+/* ---- conditions ------------------------------------------------------------------------------ */
+
+static void test_supports(void **state) {
+    (void)state;
+    lar_model *model = read_deck(
+        BASE4 "<Boundary><bc type=\"zero displacement\" node_set=\"wall\"><x_dof>1</x_dof>"
+              "<y_dof>0</y_dof><z_dof>1</z_dof></bc>"
+              "<bc type=\"fixed displacement\" node_set=\"@part_list:both\"><dofs>y</dofs></bc>"
+              "<bc type=\"prescribed displacement\" node_set=\"@surface:end\"><dof>x</dof>"
+              "<value lc=\"1\">-0.25</value><relative>0</relative></bc>"
+              "<bc type=\"prescribed displacement\" node_set=\"@elem_set:one\"><dof>z</dof>"
+              "<value>1e-3</value></bc></Boundary>" LINEAR1 TAIL);
+    assert_int_equal(model->fix_count, 2);
+    assert_int_equal(model->fix[0].axes, LAR_AXIS_X | LAR_AXIS_Z);
+    assert_int_equal(model->fix[0].nodes.count, 4);
+    assert_int_equal(model->fix[0].nodes.node[1], 3);
+    assert_int_equal(model->fix[1].axes, LAR_AXIS_Y);
+    assert_int_equal(model->fix[1].nodes.count, 12);
+    assert_int_equal(model->move_count, 2);
+    assert_int_equal(model->move[0].nodes.count, 4);
+    assert_int_equal(model->move[0].nodes.node[0], 8);
+    assert_true(model->move[0].by == -0.25);
+    assert_true(lar_curve_value(&model->curve[model->move[0].curve], 0.5) == 1.0);
+    assert_int_equal(model->move[1].nodes.count, 8);
+    assert_true(lar_curve_value(&model->curve[model->move[1].curve], 0.0) == 1.0);
+    assert_int_equal(model->curve_count, 2);
+    lar_model_destroy(model);
+}
+
+static void test_loads(void **state) {
+    (void)state;
+    lar_model *model = read_deck(
+        BASE4 "<Loads><nodal_load type=\"nodal_force\" node_set=\"tip\"><value lc=\"1\">1,2,3"
+              "</value></nodal_load><nodal_load type=\"nodal_load\" node_set=\"wall\"><dof>y</dof>"
+              "<scale lc=\"1\">-4</scale></nodal_load>"
+              "<surface_load type=\"pressure\" surface=\"end\"><pressure lc=\"1\">50</pressure>"
+              "<linear>1</linear></surface_load>"
+              "<surface_load type=\"pressure\" surface=\"inward\"><pressure>50</pressure>"
+              "<symmetric_stiffness>1</symmetric_stiffness></surface_load>"
+              "<body_load type=\"const\" elem_set=\"@part_list:both\"><x>0</x><z lc=\"1\">9.81</z>"
+              "</body_load></Loads><Initial><ic type=\"velocity\" node_set=\"tip\">"
+              "<value>0,0,-2</value></ic></Initial>" LINEAR1 TAIL);
+    assert_int_equal(model->load_count, 2);
+    assert_true(model->load[0].force[2] == 3.0 && model->load[0].nodes.count == 4);
+    assert_true(model->load[1].force[1] == -4.0 && model->load[1].force[0] == 0.0);
+    assert_int_equal(model->pressure_count, 2);
+    assert_true(model->pressure[0].pressure == 50.0 && model->pressure[0].face[0] == 7);
+    assert_true(model->pressure[1].pressure == -50.0 && model->pressure[1].count == 1);
+    assert_int_equal(notices_with(model, "<linear>"), 1);
+    assert_int_equal(notices_with(model, "normals into the body"), 1);
+    assert_true(model->gravity[2] == -9.81 && model->gravity[0] == 0.0);
+    assert_int_equal(model->gravity_curve[2], model->load[0].curve);
+    assert_int_equal(model->gravity_curve[1], -1);
+    assert_int_equal(model->initial_count, 1);
+    assert_true(model->initial[0].velocity[2] == -2.0 && model->initial[0].nodes.count == 4);
+    lar_model_destroy(model);
+}
+
+#define BC(type, set, content)                                                                     \
+    BASE4 "<Boundary>\n<bc type=\"" type "\" node_set=\"" set "\">\n" content                      \
+          "</bc></Boundary>" LINEAR1 TAIL
+
+static void test_bad_supports(void **state) {
+    (void)state;
+    expect_failure(BC("zero displacement", "none", "<x_dof>1</x_dof>"), LAR_ERROR_FORMAT, BC_LINE,
+                   "node set 'none'");
+    expect_failure(BC("zero displacement", "@edge:e", "<x_dof>1</x_dof>"), LAR_ERROR_UNSUPPORTED,
+                   BC_LINE, "@edge:e");
+    expect_failure(BC("zero displacement", "@surface:no", "<x_dof>1</x_dof>"), LAR_ERROR_FORMAT,
+                   BC_LINE, "surface 'no'");
+    expect_failure(BC("normal displacement", "tip", ""), LAR_ERROR_UNSUPPORTED, BC_LINE,
+                   "'normal displacement'");
+    expect_failure(BC("fix", "tip", "<dofs>x,u</dofs>"), LAR_ERROR_UNSUPPORTED, BC_LINE + 1, "'u'");
+    expect_failure(BC("prescribed displacement", "tip", "<value lc=\"1\">1</value>"),
+                   LAR_ERROR_FORMAT, BC_LINE, "no <dof>");
+    expect_failure(BC("prescribed displacement", "tip", "<dof>x</dof>\n"), LAR_ERROR_FORMAT,
+                   BC_LINE, "no <value>");
+    expect_failure(BC("prescribed displacement", "tip", "<dof>x</dof>\n<value lc=\"3\">1</value>"),
+                   LAR_ERROR_FORMAT, BC_LINE + 2, "load controller 3");
+    expect_failure(
+        BC("prescribed displacement", "tip", "<dof>x</dof>\n<value type=\"map\">m</value>"),
+        LAR_ERROR_UNSUPPORTED, BC_LINE + 2, "is a map");
+    expect_failure(BC("prescribed displacement", "tip",
+                      "<dof>x</dof><value>1</value>\n<relative>1</relative>"),
+                   LAR_ERROR_UNSUPPORTED, BC_LINE + 2, "<relative>");
+    expect_failure(BASE4 "<Boundary>\n<rigid/></Boundary>" TAIL, LAR_ERROR_UNSUPPORTED, BC_LINE,
+                   "<rigid>");
+    expect_failure(BASE4 "<Boundary>\n<bc type=\"fix\"><dofs>x</dofs></bc></Boundary>" TAIL,
+                   LAR_ERROR_FORMAT, BC_LINE, "no attribute node_set");
+}
+
+static void test_bad_loads(void **state) {
+    (void)state;
+    expect_failure(BASE4 "<Loads>\n<surface_load type=\"traction\" surface=\"end\"/></Loads>" TAIL,
+                   LAR_ERROR_UNSUPPORTED, BC_LINE, "'traction'");
+    expect_failure(BASE4 "<Loads>\n<surface_load type=\"pressure\" surface=\"no\"><pressure>1"
+                         "</pressure></surface_load></Loads>" TAIL,
+                   LAR_ERROR_FORMAT, BC_LINE, "surface 'no'");
+    expect_failure(BASE4 "<Loads>\n<body_load type=\"centrifugal\"/></Loads>" TAIL,
+                   LAR_ERROR_UNSUPPORTED, BC_LINE, "'centrifugal'");
+    expect_failure(BASE4 "<Loads>\n<body_load type=\"const\"/></Loads>" TAIL, LAR_ERROR_FORMAT,
+                   BC_LINE, "neither");
+    expect_failure(BASE4 "<Loads>\n<body_load type=\"const\" elem_set=\"left\"><z>1</z>"
+                         "</body_load></Loads>" TAIL,
+                   LAR_ERROR_UNSUPPORTED, BC_LINE, "'left' only");
+    expect_failure(BASE4 "<Loads>\n<edge_load/></Loads>" TAIL, LAR_ERROR_UNSUPPORTED, BC_LINE,
+                   "<edge_load>");
+    expect_failure(BASE4 "<Loads>\n<nodal_load type=\"nodal_force\" node_set=\"tip\"><value>1,2"
+                         "</value></nodal_load></Loads>" TAIL,
+                   LAR_ERROR_FORMAT, BC_LINE, "holds 2 values");
+    expect_failure(BASE4 "<Initial>\n<ic type=\"temperature\" node_set=\"tip\"/></Initial>" TAIL,
+                   LAR_ERROR_UNSUPPORTED, BC_LINE, "'temperature'");
+}
+
+/* ---- curves ---------------------------------------------------------------------------------- */
+
+#define USE(curve)                                                                                 \
+    BASE4                                                                                          \
+    "<Boundary><bc type=\"prescribe\" node_set=\"tip\"><dof>x</dof><scale lc=\"1\">1</scale>"      \
+    "</bc></Boundary>\n<LoadData>\n" curve "</LoadData>" TAIL
+
+static double deck_curve(const char *deck, double time) {
+    lar_model *model = read_deck(deck);
+    double value = lar_curve_value(&model->curve[model->move[0].curve], time);
+    lar_model_destroy(model);
+    return value;
+}
+
+static void test_curves(void **state) {
+    (void)state;
+    const char *step = USE(CURVE("1", "STEP", "CONSTANT", "<pt>0,1</pt><pt>1,2</pt><pt>2,3</pt>"));
+    assert_true(deck_curve(step, 0.5) == 2.0);
+    assert_true(deck_curve(step, 1.5) == 3.0);
+    const char *two = USE(CURVE("1", "SMOOTH", "CONSTANT", "<pt>0,0</pt><pt>1,1</pt>"));
+    assert_true(fabs(deck_curve(two, 0.25) - 0.25) < 1e-12);
+    /* t^2 is its own parabola, blended or not */
+    const char *four =
+        USE(CURVE("1", "SMOOTH", "CONSTANT", "<pt>0,0</pt><pt>1,1</pt><pt>2,4</pt><pt>3,9</pt>"));
+    for (double t = 0.0; t < 3.0; t += 0.37) assert_true(fabs(deck_curve(four, t) - t * t) < 1e-3);
+    const char *rise = USE(CURVE("1", "SMOOTH STEP", "CONSTANT", "<pt>0,0</pt><pt>1,1</pt>"));
+    assert_true(fabs(deck_curve(rise, 0.25) - 0.103515625) < 1e-4);
+    const char *jump =
+        USE(CURVE("1", "LINEAR", "CONSTANT", "<pt>0,0</pt><pt>1,1</pt><pt>1,5</pt>"));
+    assert_true(deck_curve(jump, 2.0) == 5.0);
+    /* the run ends with the curve, so its extension does not matter */
+    const char *covered = USE(CURVE("1", "LINEAR", "REPEAT", "<pt>0,0</pt><pt>1,1</pt>"));
+    assert_true(deck_curve(covered, 0.5) == 0.5);
+}
+
+static void test_bad_curves(void **state) {
+    (void)state;
+    enum { LINE = BC_LINE + 1 };
+    expect_failure(USE(CURVE("1", "LINEAR", "REPEAT", "<pt>0,0</pt><pt>0.5,1</pt>")),
+                   LAR_ERROR_UNSUPPORTED, LINE, "extended beyond");
+    expect_failure(USE(CURVE("1", "CONTROL POINTS", "CONSTANT", "<pt>0,0</pt>")),
+                   LAR_ERROR_UNSUPPORTED, LINE, "interpolation that is not read");
+    expect_failure(USE("<load_controller id=\"1\" type=\"math\"><math>t</math></load_controller>"),
+                   LAR_ERROR_UNSUPPORTED, LINE, "not of type loadcurve");
+    expect_failure(USE(CURVE("1", "LINEAR", "CONSTANT", "")), LAR_ERROR_FORMAT, LINE, "no points");
+    expect_failure(USE(CURVE("1", "LINEAR", "CONSTANT", "<pt>1,0</pt>\n<pt>0,0</pt>")),
+                   LAR_ERROR_FORMAT, LINE + 1, "before");
+    expect_failure(USE(CURVE("1", "LINEAR", "CONSTANT", "\n<pt>1,inf</pt>")), LAR_ERROR_FORMAT,
+                   LINE + 1, "'inf'");
+    expect_failure(USE(CURVE("1", "LINEAR", "CONSTANT",
+                             "<pt>1,1</pt>") "\n" CURVE("1", "LINEAR", "CONSTANT", "<pt>1,1</pt>")),
+                   LAR_ERROR_FORMAT, LINE + 1, "second load controller");
+    expect_failure(USE(CURVE("1", "SMOOTH", "CONSTANT", "<pt>0,0</pt><pt>0,1</pt><pt>1,1</pt>")),
+                   LAR_ERROR_UNSUPPORTED, LINE, "two points at the same time");
+    /* unused, it harms nobody */
+    lar_model *model = read_deck(BASE4 "<LoadData>" CURVE("1", "CONTROL POINTS", "CONSTANT",
+                                                          "<pt>0,0</pt>") "</LoadData>" TAIL);
+    assert_int_equal(model->curve_count, 0);
+    lar_model_destroy(model);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_supports),     cmocka_unit_test(test_loads),
+        cmocka_unit_test(test_bad_supports), cmocka_unit_test(test_bad_loads),
+        cmocka_unit_test(test_curves),       cmocka_unit_test(test_bad_curves),
+    };
+    return cmocka_run_group_tests_name("feb_conditions", tests, NULL, NULL);
+}

@@ -1,0 +1,265 @@
+/* Materials of Abaqus and CalculiX decks. */
+#include "model/inp_deck.h"
+
+static void test_materials(void **state) {
+    (void)state;
+    lar_model *model = read_deck(
+        MESH "*MATERIAL, NAME=a\n*HYPERELASTIC, NEO HOOKE\n500, 1e-4\n*DENSITY\n1000\n"
+             "*Material, name=B\n*Hyperelastic, mooney-rivlin\n300, 100, 2e-5\n*Density\n1100,\n"
+             "*Material, name=spare\n*Elastic\n1, 0.3\n"
+             "*SOLID SECTION, ELSET=LEFT, MATERIAL=A\n1.,\n*Solid Section, elset=right, "
+             "material=b\n");
+    assert_int_equal(model->material_count, 2);
+    assert_int_equal(model->material[0].law, LAR_LAW_neo_hookean);
+    near(lar_material_shear(&model->material[0]), 1000);
+    near(lar_material_bulk(&model->material[0]), 2e4);
+    near(model->material[0].density, 1000);
+    assert_int_equal(model->material[1].law, LAR_LAW_mooney_rivlin);
+    near(model->material[1].parameter[0], 300);
+    near(model->material[1].parameter[1], 100);
+    near(model->material[1].parameter[2], 1e5);
+    assert_int_equal(model->element_material[0], 0);
+    assert_int_equal(model->element_material[1], 1);
+    assert_int_equal(notices_with(model, "material 'spare' is not used"), 1);
+    assert_int_equal(notices_with(model, "K/2 (ln J)^2 instead of (J - 1)^2 / D1"), 1);
+    lar_model_destroy(model);
+
+    model = read_deck(MESH "*MATERIAL, NAME=a\n*ELASTIC, TYPE=ISO\n3000, 0.25\n*DENSITY\n1\n"
+                           "*DAMPING, ALPHA=2.5\n*SOLID SECTION, ELSET=BOTH, MATERIAL=a\n");
+    assert_int_equal(model->material[0].law, LAR_LAW_neo_hookean);
+    near(lar_material_shear(&model->material[0]), 1200);
+    near(lar_material_bulk(&model->material[0]), 2000);
+    near(model->damping, 2.5);
+    assert_int_equal(notices_with(model,
+                                  "deck.inp:30: material 'a' is linear elastic; Lariat takes "
+                                  "the neo-Hookean law with the same moduli, which is equal "
+                                  "at small strain only"),
+                     1);
+    assert_int_equal(lar_model_until_rest(model), 0);
+    lar_model_destroy(model);
+}
+
+/* Yeoh's law, and what it becomes where its further terms are zero. */
+static void test_yeoh(void **state) {
+    (void)state;
+    lar_model *model = read_deck(
+        MESH "*MATERIAL, NAME=a\n*HYPERELASTIC, YEOH\n500, -60, 7, 1e-4, 0, 0, 20\n*DENSITY\n"
+             "1000\n*MATERIAL, NAME=b\n*HYPERELASTIC, YEOH\n500, , , 1e-4\n*DENSITY\n1000\n"
+             "*SOLID SECTION, ELSET=LEFT, MATERIAL=a\n1.,\n*SOLID SECTION, ELSET=RIGHT, "
+             "MATERIAL=b\n");
+    assert_int_equal(model->material[0].law, LAR_LAW_yeoh);
+    assert_memory_equal(model->material[0].parameter, ((double[]){500, -60, 7, 2e4}), 32);
+    assert_int_equal(model->material[1].law, LAR_LAW_neo_hookean);
+    near(lar_material_shear(&model->material[1]), 1000);
+    assert_int_equal(notices_with(model, "Lariat's Yeoh law answers a change of volume by K/2 (ln "
+                                         "J)^2 instead of (J - 1)^2 / D1"),
+                     1);
+    lar_model_destroy(model);
+}
+
+static lar_model *of_two(const char *left, const char *right) {
+    char deck[4000];
+    snprintf(deck, sizeof deck,
+             MESH "*MATERIAL, NAME=a\n*HYPERELASTIC, %s\n*DENSITY\n1000\n*MATERIAL, NAME=b\n"
+                  "*HYPERELASTIC, %s\n*DENSITY\n1000\n*SOLID SECTION, ELSET=LEFT, MATERIAL=a\n"
+                  "1.,\n*SOLID SECTION, ELSET=RIGHT, MATERIAL=b\n",
+             left, right);
+    return read_deck(deck);
+}
+
+/* Series of one, two and three terms; behind the terms their D, on a second line where there are
+ * more than eight numbers. */
+static void test_series(void **state) {
+    (void)state;
+    lar_model *model =
+        of_two("OGDEN, N=3\n400, 1.3, 1.2, 5, -10, -2, 1e-4, 0\n0, 20", "OGDEN\n500, 8, 1e-4");
+    assert_int_equal(model->material[0].law, LAR_LAW_ogden);
+    assert_memory_equal(model->material[0].parameter, ((double[]){800, 1.3, 2.4, 5, -20, -2, 2e4}),
+                        56);
+    assert_memory_equal(model->material[1].parameter, ((double[]){1000, 8, 0, 0, 0, 0, 2e4}), 56);
+    near(lar_material_shear(&model->material[1]), 500);
+    assert_int_equal(notices_with(model, "Lariat's Ogden law answers a change of volume"), 2);
+    lar_model_destroy(model);
+    model = of_two("N=2, OGDEN\n400, 1.3, 1.2, 5, 1e-4, , 20",
+                   "REDUCED POLYNOMIAL, N=2\n500, -60, 1e-4, 0");
+    assert_memory_equal(model->material[0].parameter, ((double[]){800, 1.3, 2.4, 5, 0, 0, 2e4}),
+                        56);
+    assert_int_equal(model->material[1].law, LAR_LAW_yeoh);
+    assert_memory_equal(model->material[1].parameter, ((double[]){500, -60, 0, 2e4}), 32);
+    lar_model_destroy(model);
+    model = of_two("REDUCED POLYNOMIAL, N=3\n500, -60, 7, 1e-4", "reduced polynomial\n500, 1e-4");
+    assert_memory_equal(model->material[0].parameter, ((double[]){500, -60, 7, 2e4}), 32);
+    assert_int_equal(model->material[1].law, LAR_LAW_neo_hookean);
+    lar_model_destroy(model);
+    model = of_two("ARRUDA-BOYCE\n500, 2, 1e-4", "NEO HOOKE\n500, 1e-4");
+    assert_int_equal(model->material[0].law, LAR_LAW_arruda_boyce);
+    assert_memory_equal(model->material[0].parameter, ((double[]){500, 4, 2e4}), 24);
+    /* Abaqus's manual: mu (1 + 3/(5 l^2) + 99/(175 l^4) + 513/(875 l^6) + 42039/(67375 l^8)) */
+    near(lar_material_shear(&model->material[0]),
+         500 * (1 + 0.6 / 4 + 99.0 / 175 / 16 + 513.0 / 875 / 64 + 42039.0 / 67375 / 256));
+    lar_model_destroy(model);
+}
+
+/* Without gravity the density of a static deck does not matter. */
+/* Moduli in the end, which is Abaqus's default, or at once. */
+static void test_viscosity(void **state) {
+    (void)state;
+#define VISCOUS(moduli, terms)                                                                     \
+    MESH "*MATERIAL, NAME=a\n*HYPERELASTIC, NEO HOOKE" moduli                                      \
+         "\n500, 1e-4\n*DENSITY\n1000\n*VISCOELASTIC, TIME=PRONY\n" terms                          \
+         "*SOLID SECTION, ELSET=BOTH, MATERIAL=a\n"
+    lar_model *model = read_deck(VISCOUS("", "0.25, 0, 0.1\n0.35, , 2.5\n"));
+    const lar_viscosity *v = &model->material[0].viscosity;
+    assert_true(v->terms == 2 && v->isochoric && v->rest == 1);
+    near(v->share[0], 0.25 / 0.4);
+    near(v->share[1], 0.35 / 0.4);
+    near(v->time[1], 2.5);
+    near(lar_material_shear(&model->material[0]), 1000);
+    near(lar_material_instant_shear(&model->material[0]), 2500);
+    near(lar_material_instant_bulk(&model->material[0]), 2e4);
+    assert_int_equal(notices_with(model, "equal where strain is small"), 1);
+    lar_model_destroy(model);
+
+    model = read_deck(VISCOUS(", MODULI=INSTANTANEOUS", "0.25, 0.25, 0.1\n"));
+    v = &model->material[0].viscosity;
+    assert_true(v->terms == 1 && !v->isochoric && v->rest == 0.75 && v->share[0] == 0.25);
+    near(lar_material_shear(&model->material[0]), 750);
+    near(lar_material_instant_bulk(&model->material[0]), 2e4);
+    lar_model_destroy(model);
+
+    model = read_deck(MESH "*MATERIAL, NAME=a\n*VISCOELASTIC, TIME=PRONY\n0.5, 0.5, 1\n*ELASTIC, "
+                           "MODULI=LONG TERM\n3000, 0.25\n*DENSITY\n1\n*SOLID SECTION, ELSET=BOTH, "
+                           "MATERIAL=a\n");
+    near(lar_material_instant_shear(&model->material[0]), 2400);
+    lar_model_destroy(model);
+
+    const int card = AFTER_MESH + 5;
+    refused(VISCOUS("", ""), LAR_ERROR_FORMAT, card, "has no line of numbers; add g, k, tau");
+    refused(VISCOUS("", "0.5, 0.2, 1\n"), LAR_ERROR_UNSUPPORTED, card + 1,
+            "k of *VISCOELASTIC is 0.2 and g 0.5; Lariat relaxes");
+    refused(VISCOUS("", "0.5, 0, 1\n0.1, 0.1, 2\n"), LAR_ERROR_UNSUPPORTED, card + 2,
+            "differ in whether the volume relaxes");
+    refused(VISCOUS("", "-0.5, 0, 1\n"), LAR_ERROR_MODEL, card + 1, "g of *VISCOELASTIC is -0.5");
+    refused(VISCOUS("", "0.5, 0, 0\n"), LAR_ERROR_MODEL, card + 1, "tau of *VISCOELASTIC is 0");
+    refused(VISCOUS("", "0.5, 0, 1\n0.6, 0, 2\n"), LAR_ERROR_MODEL, card,
+            "the g of *VISCOELASTIC make up 1.1; they must stay below 1");
+    refused(VISCOUS("", ".1,0,1\n.1,0,2\n.1,0,3\n.1,0,4\n"), LAR_ERROR_UNSUPPORTED, card + 4,
+            "more than 3 terms of *VISCOELASTIC");
+    refused(VISCOUS(", MODULI=SOMETIMES", "0.5, 0, 1\n"), LAR_ERROR_FORMAT, AFTER_MESH + 1,
+            "MODULI=SOMETIMES is neither LONG TERM nor INSTANTANEOUS");
+    refused(MESH "*MATERIAL, NAME=a\n*VISCOELASTIC, TIME=CREEP TEST DATA\n1, 1\n",
+            LAR_ERROR_UNSUPPORTED, AFTER_MESH + 1, "TIME=CREEP TEST DATA is not read");
+    refused(MESH "*MATERIAL, NAME=a\n*VISCOELASTIC, FREQUENCY=PRONY\n1, 1\n", LAR_ERROR_UNSUPPORTED,
+            AFTER_MESH + 1, "FREQUENCY");
+}
+
+static void test_static_without_density(void **state) {
+    (void)state;
+    static const char *const deck =
+        MESH "*MATERIAL, NAME=a\n*ELASTIC\n210e9, 0.3\n*SOLID SECTION, ELSET=BOTH, MATERIAL=a\n"
+             "*BOUNDARY\nWALL, 1, 3\n" STATIC "*CLOAD\nTIP, 1, 1\n" END;
+    lar_model *model = read_deck(deck);
+    /* ten periods of 4 L sqrt(rho / G) in the step's 2 s, with L = 2 */
+    near(8 * sqrt(model->material[0].density / lar_material_shear(&model->material[0])), 0.2);
+    assert_int_equal(notices_with(model, "no *DENSITY: the static answer does not depend on it"),
+                     1);
+    lar_model_destroy(model);
+    refused(MESH
+            "*MATERIAL, NAME=a\n*ELASTIC\n2e9, 0.3\n*SOLID SECTION, ELSET=BOTH, MATERIAL=a\n" STATIC
+            "*DLOAD\n, GRAV, 9.81, 0, 0, -1\n" END,
+            LAR_ERROR_MODEL, AFTER_MESH + 1, "has no density; give it *DENSITY");
+    refused(
+        MESH
+        "*MATERIAL, NAME=a\n*ELASTIC\n2e9, 0.3\n*SOLID SECTION, ELSET=BOTH, MATERIAL=a\n" DYNAMIC
+            END,
+        LAR_ERROR_MODEL, AFTER_MESH + 1, "has no density");
+}
+
+static void test_bad_materials(void **state) {
+    (void)state;
+    const int one = AFTER_MESH, two = one + 1, three = one + 2;
+#define OF(rest) MESH "*MATERIAL, NAME=a\n" rest
+    refused(OF("*PLASTIC\n1, 0\n"), LAR_ERROR_UNSUPPORTED, two,
+            "*PLASTIC is not read and would "
+            "change the answer; remove it");
+    refused(OF("*HYPERELASTIC, MARLOW\n1,2,3\n"), LAR_ERROR_UNSUPPORTED, two,
+            "Lariat has NEO HOOKE, MOONEY-RIVLIN, YEOH, REDUCED POLYNOMIAL, ARRUDA-BOYCE and "
+            "OGDEN, with constants");
+    refused(OF("*HYPERELASTIC, OGDEN, N=4\n1,2,3\n"), LAR_ERROR_UNSUPPORTED, two,
+            "N=4 of *HYPERELASTIC; Lariat's Ogden law has 3 terms at most");
+    refused(OF("*HYPERELASTIC, REDUCED POLYNOMIAL, N=0\n1,2\n"), LAR_ERROR_FORMAT, two,
+            "N=0 of *HYPERELASTIC is no number of terms");
+    refused(OF("*HYPERELASTIC, YEOH, N=3\n1, 1, 1, 1\n"), LAR_ERROR_UNSUPPORTED, two,
+            "the parameter N of *HYPERELASTIC");
+    refused(OF("*HYPERELASTIC, OGDEN, N=2\n500, 2, 30, , 1e-4\n"), LAR_ERROR_MODEL, two,
+            "m2 of the law ogden is 0; it is the power of the term of c2");
+    refused(OF("*HYPERELASTIC, OGDEN, N=2\n500, 2, 30, -4, 1e-4, 1e-4\n"), LAR_ERROR_UNSUPPORTED,
+            two, "D2 is 0.0001");
+    refused(OF("*HYPERELASTIC, OGDEN\n500, 1e4, 1e-4\n"), LAR_ERROR_MODEL, two,
+            "m1 of the law ogden is 10000");
+    refused(OF("*HYPERELASTIC, OGDEN, N=1\n500, 2, 1e-4, 20, 7\n"), LAR_ERROR_FORMAT, three,
+            "expected the end of the line");
+    refused(OF("*HYPERELASTIC, OGDEN, N=3\n1, 2, 1, 2, 1, 2, 1, 0\n0, 20, 7\n"), LAR_ERROR_FORMAT,
+            three + 1, "expected the end of the line");
+    refused(OF("*HYPERELASTIC, ARRUDA-BOYCE\n500, -2, 1e-4\n"), LAR_ERROR_MODEL, two,
+            "LAMBDA_M is -2; it must be more than zero");
+    refused(OF("*HYPERELASTIC, ARRUDA-BOYCE\n500, 200, 1e-4\n"), LAR_ERROR_MODEL, two,
+            "N of the law arruda-boyce is 40000");
+    refused(OF("*HYPERELASTIC, ARRUDA-BOYCE\n500, 2\n"), LAR_ERROR_UNSUPPORTED, two,
+            "D is 0, which asks for a material that cannot change its volume");
+    refused(OF("*HYPERELASTIC, NEO HOOKE, TEST DATA INPUT\n"), LAR_ERROR_UNSUPPORTED, two,
+            "the parameter TEST DATA INPUT of *HYPERELASTIC");
+    refused(OF("*HYPERELASTIC, NEO HOOKE\n500\n"), LAR_ERROR_UNSUPPORTED, two, "D1 = 2 / K");
+    refused(OF("*HYPERELASTIC, NEO HOOKE\n500, 1e-4\n600, 1e-4\n"), LAR_ERROR_UNSUPPORTED,
+            three + 1, "depends on temperature");
+    refused(OF("*HYPERELASTIC, NEO HOOKE\n500, 1e-4, 20, 7\n"), LAR_ERROR_FORMAT, three,
+            "expected the end of the line");
+    refused(OF("*HYPERELASTIC, YEOH\n500, -60, 7\n"), LAR_ERROR_UNSUPPORTED, two, "D1 = 2 / K");
+    refused(OF("*HYPERELASTIC, YEOH\n500, -60, 7, 1e-4, 1e-3\n"), LAR_ERROR_UNSUPPORTED, two,
+            "D2 is 0.001; Lariat's Yeoh law does not have that term");
+    refused(OF("*HYPERELASTIC, YEOH\n500, nan, 7, 1e-4\n"), LAR_ERROR_FORMAT, three,
+            "expected C20, found");
+    refused(OF("*HYPERELASTIC, YEOH\n-500, 1, 7, 1e-4\n"), LAR_ERROR_MODEL, two, "shear modulus");
+    refused(OF("*HYPERELASTIC, YEOH\n500, 1, 7e99, 1e-4\n"), LAR_ERROR_MODEL, two,
+            "check its unit");
+    refused(OF("*HYPERELASTIC, YEOH\n500, 1, 7, 1e-320\n"), LAR_ERROR_MODEL, two,
+            "not a finite number");
+    refused(OF("*HYPERELASTIC, NEO HOOKE\n-5, 1e-4\n"), LAR_ERROR_MODEL, two, "shear modulus");
+    refused(OF("*ELASTIC, TYPE=ORTHO\n1,2,3\n"), LAR_ERROR_UNSUPPORTED, two, "isotropic");
+    refused(OF("*ELASTIC\n1000, 0.5\n"), LAR_ERROR_MODEL, three, "Poisson's ratio 0.5");
+    refused(OF("*ELASTIC\n1000, x\n"), LAR_ERROR_FORMAT, three, "expected Poisson's ratio, found");
+    refused(OF("*ELASTIC\n"), LAR_ERROR_FORMAT, two, "*ELASTIC has no line of numbers");
+    refused(OF("*ELASTIC\n1, 0.3\n*ELASTIC\n1, 0.3\n"), LAR_ERROR_FORMAT, two + 2, "second law");
+    refused(OF("*DENSITY\n-1\n"), LAR_ERROR_MODEL, three, "must be positive");
+    refused(OF("*DAMPING, ALPHA=1, BETA=0.1\n"), LAR_ERROR_UNSUPPORTED, two, "leave BETA out");
+    refused(OF("*MATERIAL, NAME=A\n"), LAR_ERROR_FORMAT, two, "a second *MATERIAL");
+    refused(OF("*DENSITY\n1\n*SOLID SECTION, ELSET=BOTH, MATERIAL=a\n"), LAR_ERROR_MODEL, one,
+            "has no law");
+    refused(OF("*SOLID SECTION, ELSET=BOTH, MATERIAL=b\n"), LAR_ERROR_FORMAT, two,
+            "there is no *MATERIAL called 'b'");
+    refused(OF("*SOLID SECTION, ELSET=BOTH, MATERIAL=a, ORIENTATION=o\n"), LAR_ERROR_UNSUPPORTED,
+            two, "ORIENTATION");
+    refused(MESH SOFT "*SHELL SECTION, ELSET=LEFT, MATERIAL=soft\n1\n", LAR_ERROR_UNSUPPORTED,
+            AFTER_SOFT, "*SHELL SECTION");
+    refused(MESH "*ELASTIC\n1, 0.3\n", LAR_ERROR_FORMAT, one, "outside of a material");
+    refused(OF("*BOUNDARY\nWALL, 1\n*ELASTIC\n1, 0.3\n"), LAR_ERROR_FORMAT, two + 2, "outside");
+    refused(OF("*ELASTIC\n1, 0.3\n*DENSITY\n1\n*SOLID SECTION, ELSET=NONE, MATERIAL=a\n"),
+            LAR_ERROR_FORMAT, two + 4, "'NONE' is neither a number nor a set of elements");
+#undef OF
+    lar_model *model = NULL;
+    lar_error error;
+    assert_int_equal(parse(MESH "*MATERIAL, NAME=a\n*ELASTIC\n1, 0.3\n*DENSITY\n1\n"
+                                "*SOLID SECTION, ELSET=LEFT, MATERIAL=a\n",
+                           &model, &error),
+                     LAR_ERROR_MODEL);
+    assert_non_null(strstr(error.message, "element 2 has no material"));
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_materials),     cmocka_unit_test(test_yeoh),
+        cmocka_unit_test(test_series),        cmocka_unit_test(test_static_without_density),
+        cmocka_unit_test(test_bad_materials), cmocka_unit_test(test_viscosity),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
