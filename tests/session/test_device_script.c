@@ -141,7 +141,8 @@ static void test_bad_scripts_are_refused(void **state) {
         {"time,x,y,z\n0,0,0,0,0\n", "device_bad.csv:2: more values"},
         {"time,x,y,z\n0,0,0,1000\n", "device_bad.csv:2: z is 1000 m"},
         {"time,x,y,z,opening\n0,0,0,0,2\n", "device_bad.csv:2: an opening of 2"},
-        {"time,x,y,z,qw,qx,qy,qz\n0,0,0,0,0,0,0,0\n", "device_bad.csv:2: the orientation has length 0"},
+        {"time,x,y,z,qw,qx,qy,qz\n0,0,0,0,0,0,0,0\n",
+         "device_bad.csv:2: the orientation has length 0"},
     };
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         write_file("device_bad.csv", bad[i].text);
