@@ -222,7 +222,7 @@ typedef struct lar_model_contact_info {
     const char *kind;             /* "self", "between" or "plane" */
     int32_t faces, against;       /* counts; the second of "between", else 0 */
     double through[3], normal[3]; /* of a plane [m], unit length; else zero */
-    double friction;              /* of a plane: Coulomb's coefficient */
+    double friction;              /* Coulomb's coefficient */
 } lar_model_contact_info;
 
 LAR_API int32_t lar_model_contact_count(const lar_model *model);

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "contact/friction/body_friction.h"
 #include "mechanics/face_contact.h"
 
 /* How much nearer a node and a face come when all nodes move by 1 along every axis. */
@@ -17,48 +18,10 @@ typedef struct touching {
     double far;                          /* how far they are in the mean; 0: one alone counts [m] */
     double force[3];                     /* on the node [N] */
     double depth;                        /* [m] */
-    int32_t fading;                      /* the face that fades towards its edge; -1: none */
-    double fade[4][3];                   /* forces on its corners, the node gets minus them [N] */
+    int32_t fading;    /* the face that fades towards its edge, or rubs; -1: none */
+    double fade[4][3]; /* forces of that on its corners, the node gets minus them [N] */
+    bool rubs;         /* there is friction in `fade`, which is of the one face */
 } touching;
-
-static inline void place_of_node(const lar_body_contact *contact, const lar_state *state,
-                                 int32_t node, double x[3], double v[3]) {
-    const lar_contact_view *view = &contact->view;
-    if (view->place) {
-        const double *place = view->place[view->slot[node]];
-        memcpy(x, place, 3 * sizeof *x);
-        if (v) memcpy(v, place + 3, 3 * sizeof *v);
-        return;
-    }
-    const double *rest = contact->surface->rest[node];
-    const double *u = state->u + view->value[node];
-    for (int i = 0; i < 3; i++) x[i] = rest[i] + u[i];
-    if (v) memcpy(v, state->v + view->value[node], 3 * sizeof *v);
-}
-
-/* Of a node or a point of an edge; v may be NULL. */
-static void place_of(const lar_body_contact *contact, const lar_state *state, int32_t node,
-                     double x[3], double v[3]) {
-    int32_t parent[2];
-    double weight[2], end[2][3], speed[2][3];
-    if (lar_contact_parents(contact->surface, node, parent, weight) == 1) {
-        place_of_node(contact, state, node, x, v);
-        return;
-    }
-    for (int k = 0; k < 2; k++)
-        place_of_node(contact, state, parent[k], end[k], v ? speed[k] : NULL);
-    for (int i = 0; i < 3; i++) {
-        x[i] = weight[0] * end[0][i] + weight[1] * end[1][i];
-        if (v) v[i] = weight[0] * speed[0][i] + weight[1] * speed[1][i];
-    }
-}
-
-static void corners_of(const lar_body_contact *contact, const lar_state *state, int32_t face,
-                       double x[4][3], double v[4][3]) {
-    for (int a = 0; a < 4; a++)
-        place_of_node(contact, state, contact->surface->face[face].corner[a], x[a],
-                      v ? v[a] : NULL);
-}
 
 /* What is known of a group's faces: distances of those that may matter, at least so much. */
 typedef struct survey {
@@ -90,7 +53,7 @@ static double fade_of(const lar_body_contact *contact, int32_t node, int32_t fac
 static double survey_face(lar_body_contact *contact, const lar_state *state, const double x[3],
                           int32_t f, int32_t i, survey *s) {
     double corner[4][3], tie = tie_of(contact, f);
-    corners_of(contact, state, f, corner, NULL);
+    lar_contact_corners(contact, state, f, corner, NULL);
     double distance = lar_face_box_distance(x, (const double(*)[3])corner);
     if (distance <= s->min + s->fade + tie && distance <= s->reach + tie) {
         lar_face_point point;
@@ -154,7 +117,7 @@ static int32_t choose_face(const lar_body_contact *contact, const lar_state *sta
         lar_face_point other = s->point;
         if (!(s->distance[k] <= s->min + tie) || s->distance[k] > s->reach + tie) continue;
         if (i != s->at) {
-            corners_of(contact, state, f, corner, NULL);
+            lar_contact_corners(contact, state, f, corner, NULL);
             lar_face_closest(x, (const double(*)[3])corner, tie, &other);
         }
         if (chosen >= 0 && !lar_face_point_before(&other, point)) continue;
@@ -234,7 +197,7 @@ static void point_of(const lar_body_contact *contact, const lar_state *state, co
     for (int32_t f = 0; f < t->count; f++) {
         const int32_t *corner = contact->surface->face[t->face[f]].corner;
         double x[4][3], v[4][3], at[3], velocity[3];
-        corners_of(contact, state, t->face[f], x, v);
+        lar_contact_corners(contact, state, t->face[f], x, v);
         lar_face_mean((const double(*)[3])x, t->weight[f], at);
         lar_face_mean((const double(*)[3])v, t->weight[f], velocity);
         for (int i = 0; i < 3; i++) {
@@ -264,7 +227,7 @@ static void blend(const lar_body_contact *contact, const lar_state *state, int32
         if (!(s->distance[k] < s->min + fade) ||
             !lar_contact_active(&surface->node[group->node], &surface->face[f]))
             continue;
-        corners_of(contact, state, f, corner, NULL);
+        lar_contact_corners(contact, state, f, corner, NULL);
         double counts = lar_face_blend(x, (const double(*)[3])corner, s->min, fade, sum, &far);
         if (!(counts > 0) || blended.count == LAR_CONTACT_FACES) continue;
         all += counts;
@@ -358,7 +321,7 @@ static double fade(const lar_body_contact *contact, const lar_state *state, cons
                    double depth, double rate, touching *t) {
     const lar_contact_face *f = &contact->surface->face[face];
     double corner[4][3], value[5], slope[5][3], stored;
-    corners_of(contact, state, face, corner, NULL);
+    lar_contact_corners(contact, state, face, corner, NULL);
     for (int a = 0; a < 4; a++) value[a] = contact->surface->node[f->corner[a]].blunt;
     value[4] = 1;
     double part = lar_face_value(closest, value), steep = 6 * part * (1 - part);
@@ -383,10 +346,10 @@ static bool push(lar_body_contact *contact, const lar_state *state, int32_t g, i
     const lar_contact_surface *surface = contact->surface;
     const lar_contact_face *f = &surface->face[face];
     int32_t node = contact->list.group[g].node;
-    double x[3], v[3], corner[4][3], way[3], rate = 0;
+    double x[3], v[3], corner[4][3], speed[4][3], way[3], rate = 0;
     contact_point point;
-    place_of(contact, state, node, x, v);
-    corners_of(contact, state, face, corner, NULL);
+    lar_contact_place(contact, state, node, x, v);
+    lar_contact_corners(contact, state, face, corner, contact->friction ? speed : NULL);
     *t = (touching){.count = 1, .face = {face}, .fading = -1};
     memcpy(t->weight[0], closest->weight, sizeof closest->weight);
     bool before = !(closest->height < 0);
@@ -415,6 +378,12 @@ static bool push(lar_body_contact *contact, const lar_state *state, int32_t g, i
         t->force[i] = together * force * way[i];
         for (int a = 0; a < 4; a++) t->fade[a][i] *= together;
     }
+    if (!contact->friction) return true;
+    const lar_rub rub = {node, face, x, v, way, corner, speed, closest->weight, together * force,
+                         moved};
+    if (!lar_body_friction_rub(contact, state, &rub, t->fade)) return true;
+    t->rubs = t->fading < 0 && t->count == 1 && t->face[0] == face;
+    if (!t->rubs) t->fading = face;
     return true;
 }
 
@@ -423,7 +392,7 @@ static int32_t closest(lar_body_contact *contact, const lar_state *state, int32_
                        lar_face_point *point) {
     const lar_contact_group *group = &contact->list.group[g];
     double x[3];
-    place_of(contact, state, group->node, x, NULL);
+    lar_contact_place(contact, state, group->node, x, NULL);
     survey_group(contact, state, g, x, s);
     /* A little earlier, for rounding. */
     contact->due[g] = s->gap > 0 ? fmin(contact->travel + 0.999 * s->gap / APPROACH, s->next) : 0;
@@ -522,7 +491,8 @@ static void add_forces(lar_body_contact *contact, const lar_condition_context *c
         /* Beyond all reason: the speeds that make such a force stop the run. */
         if (!(fabs(force) < MAX)) return;
         for (int a = 0; a < 4 * t->count; a++) {
-            corner[a][i] = llrint(t->weight[a / 4][a % 4] * force);
+            double along = t->rubs ? t->fade[a][i] * context->scale : 0;
+            corner[a][i] = llrint(t->weight[a / 4][a % 4] * force - along);
             sum[i] -= corner[a][i];
         }
         for (int a = 0; a < 4 && t->fading >= 0; a++) {
@@ -553,6 +523,7 @@ void lar_body_contact_add(lar_body_contact *contact, const lar_condition_context
                           lar_state *state) {
     contact->time_step = context->time_step; /* of a part, where steps are divided */
     contact->part_count = contact->offset_count = 0;
+    if (contact->friction) lar_body_friction_begin(contact->friction);
     contact->info.touching = 0;
     contact->info.deepest = 0;
     if (!(contact->travel < contact->horizon)) look_ahead(contact);
@@ -584,6 +555,7 @@ void lar_body_contact_half_work(const lar_body_contact *contact,
 
 void lar_body_contact_restart(lar_body_contact *contact) {
     contact->travel = contact->horizon = 0;
+    if (contact->friction) contact->friction->known = false;
     for (int32_t g = 0; g < contact->list.group_count; g++) {
         /* Along one axis, by both. */
         double due = 0.5 * (double)contact->list.group[g].gap;

@@ -44,6 +44,7 @@
 #define LAR_CONTACT_BODY_CONTACT_H
 
 #include <math.h>
+#include <string.h>
 
 #include "contact/conditions.h"
 #include "contact/contact_search.h"
@@ -57,12 +58,18 @@ static inline double lar_larger(double max, double other) {
 /* Of a contact node in the exchange buffer: place, velocity, offset. */
 enum { LAR_PLACE_VALUES = 7 };
 
+/* And behind it, where bodies rub (friction/body_friction.h). */
+enum { LAR_STICK_VALUES = 4 };
+
+typedef struct lar_body_friction lar_body_friction;
+
 /* Where the contact nodes are: in the state of whoever has all of them, or in the exchange buffer.
  */
 typedef struct lar_contact_view {
     const int32_t *value;                    /* [contact nodes] 4 * local node, -1: not here */
     const double (*place)[LAR_PLACE_VALUES]; /* NULL, or by slot */
     const int32_t *slot;                     /* [contact nodes] with `place` */
+    const double (*stick)[LAR_STICK_VALUES]; /* likewise, where friction asks for it */
 } lar_contact_view;
 
 /* Faces of a body that push a node together, at most, and whom they push. */
@@ -124,10 +131,55 @@ typedef struct lar_body_contact {
     uint8_t *keeps;              /* [contact nodes] those that this thread moves; NULL: all */
     int32_t offset_count;
     lar_penetration_offset *offset; /* [list.group_room] of these nodes, from when they move on */
+    lar_body_friction *friction;    /* NULL: no body is rough */
     bool too_many_pairs;            /* there was no room for all pairs: the run must stop */
     lar_contact_info info;
     lar_body_contact_search_state *search_state; /* of whoever has all nodes; otherwise NULL */
 } lar_body_contact;
+
+/* ---- places ---------------------------------------------------------------------------------- */
+
+static inline void lar_contact_place_of_node(const lar_body_contact *contact,
+                                             const lar_state *state, int32_t node, double x[3],
+                                             double v[3]) {
+    const lar_contact_view *view = &contact->view;
+    if (view->place) {
+        const double *place = view->place[view->slot[node]];
+        memcpy(x, place, 3 * sizeof *x);
+        if (v) memcpy(v, place + 3, 3 * sizeof *v);
+        return;
+    }
+    const double *rest = contact->surface->rest[node];
+    const double *u = state->u + view->value[node];
+    for (int i = 0; i < 3; i++) x[i] = rest[i] + u[i];
+    if (v) memcpy(v, state->v + view->value[node], 3 * sizeof *v);
+}
+
+/* Of a node or a point of an edge; v may be NULL. */
+static inline void lar_contact_place(const lar_body_contact *contact, const lar_state *state,
+                                     int32_t node, double x[3], double v[3]) {
+    int32_t parent[2];
+    double weight[2], end[2][3], speed[2][3];
+    if (lar_contact_parents(contact->surface, node, parent, weight) == 1) {
+        lar_contact_place_of_node(contact, state, node, x, v);
+        return;
+    }
+    for (int k = 0; k < 2; k++)
+        lar_contact_place_of_node(contact, state, parent[k], end[k], v ? speed[k] : NULL);
+    for (int i = 0; i < 3; i++) {
+        x[i] = weight[0] * end[0][i] + weight[1] * end[1][i];
+        if (v) v[i] = weight[0] * speed[0][i] + weight[1] * speed[1][i];
+    }
+}
+
+static inline void lar_contact_corners(const lar_body_contact *contact, const lar_state *state,
+                                       int32_t face, double x[4][3], double v[4][3]) {
+    for (int a = 0; a < 4; a++)
+        lar_contact_place_of_node(contact, state, contact->surface->face[face].corner[a], x[a],
+                                  v ? v[a] : NULL);
+}
+
+/* ---- the step -------------------------------------------------------------------------------- */
 
 /* For the whole model; `tree`, fitted to the time step, outlives it. Without contacts of bodies it
  * costs nothing. */

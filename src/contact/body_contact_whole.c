@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "contact/body_contact.h"
+#include "contact/friction/body_friction.h"
 
 /* ---- motion and searches, of the whole model ------------------------------------------------ */
 
@@ -122,6 +122,7 @@ void lar_body_contact_moved(lar_body_contact *contact, lar_state *state, double 
     for (int32_t i = 0; i < contact->offset_count; i++)
         state->u[contact->offset[i].value] = contact->offset[i].depth;
     contact->offset_count = 0;
+    if (contact->friction) lar_body_friction_keep(contact, state);
     contact->moved += way;
     contact->way = way;
     if (!contact->search_state) return;
@@ -184,6 +185,7 @@ lar_status lar_body_contact_create(const lar_contact_tree *tree, const int32_t *
     search_state->skin_min = 0.25 * surface->reach;
     search_state->skin_max = 2 * surface->reach_max;
     status = allocate(contact, local, error);
+    if (!status) status = lar_body_friction_create(surface, contact, error);
     if (status)
         lar_body_contact_destroy(contact);
     else
@@ -193,6 +195,7 @@ lar_status lar_body_contact_create(const lar_contact_tree *tree, const int32_t *
 
 void lar_body_contact_destroy(lar_body_contact *contact) {
     lar_body_contact_search_state *search_state = contact->search_state;
+    lar_body_friction_destroy(contact);
     free(contact->due);
     free(contact->last);
     free(contact->near);

@@ -89,6 +89,9 @@ static lar_status add_passes(workspace *d, lar_error *error) {
         bool self = c->kind == LAR_CONTACT_SELF;
         const int32_t *against = self ? c->face : c->against;
         int32_t count = self ? c->face_count : c->against_count;
+        d->surface->friction[used] = c->friction;
+        if (!self) d->surface->friction[used + 1] = c->friction;
+        d->surface->rough = d->surface->rough || c->friction > 0;
         add_pass(d, c->face, c->face_count, against, count, UINT64_C(1) << used++);
         if (!self) add_pass(d, against, count, c->face, c->face_count, UINT64_C(1) << used++);
     }

@@ -72,6 +72,8 @@ typedef struct lar_contact_surface {
     double reach;             /* the least of all bodies [m] */
     double reach_max;         /* the largest [m] */
     uint64_t possible;        /* pairs of a node and a face that belong together, neighbours too */
+    double friction[LAR_CONTACT_PASSES_MAX]; /* Coulomb's coefficient of each pass */
+    bool rough;                              /* one of them is not 0 */
 } lar_contact_surface;
 
 /* Without contacts of these kinds node_count is 0 and nothing is allocated. mass[local[node]] is
@@ -104,6 +106,18 @@ static inline double lar_contact_standoff(const lar_contact_surface *surface,
                                           const lar_contact_face *face) {
     double one = surface->body[node->body].standoff, other = surface->body[face->body].standoff;
     return node->body == face->body ? 0 : one < other ? one : other;
+}
+
+/* Coulomb's coefficient of a node and a face: the largest of the passes that have both. */
+static inline double lar_contact_friction(const lar_contact_surface *surface,
+                                          const lar_contact_node *node,
+                                          const lar_contact_face *face) {
+    double max = 0;
+    for (uint64_t both = node->passes & face->active; both; both &= both - 1) {
+        double friction = surface->friction[__builtin_ctzll(both)];
+        max = friction > max ? friction : max;
+    }
+    return max;
 }
 
 /* Fits masses and contact distances to a time step. Once, after `clear` is known. */

@@ -123,8 +123,6 @@ bool lar_contact_problem(const lar_model *model, const lar_contact *contact,
                          char problem[LAR_PROBLEM_SIZE]) {
     if (lar_face_list_problem(model, contact->face, contact->face_count, problem)) return true;
     const char *wrong = lar_friction_problem(contact->friction);
-    if (!wrong && contact->friction > 0 && contact->kind != LAR_CONTACT_PLANE)
-        wrong = "there is friction on planes and tools only; contact of bodies has none";
     if (wrong) {
         snprintf(problem, LAR_PROBLEM_SIZE, "%s", wrong);
         return true;

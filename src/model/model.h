@@ -65,7 +65,7 @@ typedef struct lar_contact {
     int32_t face_count, against_count;
     int32_t *face, *against;
     double through[3], normal[3]; /* of a plane; the unit normal points to where bodies may be */
-    double friction;              /* of a plane: Coulomb's coefficient */
+    double friction;              /* Coulomb's coefficient */
 } lar_contact;
 
 /* Tools of a model and bytes of their names. A simulation takes four hands besides. */

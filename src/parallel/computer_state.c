@@ -109,39 +109,45 @@ static lar_status gather_rounds(lar_computer *computer, int32_t kind, take_part 
     return status;
 }
 
-/* ---- what viscous elements of other processes remember --------------------------------------- */
+/* ---- what elements and nodes of other processes remember ------------------------------------- */
 
-/* The elements from *e on that processor p recovers. */
+/* The processor that tells of an item. */
+static int32_t teller_of(const lar_computer *computer, int32_t item) {
+    lar_gid node = lar_history_node(computer->whole, item);
+    return node < 0 ? computer->division.recoverer[item] : computer->division.reporter[node];
+}
+
+/* The items from *item on that processor p tells of. */
 static bool take_history(lar_computer *computer, int32_t p, bool first, const lar_answer *answer,
-                         const void *history, lar_gid *e) {
+                         const void *history, int32_t *item) {
     const lar_domain *whole = computer->whole;
     const double *value = history, *end = value + answer->bytes / sizeof *value;
     (void)first;
-    for (; *e < whole->model->mesh.element_count && value < end; (*e)++) {
-        if (computer->division.recoverer[*e] != p || !lar_viscous_here(whole, *e)) continue;
-        lar_viscous_write(whole, computer->state, *e, value);
-        value += lar_viscous_count(whole->model, *e);
+    for (; *item < lar_history_end(whole) && value < end; (*item)++) {
+        if (teller_of(computer, *item) != p || !lar_viscous_here(whole, *item)) continue;
+        lar_viscous_write(whole, computer->state, *item, value);
+        value += lar_viscous_count(whole, *item);
     }
     return answer->bytes > 0;
 }
 
-/* One round: so many whole elements as an answer has room for; nothing: there are no more. */
+/* One round: so many whole items as an answer has room for; nothing: there are no more. */
 lar_status lar_computer_answer_history(lar_computer *computer, uint64_t round, lar_error *error) {
-    enum { ELEMENTS = LAR_PART_BYTES / (LAR_HISTORY_MAX * (int)sizeof(double)) };
+    enum { ITEMS = LAR_PART_BYTES / (LAR_HISTORY_MAX * (int)sizeof(double)) };
     const lar_processor *p = &computer->processor[0];
     const lar_state *own = &p->worker[0].state;
     const lar_answer answer = {.step = own->step};
-    double value[ELEMENTS * LAR_HISTORY_MAX];
+    double value[ITEMS * LAR_HISTORY_MAX];
     size_t count = 0;
-    uint64_t skip = round * ELEMENTS, taken = 0;
-    for (lar_gid e = 0; e < p->domain.model->mesh.element_count && taken < ELEMENTS; e++) {
-        if (!lar_viscous_here(&p->domain, e)) continue;
+    uint64_t skip = round * ITEMS, taken = 0;
+    for (int32_t i = 0; i < lar_history_end(&p->domain) && taken < ITEMS; i++) {
+        if (!lar_viscous_here(&p->domain, i) || teller_of(computer, i) != p->self) continue;
         if (skip > 0) {
             skip--;
             continue;
         }
-        lar_viscous_read(&p->domain, own, e, value + count);
-        count += (size_t)lar_viscous_count(p->domain.model, e);
+        lar_viscous_read(&p->domain, own, i, value + count);
+        count += (size_t)lar_viscous_count(&p->domain, i);
         taken++;
     }
     return lar_control_answer(computer->control, &answer, value, count * sizeof *value, error);
@@ -156,7 +162,8 @@ lar_status lar_computer_gather(lar_computer *computer, lar_error *error) {
     gather_here(computer);
     lar_status status = LAR_OK;
     if (computer->control) status = gather_rounds(computer, LAR_ORDER_GATHER, take_nodes, error);
-    if (!status && computer->control && computer->whole->element_history)
+    bool remembers = computer->whole->element_history || computer->whole->rubbing;
+    if (!status && computer->control && remembers)
         status = gather_rounds(computer, LAR_ORDER_HISTORY, take_history, error);
     computer->gathered = !status;
     if (status) computer->broken = true;
@@ -191,11 +198,11 @@ static void scatter_here(lar_computer *computer) {
         lar_processor_scatter(&computer->processor[i], computer->whole, computer->state);
 }
 
-/* All nodes to everyone, and behind them what viscous elements remember: each keeps what it has. */
+/* All nodes to everyone, and behind them what is remembered: each keeps what it has. */
 static lar_status scatter_others(lar_computer *computer, lar_error *error) {
     const lar_domain *whole = computer->whole;
     size_t nodes = (size_t)whole->model->mesh.node_count;
-    size_t bytes = nodes * sizeof(node_values) + lar_viscous_total(whole->model) * sizeof(double);
+    size_t bytes = nodes * sizeof(node_values) + lar_viscous_total(whole) * sizeof(double);
     node_values *value = lar_calloc(bytes, 1);
     if (!value) return lar_fail_memory(error, bytes, "the state");
     for (size_t node = 0; node < nodes; node++)
@@ -216,7 +223,8 @@ lar_status lar_computer_take_state(lar_computer *computer, uint64_t step, const 
     const node_values *value = payload;
     const lar_model *model = computer->whole->model;
     lar_gid nodes = model->mesh.node_count;
-    if (bytes != (size_t)nodes * sizeof *value + lar_viscous_total(model) * sizeof(double))
+    if (bytes !=
+        (size_t)nodes * sizeof *value + lar_viscous_total(computer->whole) * sizeof(double))
         return lar_fail(error, LAR_ERROR_PEER,
                         "processor 0 sends a state of %zu bytes for %d nodes; start all processors "
                         "again, from the same installation",

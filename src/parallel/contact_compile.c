@@ -2,13 +2,14 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "contact/friction/body_friction.h"
 #include "divide/incidence.h"
 #include "parallel/contact_exchange.h"
 
 /* ---- the map --------------------------------------------------------------------------------- */
 
-static size_t region_bytes(int32_t nodes) {
-    size_t bytes = (size_t)nodes * sizeof(double[LAR_PLACE_VALUES]) + LAR_PACKET_ALIGN;
+static size_t region_bytes(const lar_contact_surface *surface, int32_t nodes) {
+    size_t bytes = (size_t)nodes * lar_contact_node_bytes(surface) + LAR_PACKET_ALIGN;
     return (bytes + LAR_PACKET_ALIGN - 1) / LAR_PACKET_ALIGN * LAR_PACKET_ALIGN;
 }
 
@@ -61,7 +62,7 @@ lar_status lar_contact_map_create(const lar_model *model, const lar_contact_surf
     for (int32_t f = 0; f < surface->face_count && !status; f++)
         map->recoverer[f] = elements[surface->face[f].element];
     for (int32_t p = 0; p < processors && !status; p++)
-        map->region[p + 1] = map->region[p] + region_bytes((int32_t)map->region[p + 1]);
+        map->region[p + 1] = map->region[p] + region_bytes(surface, (int32_t)map->region[p + 1]);
     lar_incidence_clear(&around);
     return status;
 }
@@ -88,7 +89,7 @@ static bool is_own_body(const lar_contact_surface *s, const lar_contact_list *li
     return s->face[list->face[group->first]].body == s->node[group->node].body;
 }
 
-/* Whether a processor adds forces of a group, or has the node and keeps its offset. */
+/* Whether a processor adds forces of a group, or has the node and keeps what it remembers. */
 static bool concerns(const lar_contact_map *map, const lar_contact_list *list,
                      const lar_contact_group *group, int32_t processor) {
     const lar_contact_surface *s = map->surface;
@@ -96,7 +97,9 @@ static bool concerns(const lar_contact_map *map, const lar_contact_list *list,
     double weight[2];
     int count = lar_contact_parents(s, group->node, parent, weight);
     for (int k = 0; k < count; k++)
-        if (map->reporter[parent[k]] == processor) return true;
+        if (map->reporter[parent[k]] == processor ||
+            (s->rough && has_node(map, processor, parent[k])))
+            return true;
     if (is_own_body(s, list, group) && has_node(map, processor, group->node)) return true;
     for (int32_t i = group->first; i < group->first + group->count; i++) {
         int32_t f = list->face[i];
@@ -157,7 +160,7 @@ static void plan_peer(lar_contact_exchange *exchange, const lar_contact_list *li
     if (peer->send_count + peer->receive_count > 0) exchange->peer_count++;
 }
 
-/* The groups in which a thread adds something, or whose node's offset it keeps. */
+/* The groups in which a thread adds something, or for whose node it keeps what that remembers. */
 static void take_groups(lar_worker *worker, const lar_contact_list *list) {
     lar_body_contact *contact = &worker->interactions.body_contact;
     lar_contact_list *own = &contact->list;
@@ -169,8 +172,10 @@ static void take_groups(lar_worker *worker, const lar_contact_list *list) {
         int32_t parent[2];
         double weight[2];
         lar_contact_parents(contact->surface, group->node, parent, weight);
-        bool takes = contact->adds_node[parent[0]] || contact->adds_node[parent[1]] ||
-                     (is_own_body(contact->surface, list, group) && contact->keeps[group->node]);
+        bool keeps = contact->keeps[parent[0]] || contact->keeps[parent[1]];
+        bool remembers = contact->friction || is_own_body(contact->surface, list, group);
+        bool takes =
+            contact->adds_node[parent[0]] || contact->adds_node[parent[1]] || (remembers && keeps);
         for (int32_t i = 0; i < group->count && !takes; i++)
             takes = contact->adds_corner[face[i]] &&
                     lar_contact_active(&contact->surface->node[group->node],
@@ -230,6 +235,8 @@ static lar_status create_contact(const lar_body_contact *whole, int32_t thread, 
         !contact->list.face)
         return lar_fail_memory(error, groups * sizeof *contact->part + 4 * pairs,
                                "contact of bodies");
+    lar_status status = lar_body_friction_create(surface, contact, error);
+    if (status) return status;
     for (size_t n = 0; n < nodes; n++) {
         adds_node[n] = exchange->loader[n] == thread;
         keeps[n] = exchange->mover[n] == thread;
@@ -238,8 +245,10 @@ static lar_status create_contact(const lar_body_contact *whole, int32_t thread, 
     return LAR_OK;
 }
 
-static lar_status allocate_exchange(int32_t processors, int32_t threads, size_t nodes, size_t faces,
-                                    lar_contact_exchange *exchange, lar_error *error) {
+static lar_status allocate_exchange(const lar_contact_surface *surface, int32_t processors,
+                                    int32_t threads, lar_contact_exchange *exchange,
+                                    lar_error *error) {
+    size_t nodes = (size_t)surface->node_count, faces = (size_t)surface->face_count;
     bool fits = true;
 #define LAR_EXCHANGE_ARRAY(name, count)                                                            \
     fits = fits && (exchange->name = lar_calloc_aligned((count), sizeof *exchange->name)) != NULL
@@ -250,13 +259,14 @@ static lar_status allocate_exchange(int32_t processors, int32_t threads, size_t 
     LAR_EXCHANGE_ARRAY(slot, nodes);
     LAR_EXCHANGE_ARRAY(place[0], nodes);
     LAR_EXCHANGE_ARRAY(place[1], nodes);
+    for (int side = 0; side < 2 && surface->rough; side++) LAR_EXCHANGE_ARRAY(stick[side], nodes);
     LAR_EXCHANGE_ARRAY(publish, (size_t)threads);
     LAR_EXCHANGE_ARRAY(sequence, (size_t)threads);
     LAR_EXCHANGE_ARRAY(peer, (size_t)processors);
     LAR_EXCHANGE_ARRAY(marked, nodes);
 #undef LAR_EXCHANGE_ARRAY
     fits = fits &&
-           (exchange->gather = lar_calloc_aligned(nodes, sizeof(double[LAR_PLACE_VALUES]))) != NULL;
+           (exchange->gather = lar_calloc_aligned(nodes, lar_contact_node_bytes(surface))) != NULL;
     for (int32_t t = 0; t < threads && fits; t++) {
         exchange->publish[t].slot = lar_calloc(nodes, sizeof *exchange->publish[t].slot);
         exchange->publish[t].node = lar_calloc(nodes, sizeof *exchange->publish[t].node);
@@ -280,8 +290,7 @@ lar_status lar_contact_exchange_create(const lar_body_contact *whole,
     const int32_t *local = p->domain.layout.local;
     lar_contact_exchange *exchange = p->exchange = lar_calloc_aligned(1, sizeof *exchange);
     if (!exchange) return lar_fail_memory(error, sizeof *exchange, "contact places");
-    lar_status status = allocate_exchange(processors, p->thread_count, (size_t)surface->node_count,
-                                          (size_t)surface->face_count, exchange, error);
+    lar_status status = allocate_exchange(surface, processors, p->thread_count, exchange, error);
     if (status) return status;
     for (int32_t n = 0; n < surface->node_count; n++) {
         int32_t node = surface->node[n].node;
@@ -323,6 +332,8 @@ void lar_contact_exchange_destroy(lar_processor *p) {
     free(exchange->slot);
     free(exchange->place[0]);
     free(exchange->place[1]);
+    free(exchange->stick[0]);
+    free(exchange->stick[1]);
     free(exchange->publish);
     free(exchange->sequence);
     free(exchange->peer);

@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "contact/friction/body_friction.h"
+
 /* ---- waiting --------------------------------------------------------------------------------- */
 
 static lar_status wait_for_threads(const lar_processor *p, uint64_t round, lar_error *error) {
@@ -35,6 +37,10 @@ void lar_contact_publish(lar_worker *worker, uint64_t round) {
             to[3 + k] = state->v[value + k];
         }
         to[6] = state->u[value + 3];
+        if (exchange->stick[0])
+            memcpy(exchange->stick[round & 1][publish->slot[i]],
+                   lar_stick_of(exchange->map->surface, state, publish->node[i]),
+                   sizeof *exchange->stick[0]);
         max = fastest_of(to, max);
     }
     sequence->speed[round & 1] = max;
@@ -53,8 +59,22 @@ void lar_contact_begin(lar_processor *p) {
 /* Where a packet of so many places begins in the receiver's buffer, and its size. */
 static size_t packet_place(const lar_contact_map *map, int32_t from, int32_t to, int32_t count,
                            size_t *bytes) {
-    *bytes = (size_t)count * sizeof(double[LAR_PLACE_VALUES]);
+    *bytes = (size_t)count * lar_contact_node_bytes(map->surface);
     return map->shift[to] + map->region[from + 1] - LAR_PACKET_ALIGN - *bytes;
+}
+
+static void pack(const lar_contact_exchange *exchange, int side, int32_t slot, unsigned char *to) {
+    memcpy(to, exchange->place[side][slot], sizeof *exchange->place[side]);
+    if (exchange->stick[side])
+        memcpy(to + sizeof *exchange->place[side], exchange->stick[side][slot],
+               sizeof *exchange->stick[side]);
+}
+
+static void unpack(const lar_contact_exchange *exchange, int side, int32_t slot, const char *from) {
+    memcpy(exchange->place[side][slot], from, sizeof *exchange->place[side]);
+    if (exchange->stick[side])
+        memcpy(exchange->stick[side][slot], from + sizeof *exchange->place[side],
+               sizeof *exchange->stick[side]);
 }
 
 lar_status lar_contact_send(lar_worker *worker, uint64_t round, lar_error *error) {
@@ -69,8 +89,8 @@ lar_status lar_contact_send(lar_worker *worker, uint64_t round, lar_error *error
         unsigned char *to = lar_comm_room(p->comm, peer->peer, place, bytes, round);
         if (!to) to = exchange->gather;
         for (int32_t k = 0; k < peer->send_count; k++)
-            memcpy(to + (size_t)k * sizeof(double[LAR_PLACE_VALUES]),
-                   exchange->place[round & 1][peer->send[k]], sizeof(double[LAR_PLACE_VALUES]));
+            pack(exchange, round & 1, peer->send[k],
+                 to + (size_t)k * lar_contact_node_bytes(exchange->map->surface));
         status = lar_comm_put(p->comm, peer->peer, place, to, bytes, round, error);
     }
     return status;
@@ -90,10 +110,10 @@ static lar_status receive_places(const lar_processor *p, uint64_t round, lar_err
             lar_comm_wait(p->comm, peer->peer, place, bytes, round, &payload, error);
         if (status) return status;
         for (int32_t k = 0; k < peer->receive_count; k++) {
-            double *to = exchange->place[round & 1][peer->receive[k]];
-            memcpy(to, (const char *)payload + (size_t)k * sizeof(double[LAR_PLACE_VALUES]),
-                   sizeof(double[LAR_PLACE_VALUES]));
-            max = fastest_of(to, max);
+            unpack(exchange, round & 1, peer->receive[k],
+                   (const char *)payload +
+                       (size_t)k * lar_contact_node_bytes(exchange->map->surface));
+            max = fastest_of(exchange->place[round & 1][peer->receive[k]], max);
         }
     }
     exchange->arrived.speed[round & 1] = max;
@@ -116,6 +136,7 @@ lar_status lar_contact_apply(lar_worker *worker, uint64_t round, lar_error *erro
     for (int32_t t = 0; t < p->thread_count; t++)
         speed = lar_larger(speed, exchange->sequence[t].speed[round & 1]);
     contact->view.place = (const double(*)[LAR_PLACE_VALUES])exchange->place[round & 1];
+    contact->view.stick = (const double(*)[LAR_STICK_VALUES])exchange->stick[round & 1];
     /* What stands in the exchange buffer has come here in the last step with this speed. */
     contact->travel += speed * worker->context.whole_step;
     lar_body_contact_add(contact, &worker->context, &worker->state);

@@ -4,12 +4,11 @@
  *                   the whole model and everyone gets the same list of groups (computer_contact.c)
  *     compile       each processor takes the groups that concern it: it accounts for the node, or
  *                   recovers the element behind a face that may push, or has the node of a group
- *                   within one body and keeps its offset. All who take part in a group need the
- *                   places of all its nodes, and compute its contact to the same bits; who accounts
- *                   for the node adds the node's force, who recovers the element the forces of the
- *                   corners. So nothing but places travels, with velocities and offsets, once per
- *                   step.
- *     each step     publish --> buffer --> packets to others --> their buffers --> contact
+ *                   within one body, or of rough ones, and keeps what it remembers. All who take
+ * part in a group need the places of all its nodes, and compute its contact to the same bits; who
+ * accounts for the node adds the node's force, who recovers the element the forces of the corners.
+ * So nothing but places travels, with velocities and offsets, once per step. each step     publish
+ * --> buffer --> packets to others --> their buffers --> contact
  *
  * The exchange buffer. A thread may not read the displacements of nodes that others move: nothing
  * makes those wait for it, unless it has an element there. So every thread copies the contact nodes
@@ -69,6 +68,11 @@ static inline size_t lar_contact_bytes(const lar_contact_map *map) {
     return map->surface ? map->region[map->processors] : 0;
 }
 
+/* Of a node in a packet: its place, and behind it what it remembers where bodies rub. */
+static inline size_t lar_contact_node_bytes(const lar_contact_surface *surface) {
+    return (LAR_PLACE_VALUES + (surface->rough ? LAR_STICK_VALUES : 0)) * sizeof(double);
+}
+
 /* The round for which something is good, alone in its cache line, and how fast it is. */
 typedef struct lar_contact_sequence {
     uint64_t round;  /* atomic */
@@ -96,7 +100,8 @@ typedef struct lar_contact_exchange {
     int32_t *loader; /* [contact nodes] thread that adds its force, -1: another processor */
     int32_t slot_count;
     int32_t *slot;                        /* [contact nodes], -1: not in it */
-    double (*place[2])[LAR_PLACE_VALUES]; /* [contact nodes] by slot, as in lar_contact_view */
+    double (*place[2])[LAR_PLACE_VALUES]; /* [contact nodes] by slot, as in lar_contact_view, */
+    double (*stick[2])[LAR_STICK_VALUES]; /* and where bodies rub, or NULL */
     lar_publish_list *publish;            /* [threads] */
     lar_contact_sequence *sequence;       /* [threads] */
     lar_contact_sequence arrived;

@@ -258,6 +258,8 @@ lar_status lar_processor_create(const lar_processor_setting *setting, const lar_
         status = lar_domain_create_part(setting->whole, &part, a.counted,
                                         schedule->transfer_count ? RUN_BLOCKS : INT32_MAX,
                                         &p->domain, error);
+    if (!status && setting->whole->rubbing)
+        lar_history_plan_nodes(&p->domain, setting->whole->rubbing);
     if (!status) status = lar_strained_create(&p->domain, &p->strained, error);
     if (!status) status = compile_batches(schedule, p, error);
     if (!status) status = compile_packets(schedule, p, error);

@@ -284,6 +284,7 @@ void lar_server_act(lar_server *server, lar_viewer *viewer, const lar_command *c
     case LAR_COMMAND_GRAVITY:
     case LAR_COMMAND_DAMPING:
     case LAR_COMMAND_STIFFNESS:
+    case LAR_COMMAND_ACTIVATE:
     case LAR_COMMAND_ADD_TOOL:
         ask_setting(server, viewer, command);
         break;

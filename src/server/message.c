@@ -119,6 +119,7 @@ static const struct {
     [LAR_COMMAND_GRAVITY] = {"gravity", 0, BIT(TO)},
     [LAR_COMMAND_DAMPING] = {"damping", 0, BIT(VALUE)},
     [LAR_COMMAND_STIFFNESS] = {"stiffness", 0, BIT(VALUE) | BIT(MATERIAL)},
+    [LAR_COMMAND_ACTIVATE] = {"activate", 0, BIT(VALUE) | BIT(MATERIAL)},
     [LAR_COMMAND_ADD_TOOL] = {"add_tool", BIT(SHAPE) | BIT(RADIUS), BIT(LENGTH)},
     [LAR_COMMAND_REMOVE_TOOL] = {"remove_tool", BIT(TOOL), 0}};
 enum { COMMANDS = sizeof command_table / sizeof command_table[0] };

@@ -55,6 +55,7 @@ typedef enum lar_command_kind {
     LAR_COMMAND_GRAVITY,
     LAR_COMMAND_DAMPING,
     LAR_COMMAND_STIFFNESS,
+    LAR_COMMAND_ACTIVATE,
     LAR_COMMAND_ADD_TOOL,
     LAR_COMMAND_REMOVE_TOOL
 } lar_command_kind;

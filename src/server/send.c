@@ -7,6 +7,10 @@
 
 /* ---- hello ----------------------------------------------------------------------------------- */
 
+static bool is_active(const lar_material_info *info) {
+    return info->active_along != 0 || info->active_across != 0;
+}
+
 static void write_materials(lar_json *json, const lar_model *model, int32_t count) {
     lar_json_open(json, "materials", '[');
     for (int32_t i = 0; i < count; i++) {
@@ -19,6 +23,7 @@ static void write_materials(lar_json *json, const lar_model *model, int32_t coun
         lar_json_number(json, "density", info.density);
         lar_json_number(json, "shear_modulus", info.shear_modulus);
         lar_json_number(json, "bulk_modulus", info.bulk_modulus);
+        if (is_active(&info)) lar_json_boolean(json, "active", 1);
         lar_json_close(json);
     }
     lar_json_close(json);
@@ -229,6 +234,17 @@ static void write_settings(const lar_server *server, lar_json *json) {
     for (int32_t i = 0; i < materials; i++)
         lar_json_number(json, NULL, lar_session_stiffness(session, i));
     lar_json_close(json);
+    bool active = false;
+    for (int32_t i = 0; i < materials && !active; i++) {
+        lar_material_info info;
+        active = !lar_model_material(server->model, i, &info, NULL) && is_active(&info);
+    }
+    if (active) {
+        lar_json_open(json, "activation", '[');
+        for (int32_t i = 0; i < materials; i++)
+            lar_json_number(json, NULL, lar_session_activation(session, i));
+        lar_json_close(json);
+    }
     lar_json_close(json);
 }
 

@@ -32,8 +32,8 @@ static void set(lar_work *work, const lar_command *command, lar_error *error) {
     else if (command->kind == LAR_COMMAND_DAMPING)
         lar_session_set_damping(session, command->valued ? command->value : damping, error);
     else
-        lar_session_set_stiffness(session, command->material, command->valued ? command->value : 1,
-                                  error);
+        (command->kind == LAR_COMMAND_ACTIVATE ? lar_session_activate : lar_session_set_stiffness)(
+            session, command->material, command->valued ? command->value : 1, error);
 }
 
 static void do_job(lar_work *work, lar_job_end *end) {
@@ -62,6 +62,7 @@ static void do_job(lar_work *work, lar_job_end *end) {
     case LAR_COMMAND_GRAVITY:
     case LAR_COMMAND_DAMPING:
     case LAR_COMMAND_STIFFNESS:
+    case LAR_COMMAND_ACTIVATE:
         set(work, &job->setting, error);
         break;
     case LAR_COMMAND_ADD_TOOL:

@@ -140,7 +140,7 @@ static file_shape shape_of(const lar_domain *whole, const lar_tools *tools) {
                         .forces = tools->forces.count,
                         .tools = (list ? lar_spares_first(list) : 0) + spares,
                         .grasps = tools->grasp_count,
-                        .history = lar_viscous_total(whole->model)};
+                        .history = lar_viscous_total(whole)};
 }
 
 /* Returns where the nodes begin. */
@@ -471,7 +471,7 @@ lar_status lar_checkpoint_parse(const char *path, const lar_bytes *bytes, const 
     const file_shape shape = {.version = head.version,
                               .tools = head.tools,
                               .grasps = head.grasps,
-                              .history = lar_viscous_total(model),
+                              .history = lar_viscous_total(whole),
                               .forces = forces_in(&head, bytes)};
     int32_t constant = list ? lar_spares_first(list) : 0, spares = head.tools - constant;
     if (spares < 0 || spares > (has_added(head.version) ? LAR_SPARES_MAX : 0) || head.grasps < 0 ||

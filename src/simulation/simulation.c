@@ -183,6 +183,7 @@ static lar_status compile(const lar_model *model, const lar_options *options,
         status = lar_surroundings_add_bodies(model, domain->mass, domain->layout.local,
                                              domain->time_step, domain->stable_step,
                                              &domain->surroundings, error);
+    if (!status) lar_history_plan_nodes(domain, &domain->surroundings.bodies.surface);
     if (!status) status = check_damping(domain, error);
     if (!status) status = create_state(simulation, options->search_always != 0, error);
     if (!status) lar_simulation_set_start(simulation);

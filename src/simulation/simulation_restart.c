@@ -140,7 +140,7 @@ lar_status lar_saved_create(const lar_simulation *simulation, lar_saved **out, l
                         "lar_saved_create needs a simulation and a place for the saved state");
     lar_saved *saved = lar_calloc(1, sizeof *saved);
     if (!saved) return lar_fail_memory(error, sizeof *saved, "a saved state");
-    size_t values = lar_viscous_total(simulation->domain.model);
+    size_t values = lar_viscous_total(&simulation->domain);
     lar_status status = lar_state_create(&saved->state, simulation->state.node_count, 0, error);
     if (!status && values > 0 && !(saved->history = lar_calloc(values, sizeof *saved->history)))
         status = lar_fail_memory(error, values * sizeof *saved->history, "a saved state");

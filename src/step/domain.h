@@ -67,6 +67,7 @@ typedef struct lar_domain {
     size_t *run_history;      /* [run_count] where a viscous run's begin */
     int64_t *element_history; /* [elements of the model] where an element's begin, one in eight;
                                  -1: it has none here. NULL where nothing is viscous */
+    const lar_contact_surface *rubbing; /* whose nodes' values are the last; lent; NULL: none */
     int32_t spare_count;
     lar_lid *spare; /* nodes without mass, ascending */
     double *mass;   /* [layout.node_padded] kg; spare nodes 0 */

@@ -2,18 +2,23 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
-int lar_viscous_count(const lar_model *model, lar_gid e) {
-    return lar_history_values(lar_model_material_of(model, e)->viscosity.terms);
+#include "contact/friction/body_friction.h"
+
+int lar_viscous_count(const lar_domain *domain, int32_t item) {
+    if (lar_history_node(domain, item) >= 0) return LAR_STICK_VALUES;
+    return lar_history_values(lar_model_material_of(domain->model, item)->viscosity.terms);
 }
 
-size_t lar_viscous_total(const lar_model *model) {
-    size_t total = 0;
+size_t lar_viscous_total(const lar_domain *domain) {
+    const lar_model *model = domain->model;
+    size_t total = domain->rubbing ? lar_stick_total(domain->rubbing) : 0;
     bool any = false;
     for (int i = 0; i < model->material_count; i++)
         any = any || model->material[i].viscosity.terms > 0;
     for (lar_gid e = 0; any && e < model->mesh.element_count; e++)
-        total += (size_t)lar_viscous_count(model, e);
+        total += (size_t)lar_viscous_count(domain, e);
     return total;
 }
 
@@ -98,50 +103,72 @@ void lar_viscous_unplan(lar_domain *domain) {
     domain->relaxing = NULL;
     domain->run_history = NULL;
     domain->element_history = NULL;
+    domain->rubbing = NULL;
     domain->relaxing_bytes = domain->history_count = 0;
 }
 
-/* ---- one element ---------------------------------------------------------------------------- */
+void lar_history_plan_nodes(lar_domain *domain, const lar_contact_surface *surface) {
+    if (!surface->rough) return;
+    domain->rubbing = surface;
+    domain->history_count += lar_stick_total(surface);
+}
 
-void lar_viscous_read(const lar_domain *domain, const lar_state *state, lar_gid e, double *value) {
-    const double *from = state->history + domain->element_history[e];
-    int count = lar_viscous_count(domain->model, e);
+/* ---- one item ---------------------------------------------------------------------------- */
+
+void lar_viscous_read(const lar_domain *domain, const lar_state *state, int32_t item,
+                      double *value) {
+    int32_t node = item - domain->model->mesh.element_count;
+    if (node >= 0) {
+        memcpy(value, lar_stick_of(domain->rubbing, state, node), LAR_STICK_VALUES * sizeof *value);
+        return;
+    }
+    const double *from = state->history + domain->element_history[item];
+    int count = lar_viscous_count(domain, item);
     for (int k = 0; k < count; k++) value[k] = from[LAR_BLOCK * k];
 }
 
-void lar_viscous_write(const lar_domain *domain, lar_state *state, lar_gid e, const double *value) {
-    double *to = state->history + domain->element_history[e];
-    int count = lar_viscous_count(domain->model, e);
+void lar_viscous_write(const lar_domain *domain, lar_state *state, int32_t item,
+                       const double *value) {
+    int32_t node = item - domain->model->mesh.element_count;
+    if (node >= 0) {
+        memcpy(lar_stick_of(domain->rubbing, state, node), value, LAR_STICK_VALUES * sizeof *value);
+        return;
+    }
+    double *to = state->history + domain->element_history[item];
+    int count = lar_viscous_count(domain, item);
     for (int k = 0; k < count; k++) to[LAR_BLOCK * k] = value[k];
 }
 
 /* ---- all of them ---------------------------------------------------------------------------- */
 
+/* The first item that may remember. */
+static int32_t first_item(const lar_domain *domain) {
+    return domain->element_history ? 0 : domain->model->mesh.element_count;
+}
+
 void lar_viscous_gather(const lar_domain *whole, const lar_state *state, double *value) {
-    const lar_model *model = whole->model;
-    for (lar_gid e = 0; whole->element_history && e < model->mesh.element_count; e++) {
-        if (!lar_viscous_here(whole, e)) continue;
-        lar_viscous_read(whole, state, e, value);
-        value += lar_viscous_count(model, e);
+    for (int32_t i = first_item(whole); i < lar_history_end(whole); i++) {
+        if (!lar_viscous_here(whole, i)) continue;
+        lar_viscous_read(whole, state, i, value);
+        value += lar_viscous_count(whole, i);
     }
 }
 
 void lar_viscous_scatter(const lar_domain *whole, lar_state *state, const double *value) {
-    const lar_model *model = whole->model;
-    for (lar_gid e = 0; whole->element_history && e < model->mesh.element_count; e++) {
-        if (!lar_viscous_here(whole, e)) continue;
-        lar_viscous_write(whole, state, e, value);
-        value += lar_viscous_count(model, e);
+    for (int32_t i = first_item(whole); i < lar_history_end(whole); i++) {
+        if (!lar_viscous_here(whole, i)) continue;
+        lar_viscous_write(whole, state, i, value);
+        value += lar_viscous_count(whole, i);
     }
 }
 
 void lar_viscous_copy(const lar_domain *from, const lar_state *state, const lar_domain *to,
                       lar_state *copy) {
-    for (lar_gid e = 0; from->element_history && e < from->model->mesh.element_count; e++) {
+    for (int32_t i = first_item(from); i < lar_history_end(from); i++) {
         double value[LAR_HISTORY_MAX];
-        if (!lar_viscous_here(from, e) || !lar_viscous_here(to, e)) continue;
-        lar_viscous_read(from, state, e, value);
-        lar_viscous_write(to, copy, e, value);
+        if (!lar_viscous_here(from, i) || !lar_viscous_here(to, i)) continue;
+        lar_viscous_read(from, state, i, value);
+        lar_viscous_write(to, copy, i, value);
     }
 }
 
@@ -151,11 +178,11 @@ uint64_t lar_viscous_hash_values(uint64_t hash, const double *value, size_t valu
 }
 
 uint64_t lar_viscous_hash(const lar_domain *whole, const lar_state *state, uint64_t hash) {
-    for (lar_gid e = 0; whole->element_history && e < whole->model->mesh.element_count; e++) {
+    for (int32_t i = first_item(whole); i < lar_history_end(whole); i++) {
         double value[LAR_HISTORY_MAX];
-        if (!lar_viscous_here(whole, e)) continue;
-        lar_viscous_read(whole, state, e, value);
-        hash = lar_viscous_hash_values(hash, value, (size_t)lar_viscous_count(whole->model, e));
+        if (!lar_viscous_here(whole, i)) continue;
+        lar_viscous_read(whole, state, i, value);
+        hash = lar_viscous_hash_values(hash, value, (size_t)lar_viscous_count(whole, i));
     }
     return hash;
 }

@@ -1,5 +1,5 @@
-/* What viscous elements remember (law/viscosity.h), in the state of a domain and on its way to and
- * from others.
+/* What viscous elements remember (law/viscosity.h), and behind it nodes of bodies that rub
+ * (contact/friction/body_friction.h), in the state of a domain and on its way to and from others.
  *
  *     model     element 0, 1, 2, ...          one element's values one after the other; those of
  *                   |                         what is elastic have none. Hash, checkpoint and
@@ -7,8 +7,11 @@
  *     domain    runs of blocks                eight lanes of each value beside each other, in the
  *                                             order in which a step needs them
  *
- * Every element belongs to one thread of one processor, which alone takes its history on. A model
- * in which nothing is viscous has none of this: no memory, no bit of any hash.
+ * Every element belongs to one thread of one processor, which alone takes its history on. A node is
+ * taken on by all processors that have it, to the same bits. A model in which nothing is viscous
+ * and no bodies rub has none of this: no memory, no bit of any hash.
+ *
+ * Items are the elements of the model, and behind them its contact nodes where these rub.
  */
 #ifndef LAR_STEP_VISCOUS_HISTORY_H
 #define LAR_STEP_VISCOUS_HISTORY_H
@@ -21,20 +24,39 @@
 lar_status lar_viscous_plan(lar_domain *domain, lar_error *error);
 void lar_viscous_unplan(lar_domain *domain); /* idempotent */
 
-/* Values of one element, 0: it is elastic. */
-int lar_viscous_count(const lar_model *model, lar_gid e);
-/* Values of all elements of a model. */
-size_t lar_viscous_total(const lar_model *model);
+/* Adds what nodes remember, where bodies rub: once, behind the plan; `surface`, that of the whole
+ * model, outlives the domain. */
+void lar_history_plan_nodes(lar_domain *domain, const lar_contact_surface *surface);
 
-/* Values of an element of this domain. */
-void lar_viscous_read(const lar_domain *domain, const lar_state *state, lar_gid e, double *value);
-void lar_viscous_write(const lar_domain *domain, lar_state *state, lar_gid e, const double *value);
-/* Whether the domain recovers the element and it remembers. */
-static inline bool lar_viscous_here(const lar_domain *domain, lar_gid e) {
-    return domain->element_history && domain->element_history[e] >= 0;
+/* Whether an item remembers at all; then one behind the last. */
+static inline int32_t lar_history_end(const lar_domain *domain) {
+    int32_t nodes = domain->rubbing ? domain->rubbing->node_count : 0;
+    return domain->model->mesh.element_count + nodes;
+}
+/* The node of the model that an item is; -1: it is an element. */
+static inline lar_gid lar_history_node(const lar_domain *domain, int32_t item) {
+    int32_t node = item - domain->model->mesh.element_count;
+    return node < 0 ? -1 : domain->rubbing->node[node].node;
 }
 
-/* All values of a model, element after element, from and to a whole's state. */
+/* Values of one item, 0: it is elastic. */
+int lar_viscous_count(const lar_domain *domain, int32_t item);
+/* Values of all items of a model. */
+size_t lar_viscous_total(const lar_domain *domain);
+
+/* Values of an item of this domain. */
+void lar_viscous_read(const lar_domain *domain, const lar_state *state, int32_t item,
+                      double *value);
+void lar_viscous_write(const lar_domain *domain, lar_state *state, int32_t item,
+                       const double *value);
+/* Whether the domain recovers the element, or has the node, and it remembers. */
+static inline bool lar_viscous_here(const lar_domain *domain, int32_t item) {
+    lar_gid node = lar_history_node(domain, item);
+    if (node >= 0) return domain->layout.local[node] >= 0;
+    return domain->element_history && domain->element_history[item] >= 0;
+}
+
+/* All values of a model, item after item, from and to a whole's state. */
 void lar_viscous_gather(const lar_domain *whole, const lar_state *state, double *value);
 void lar_viscous_scatter(const lar_domain *whole, lar_state *state, const double *value);
 

@@ -79,15 +79,17 @@ def change_tools(chance, viewer):
 
 
 def change_body(chance, viewer):
-    what = chance.randrange(4)
+    what = chance.randrange(5)
     if what == 0:
         viewer.say(do="gravity", to=[chance.uniform(-15, 15) for _ in range(3)])
     elif what == 1:
         viewer.say(do="damping", value=chance.choice([0, 1, 20, 200, 1e6]))
     elif what == 2:
         viewer.say(do="stiffness", value=chance.uniform(0.1, 4))
+    elif what == 3:
+        viewer.say(do="activate", value=chance.uniform(0, 1))
     else:
-        viewer.say(do=chance.choice(["gravity", "damping", "stiffness"]))
+        viewer.say(do=chance.choice(["gravity", "damping", "stiffness", "activate"]))
 
 
 def steer(chance, viewer):

@@ -338,6 +338,46 @@ static void bits_do_not_depend_on_the_division(void **unused) {
     lar_model_destroy(model);
 }
 
+/* The body rubs on itself: other bits, the same on every division, and less energy in the end. */
+static void a_body_rubs_on_itself(void **unused) {
+    (void)unused;
+    static const char *const grids[] = {"2x1x1", "2x2x1", "3x1x2"};
+    lar_model *model = folding_bar(1e3, 2);
+    lar_options options = lar_options_default();
+    uint64_t smooth[2], one[2], other[2];
+    straight(model, options, smooth);
+    model->contact[0].friction = 0.5;
+    straight(model, options, one);
+    assert_true(one[1] != smooth[1]);
+    for (int i = 0; i < 4; i++) {
+        options = lar_options_default();
+        options.grid = i < 3 ? grids[i] : NULL;
+        options.threads = i < 3 ? 1 + i % 2 : 0;
+        options.search_always = i == 3;
+        straight(model, options, other);
+        if (other[0] != one[0] || other[1] != one[1]) fail_msg("number %d: other bits", i);
+        lar_simulation *s = start_with(model, options);
+        take_up(s, one);
+        lar_simulation_destroy(s);
+    }
+    lar_simulation *s = start(model);
+    lar_energy e;
+    double given = 0, over = 0, before = 0;
+    while (lar_simulation_time(s) < 2) {
+        advance(s, 20);
+        lar_simulation_energy(s, &e);
+        given = fmax(given, before - e.contact);
+        over = fmax(over, e.kinetic + e.strain + e.hourglass - e.external);
+        before = e.contact;
+    }
+    print_message("rubbing on itself: kinetic %.2g of %.2g J; contact took %.2g J, gave at most "
+                  "%.2g at a time\n",
+                  kinetic(s), e.strain, e.contact, given);
+    assert_below(given, 0.02 * e.contact);
+    assert_below(over, 1e-9);
+    finish(s, model);
+}
+
 static void nor_on_processes(void **unused) {
     (void)unused;
     lar_model *model = folding_bar(1e3, 2);
@@ -362,6 +402,7 @@ int main(void) {
         cmocka_unit_test(a_node_from_inside_may_return),
         cmocka_unit_test(a_crease_that_folds_shut_goes_on_to_rest),
         cmocka_unit_test(bits_do_not_depend_on_the_division),
+        cmocka_unit_test(a_body_rubs_on_itself),
         cmocka_unit_test(nor_on_processes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

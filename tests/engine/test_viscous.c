@@ -39,7 +39,7 @@ static void elastic_models_have_no_history(void **unused) {
     assert_null(simulation->domain.relaxing);
     assert_null(simulation->domain.element_history);
     assert_null(simulation->state.history);
-    assert_int_equal(lar_viscous_total(model), 0);
+    assert_int_equal(lar_viscous_total(&simulation->domain), 0);
     finish(simulation, model);
 }
 

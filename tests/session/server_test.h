@@ -67,8 +67,9 @@ TEST_UNUSED static int port_of(const lar_server *server) {
     return atoi(strrchr(url, ':') + 1);
 }
 
-TEST_UNUSED static served serve_with(const char *grid, const lar_server_options *options) {
-    served s = {.b = {.model = served_model()}};
+TEST_UNUSED static served serve_model(lar_model *model, const char *grid,
+                                      const lar_server_options *options) {
+    served s = {.b = {.model = model}};
     s.b.simulation = served_simulation(s.b.model, grid);
     DONE(lar_session_open(s.b.simulation, NULL, &s.b.session, &failure));
     DONE(lar_server_open(s.b.session, s.b.model, options, &s.server, &failure));
@@ -76,6 +77,10 @@ TEST_UNUSED static served serve_with(const char *grid, const lar_server_options 
     s.port = port_of(s.server);
     assert_true(s.port > 0);
     return s;
+}
+
+TEST_UNUSED static served serve_with(const char *grid, const lar_server_options *options) {
+    return serve_model(served_model(), grid, options);
 }
 
 TEST_UNUSED static served serve(const char *grid) {

@@ -1,5 +1,6 @@
 /* Forces on nodes, activation and points of contact in a session: done between two ticks, recorded,
  * replayed on another grid, and refused where settings are. */
+#include "engine/body_contact_test.h"
 #include "session/session_test.h"
 
 #define PATH LAR_TEST_BUILD "/calls.recording"
@@ -152,9 +153,52 @@ static void touches_are_told_between_ticks(void **unused) {
     close_bench(&b);
 }
 
+/* Bodies that rub: what they remember is in recordings, also behind a state that was taken up. */
+static lar_model *rubbing_bricks(void) {
+    static const brick lower = {{4, 3, 2}, 0.0125, 0, LAR_LAW_neo_hookean, 2e4, 4e5, 1000};
+    static const brick upper = {{2, 2, 1}, 0.01, 0, LAR_LAW_neo_hookean, 2e4, 4e5, 1000};
+    lar_model *model = two_bricks(&lower, &upper, 1e-3, true);
+    model->contact[0].friction = 0.5;
+    model->gravity[0] = 4;
+    model->gravity[2] = -9.81;
+    DONE(lar_model_check(model, &failure));
+    return model;
+}
+
+static void friction_is_replayed(void **unused) {
+    (void)unused;
+    static const char *const path = LAR_TEST_BUILD "/friction.recording";
+    static const char *const state = LAR_TEST_BUILD "/friction.checkpoint";
+    lar_session_options options = lar_session_options_default();
+    options.record = path;
+    options.hash_every = 50;
+    bench b = open_bench_of(rubbing_bricks(), "2x1x1", 1, &options);
+    DONE(lar_session_start(b.session, &failure));
+    while (status_of(&b).step < 400) nap(0.002);
+    DONE(lar_session_save(b.session, state, &failure));
+    while (status_of(&b).step < 600) nap(0.002);
+    DONE(lar_session_load(b.session, state, &failure));
+    uint64_t taken_up = status_of(&b).step;
+    while (status_of(&b).step < taken_up + 200) nap(0.002);
+    close_bench(&b);
+    for (int k = 0; k < 3; k++) {
+        static const char *const grids[] = {NULL, "2x2x1", "1x1x2"};
+        lar_model *model = rubbing_bricks();
+        lar_simulation *simulation = NULL;
+        const lar_options how = block_options(grids[k], k);
+        lar_replay_report report;
+        DONE(lar_simulation_create(model, &how, &simulation, &failure));
+        DONE(lar_replay(simulation, path, NULL, NULL, &report, &failure));
+        assert_true(report.hashes > 8 && report.different == UINT64_MAX);
+        assert_true(report.recorded_hash == report.replayed_hash);
+        lar_simulation_destroy(simulation);
+        lar_model_destroy(model);
+    }
+}
+
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(activations_are_played),
-                                       cmocka_unit_test(forces_are_played),
-                                       cmocka_unit_test(touches_are_told_between_ticks)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(friction_is_replayed), cmocka_unit_test(activations_are_played),
+        cmocka_unit_test(forces_are_played), cmocka_unit_test(touches_are_told_between_ticks)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -72,6 +72,11 @@ static void examples_of_the_page_are_understood(void **unused) {
     assert_int_equal(command.material, 2);
     command = good("{\"do\":\"stiffness\"}");
     assert_true(!command.valued && command.material == -1);
+    command = good("{\"do\":\"activate\",\"value\":0.25,\"material\":1}");
+    assert_true(command.kind == LAR_COMMAND_ACTIVATE && command.valued && command.value == 0.25);
+    assert_int_equal(command.material, 1);
+    command = good("{\"do\":\"activate\"}");
+    assert_true(!command.valued && command.material == -1);
     command = good("{\"do\":\"add_tool\",\"shape\":\"grasper\",\"radius\":0.003,\"length\":0.02}");
     assert_true(command.kind == LAR_COMMAND_ADD_TOOL && command.shape == LAR_TOOL_GRASPER);
     assert_true(command.radius == 0.003 && command.length == 0.02);

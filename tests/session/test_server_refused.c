@@ -96,6 +96,7 @@ static void who_may_only_watch_does_nothing_else(void **unused) {
                                        "{\"do\":\"gravity\"}",
                                        "{\"do\":\"damping\",\"value\":1}",
                                        "{\"do\":\"stiffness\",\"value\":1}",
+                                       "{\"do\":\"activate\",\"value\":0}",
                                        "{\"do\":\"add_tool\",\"shape\":\"sphere\",\"radius\":0.01}",
                                        "{\"do\":\"remove_tool\",\"tool\":0}",
                                        "{\"do\":\"tool\",\"tool\":0,\"position\":[5,5,5]}",

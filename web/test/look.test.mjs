@@ -374,6 +374,33 @@ test('a video is filmed and saved', async () => {
 
 const within = (a, b, by) => assert.ok(Math.abs(a - b) < by, `${a} is not ${b}`);
 
+test('each muscle has a slider of its own', async (t) => {
+    const own = await mock({ organs: 'halves', active: [1] });
+    t.after(() => own.close());
+    const v = await openPage(browser, own.url);
+    const other = await openPage(browser, own.url);
+    await v.page.bringToFront();
+    const text = (id) => v.page.locator(`#${id}`).innerText();
+    await v.page.locator('#picture').focus();
+    await v.page.keyboard.press('0');
+    assert.equal(await v.page.locator('#activation-0').count(), 0);
+    await v.until(() => document.getElementById('activation-1-text').textContent === '100 %');
+    await v.page.getByLabel('active: tubes').fill('0.25');
+    await v.until(() => window.lariat.body.activation[1] === 0.25);
+    assert.deepEqual(own.state.body.activation, [1, 0.25]);
+    assert.equal(await text('activation-1-text'), '25 %');
+    assert.equal(await text('body-short'), 'changed');
+    await v.shot('muscle');
+    await other.page.bringToFront();
+    await other.until(() => document.getElementById('activation-1').value === '0.25');
+    await v.page.bringToFront();
+    await v.page.getByRole('button', { name: 'As the scene' }).click();
+    await v.until(() => window.lariat.body.activation[1] === 1 && document.getElementById('body-short').textContent === '');
+    assert.deepEqual(own.faults, []);
+    await other.close();
+    await v.close();
+});
+
 test('gravity, damping and stiffness are set by slider and by keyboard, and go back', async (t) => {
     const own = await mock({ organs: 'halves' });
     t.after(() => own.close());

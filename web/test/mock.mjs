@@ -77,7 +77,7 @@ function fineSurface(mesh, pieces = 4, off = 0.12) {
     return { inner, weights, carriers, triangles, material, vertices: known.size };
 }
 
-export function mock({ port = 0, surface = null, riding = false, token = null, watchToken = null, organs = null, scan = false, dist = join(here, '../dist') } = {}) {
+export function mock({ port = 0, surface = null, riding = false, token = null, watchToken = null, organs = null, active = [], scan = false, dist = join(here, '../dist') } = {}) {
     const mesh = surface ? JSON.parse(readFileSync(surface, 'utf8')) : pear();
     // Two organs, one above the other.
     if (organs === 'halves')
@@ -99,7 +99,7 @@ export function mock({ port = 0, surface = null, riding = false, token = null, w
         noise: false, placed: 0, parts: 1, divided: 0, pressed: false,
         slices: 0, // that were asked for
         late: 0, energies: 0, // answers that were; questions for energies
-        body: { gravity: [0, 0, -9.81], damping: 4, stiffness: Array(materials).fill(1) }, settings: 0, // and how often they were set
+        body: { gravity: [0, 0, -9.81], damping: 4, stiffness: Array(materials).fill(1), ...(active.length ? { activation: Array(materials).fill(1) } : {}) }, settings: 0, // and how often they were set
         asked: [], // for tools to be added and removed
         refused: [], // what those who may only watch have asked for
     };
@@ -178,7 +178,7 @@ export function mock({ port = 0, surface = null, riding = false, token = null, w
         ...(scan ? { scan: { size: SCAN, labels: [{ label: 1, name: 'uterus' }, { label: 2, name: 'bone' }] } } : {}),
         lower: [0, 0, 0], upper: [1, 1, 1], time_step: 0.0001, tick: 0.001,
         isa: 'mock', processors: 4, threads: 1,
-        materials: ['uterus', 'tubes', 'ovaries', 'ligaments'].slice(0, materials).map((name) => ({
+        materials: ['uterus', 'tubes', 'ovaries', 'ligaments'].slice(0, materials).map((name, i) => ({ ...(active.includes(i) ? { active: true } : {}),
             name, law: 'neo-hookean', elements: 1, density: 1050, shear_modulus: 1500, bulk_modulus: 3e5 })),
         tools: tools.map((t, i) => (spares.includes(i) ? none : t)), hands: [1, 2], spares,
         fields: [
@@ -440,6 +440,7 @@ export function mock({ port = 0, surface = null, riding = false, token = null, w
                 gravity: () => (state.settings++, state.body.gravity = m.to ?? [0, 0, -9.81]),
                 damping: () => (state.settings++, state.body.damping = m.value ?? 4),
                 stiffness: () => (state.settings++, state.body.stiffness.forEach((_, i, all) => m.material === undefined || m.material === i ? (all[i] = m.value ?? 1) : 0)),
+                activate: () => (state.settings++, state.body.activation.forEach((_, i, all) => m.material === undefined || m.material === i ? (all[i] = m.value ?? 1) : 0)),
                 replay() {
                     state.replay = m.name ? { name: m.name, time: 0, length: 2 } : null;
                 },

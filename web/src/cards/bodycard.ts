@@ -1,4 +1,4 @@
-/* The body while it runs: gravity, damping and stiffness, as sliders. What somebody else sets is shown here,
+/* The body while it runs: gravity, damping, stiffness and how active muscle is, as sliders. What somebody else sets is shown here,
  * too: the engine says what holds. */
 import { element, write } from '../dom';
 import { ONLY_WATCHES, type Session } from '../link/session';
@@ -45,6 +45,8 @@ export class BodyCard {
     private readonly stiffness = element<HTMLInputElement>('stiffness');
     private readonly which = element<HTMLSelectElement>('stiffness-of');
     private readonly back = element<HTMLButtonElement>('body-reset');
+    private readonly activations = element('activations');
+    private readonly muscle = new Map<number, HTMLInputElement>(); // by material
     private hello: Hello | null = null;
     private status: Status | null = null;
     private down: Vector = [0, 0, -1]; // unit
@@ -75,6 +77,7 @@ export class BodyCard {
         const names = hello.materials.map((material, i) => material.name || `organ ${i + 1}`);
         this.which.replaceChildren(new Option('all', '-1'), ...names.map((name, i) => new Option(name, String(i))));
         element('stiffness-row').hidden = names.length < 2;
+        this.listMuscle(hello);
         this.waiting.clear();
         this.own = {};
     }
@@ -84,13 +87,16 @@ export class BodyCard {
         const { body } = status;
         if (!body || !this.hello?.body) return;
         const fixed = this.session.watches || status.state === 'stopped' || Boolean(status.replay);
-        for (const part of [this.gravity, this.direction, this.damping, this.stiffness, this.back]) part.disabled = fixed;
+        for (const part of [this.gravity, this.direction, this.damping, this.stiffness, this.back, ...this.muscle.values()])
+            part.disabled = fixed;
         if (this.isTheirs('gravity')) this.showGravity(body.gravity);
         if (this.isTheirs('damping')) {
             this.damping.value = String(placeOfDamping(body.damping, this.max));
             this.tellDamping(body.damping);
         }
         if (this.isTheirs('stiffness')) this.showStiffness();
+        for (const material of this.muscle.keys())
+            if (this.isTheirs(`activate ${material}`)) this.showActivation(material, body.activation?.[material] ?? 1);
         this.tellShort(body);
     }
 
@@ -189,16 +195,51 @@ export class BodyCard {
         write(element('stiffness-text'), text);
     }
 
+    /* A slider for each material with active stress. */
+    private listMuscle(hello: Hello): void {
+        this.muscle.clear();
+        this.activations.replaceChildren();
+        hello.materials.forEach((material, i) => {
+            if (!material.active) return;
+            const id = `activation-${i}`;
+            const label = Object.assign(document.createElement('label'), { className: 'row', htmlFor: id });
+            const text = Object.assign(document.createElement('output'), { id: `${id}-text` });
+            const slider = Object.assign(document.createElement('input'), { id, type: 'range', min: '0', max: '1', step: '0.01' });
+            slider.title = 'How active this muscle is, times what the scene says of it at that time';
+            slider.oninput = () => this.activate(i, slider.valueAsNumber);
+            label.append(`active: ${material.name || `organ ${i + 1}`} `, text);
+            this.activations.append(label, slider);
+            this.muscle.set(i, slider);
+        });
+        this.activations.hidden = this.muscle.size === 0;
+    }
+
+    private activate(material: number, value: number): void {
+        this.send(`activate ${material}`, { do: 'activate', value, material });
+        this.tellActivation(material, value);
+    }
+
+    private showActivation(material: number, value: number): void {
+        this.muscle.get(material)!.value = String(value);
+        this.tellActivation(material, value);
+    }
+
+    private tellActivation(material: number, value: number): void {
+        write(element(`activation-${material}-text`), `${Math.round(100 * value)} %`);
+    }
+
     private reset(): void {
         this.waiting.clear();
         this.own = {};
         for (const what of ['gravity', 'damping', 'stiffness'] as const) this.session.send({ do: what });
+        if (this.muscle.size > 0) this.session.send({ do: 'activate' });
     }
 
     /* Behind the card's name, that a folded card says it, too. */
     private tellShort(body: NonNullable<Status['body']>): void {
         const { gravity, gravity_varies, damping } = this.hello!.body!;
         const same = body.damping === damping && body.stiffness.every((factor) => factor === 1) &&
+            (body.activation ?? []).every((value) => value === 1) &&
             (gravity_varies || body.gravity.every((g, i) => g === gravity[i]));
         write(element('body-short'), same ? '' : 'changed');
     }

@@ -37,7 +37,7 @@ export interface Hello {
     isa: string;
     processors: number;
     threads: number;
-    materials: { name: string; law: string; elements: number; shear_modulus: number }[];
+    materials: { name: string; law: string; elements: number; shear_modulus: number; active?: boolean }[];
     tools: ToolInfo[];
     hands: number[];
     spares?: number[]; // tools that can be added: status says what they are
@@ -114,7 +114,8 @@ export interface Status {
     viewers: number;
     saved: string[]; // saved states, oldest first
     recordings: string[];
-    body?: { gravity: [number, number, number]; damping: number; stiffness: number[] }; // now; stiffness by material
+    // now; stiffness and activation by material, the latter where something is active
+    body?: { gravity: [number, number, number]; damping: number; stiffness: number[]; activation?: number[] };
     replay?: { name: string; time: number; length: number }; // what is played, in simulated seconds
     tools: ToolStatus[];
 }
@@ -354,5 +355,6 @@ export type Request =
     | { do: 'gravity'; to?: Point }
     | { do: 'damping'; value?: number }
     | { do: 'stiffness'; value?: number; material?: number }
+    | { do: 'activate'; value?: number; material?: number }
     | { do: 'add_tool'; shape: 'sphere' | 'capsule' | 'grasper'; radius: number; length?: number }
     | { do: 'remove_tool'; tool: number };
