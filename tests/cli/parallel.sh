@@ -61,7 +61,7 @@ sed -n '1s/: .*//p' err | cmp -s - where || fail "not where one processor is uns
 "$LARIAT" run "$SOURCE/examples/beam.yaml" --time 3600 --realtime --json --grid 2x1x1 --out stopped \
     >out 2>err &
 pid=$!
-for _ in $(seq 50); do
+for _ in $(seq 300); do
     [ -e stopped/probes.csv ] && break
     sleep 0.2
 done
