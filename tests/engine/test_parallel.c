@@ -70,7 +70,7 @@ static void the_hash_is_the_same_everywhere(void **unused) {
     lar_model *model = everything_model(&small);
     uint64_t wanted = hash_of(model, lar_options_default(), STEPS);
     for (int grid = 0; grid < GRIDS; grid++)
-        for (int scheme = grid % test_every(2); scheme < SCHEMES; scheme += test_every(2)) {
+        for (int scheme = 0; scheme < SCHEMES; scheme++) {
             int threads = 1 + (grid + scheme) % THREADS;
             int distribution = (grid + 2 * scheme + scheme / 2) % DISTRIBUTIONS;
             compare(model, combination(grid, threads, scheme, distribution), STEPS, wanted);
