@@ -37,9 +37,10 @@ done
 cmake --preset release --log-level=NOTICE -DLARIAT_WERROR="$werror" &&
     cmake --build --preset release -j "$jobs" || exit 1
 
-# suite PRESET: the tests of one build, shown and kept.
+# suite PRESET: the tests of one build, shown and kept. In short slices of time: processors of a
+# simulation that wait for each other beside another test wait shorter.
 suite() {
-    ctest --preset "$1" -j "$tests_at_once" --no-label-summary 2>&1 | tee "$logs/$1"
+    build/tests/short_slices ctest --preset "$1" -j "$tests_at_once" --no-label-summary 2>&1 | tee "$logs/$1"
 }
 closing_line() {
     grep -h '% tests passed' "$logs/$1" 2>/dev/null | tail -n 1

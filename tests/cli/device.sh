@@ -54,7 +54,7 @@ begin_session() {
         >view.json 2>view.err &
     session=$!
     port=
-    for _ in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20; do
+    for _ in $(seq 200); do
         port=$(sed -n 's/.*device of probe is expected at port \([0-9]*\).*/\1/p' view.err)
         [ -z "$port" ] && sleep 0.25 || break
     done

@@ -158,6 +158,10 @@ sed 's/^move.*/time_step: 1.0e-7\n&/' one.yaml >slow.yaml
 sed 's/one\.yaml/slow.yaml/' fit.yaml >slow_fit.yaml
 "$LARIAT" fit slow_fit.yaml >out 2>err &
 pid=$!
+for _ in $(seq 600); do # until it listens for signals: SIGINT is the second bit
+    case $(sed -n 's/^SigCgt:.*\(.\)$/\1/p' "/proc/$pid/status") in [2367abef]) break ;; esac
+    sleep 0.1
+done
 sleep 1
 kill -INT $pid
 wait $pid

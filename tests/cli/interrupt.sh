@@ -21,7 +21,7 @@ interrupt() {
     "$LARIAT" run "$SOURCE/examples/beam.yaml" --time 3600 --realtime --json --out "$results" \
         "$@" >"$SCRATCH/out" 2>"$SCRATCH/err" &
     pid=$!
-    for _ in $(seq 150); do
+    for _ in $(seq 300); do
         [ -e "$results/probes.csv" ] && break
         sleep 0.2
     done

@@ -2,7 +2,7 @@
 # A divided run is the same run: hash, frames, failures, interruption. Processors are threads here.
 . "$(dirname "$0")/lib.sh"
 cd "$SCRATCH" || exit 1
-expect 0 "$LARIAT" demo-model demo
+expect 0 demo_organ demo
 scene=demo/uterus.yaml
 expect 0 "$LARIAT" run $scene --steps 60 --json --out alone
 [ "$(value_of grid)$(value_of comm)$(value_of processors)" = '"1x1x1""none"1' ] || fail "not alone"
@@ -61,7 +61,7 @@ sed -n '1s/: .*//p' err | cmp -s - where || fail "not where one processor is uns
 "$LARIAT" run "$SOURCE/examples/beam.yaml" --time 3600 --realtime --json --grid 2x1x1 --out stopped \
     >out 2>err &
 pid=$!
-for _ in $(seq 50); do
+for _ in $(seq 300); do
     [ -e stopped/probes.csv ] && break
     sleep 0.2
 done

@@ -111,18 +111,18 @@ lose STOP tcp 0
 
 # One that ends on its way to processor zero: nobody waits for it until the limit of the start. All
 # search for a distribution meanwhile, so that there is time to lose one.
-"$LARIAT" demo-model organ >/dev/null || fail "no demonstration organ"
+demo_organ organ || fail "no demonstration organ"
 for signal in KILL STOP; do
-    began=$(date +%s)
     "$LARIAT" run organ/uterus.yaml --steps 3 --grid 2x1x1 --comm shm --distribution genetic --json \
         >out 2>err &
     zero=$!
     pid=
-    for _ in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20; do
+    for _ in $(seq 600); do
         pid=$(other $zero 1)
         [ -n "$pid" ] && break
         sleep 0.05
     done
+    began=$(date +%s)
     kill -$signal "$pid" || fail "no processor 1 to lose on its way"
     wait $zero && fail "success without processor 1"
     silent

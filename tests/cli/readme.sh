@@ -88,7 +88,7 @@ while read -r line; do
         # shellcheck disable=SC2086
         "$LARIAT" $line >viewed 2>&1 </dev/null &
         viewer=$!
-        for _ in 1 2 3 4 5 6 7 8 9 10; do grep -q 'http' viewed || sleep 0.3; done
+        for _ in $(seq 200); do grep -q 'http' viewed && break; sleep 0.3; done
         continue
         ;;
     view* | device*) there viewer || continue ;;

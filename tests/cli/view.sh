@@ -2,7 +2,7 @@
 # lariat view: an address, a report, free ports, signals; and what makes no sense.
 . "$(dirname "$0")/lib.sh"
 cd "$SCRATCH" || exit 1
-"$LARIAT" demo-model demo >/dev/null || exit 1
+demo_organ demo || exit 1
 scene=demo/uterus_live.yaml
 
 expect 2 "$LARIAT" view
@@ -120,7 +120,7 @@ done >undocumented
 # A port that is taken: the next one. Ctrl-C: the report.
 "$LARIAT" view $scene --port 0 >first 2>first.err &
 first=$!
-for _ in $(seq 200); do
+for _ in $(seq 1200); do
     grep -q '^http' first && break
     sleep 0.05
 done
@@ -139,7 +139,7 @@ grep -q '^state hash' first || fail "there is no report after Ctrl-C"
 "$LARIAT" view $scene --port 0 --grid 2x1x1 --comm shm --json >out 2>err &
 zero=$!
 one=
-for _ in $(seq 200); do
+for _ in $(seq 1200); do
     if grep -q '^http' err; then
         for stat in /proc/[0-9]*/stat; do
             read -r pid _ _ parent _ 2>/dev/null <"$stat" && [ "$parent" = $zero ] && one=$pid

@@ -37,7 +37,9 @@ pip)
         echo "skipped: this is no git checkout"
         exit 77
     }
-    "$scratch/venv/bin/python" -m pip install --no-index --disable-pip-version-check \
+    # Compiled without optimisation, in half the time: the code is that of the release build.
+    LARIAT_CMAKE_ARGS="-DCMAKE_C_FLAGS_RELEASE=-O0" \
+        "$scratch/venv/bin/python" -m pip install --no-index --disable-pip-version-check \
         "$scratch/copy" >"$scratch/log" 2>&1 || { cat "$scratch/log"; exit 1; }
     rm -rf "$scratch/copy"
     for test in model misuse; do
