@@ -26,6 +26,7 @@
 
 #include "contact/plane_contact.h"
 #include "contact/spares.h"
+#include "contact/touch_list.h"
 #include "mechanics/contact.h"
 
 /* An advance may have any number of steps, and a force of one of them nearly 2^63 units. */
@@ -121,8 +122,6 @@ typedef struct lar_tool_vicinity {
     double *look;  /* [near_count] the path from which on each must be looked at again */
 } lar_tool_vicinity;
 
-typedef struct lar_touch_list lar_touch_list; /* touch_list.h */
-
 typedef struct lar_tool_contact {
     const lar_tool_list *list; /* NULL: no tools */
     const lar_tools *tools;
@@ -142,8 +141,8 @@ typedef struct lar_tool_contact {
     lar_tool_rubbed *rubbed; /* [rubbed_count] of [faces->rub_count] */
     lar_tool_vicinity vicinity[LAR_TOOLS_MAX];
     lar_touch_list *touches; /* who looks wants to know where a tool touches; NULL in steps */
-    double travel;  /* how far any corner can have gone, begun anew now and then [m] */
-    uint64_t moved; /* the step that the thread's nodes were last moved to */
+    double travel;           /* how far any corner can have gone, begun anew now and then [m] */
+    uint64_t moved;          /* the step that the thread's nodes were last moved to */
 } lar_tool_contact;
 
 /* Of the whole model, or with a share (NULL: all) of one thread. */

@@ -10,18 +10,18 @@
 
 #include <stdint.h>
 
-#include "contact/tool_contact.h"
+#include "lariat.h"
 
 /* Of one face and tool: all points of the grid and the wall, for both jaws. */
 enum { LAR_TOUCHES_OF_FACE = 74 };
 
-struct lar_touch_list {
+typedef struct lar_touch_list {
     int32_t tool;
     int32_t max, count; /* room; how many there are */
     lar_touch *touch;   /* [max]. What rubs has its local node in node[0]; others have no nodes */
     int32_t pending;
     lar_touch noted[LAR_TOUCHES_OF_FACE]; /* of the face under way */
-};
+} lar_touch_list;
 
 /* A point of the face under way; its force on the tool is still exact. */
 void lar_touch_note(lar_touch_list *list, const lar_touch *touch);

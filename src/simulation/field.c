@@ -106,7 +106,7 @@ static lar_status find_plan(const lar_simulation *simulation, lar_field_plan **p
     lar_field_plan **kept = &simulation->scratch->field;
     *plan = __atomic_load_n(kept, __ATOMIC_ACQUIRE);
     if (*plan) return LAR_OK;
-    lar_field_plan *made;
+    lar_field_plan *made = NULL;
     lar_status status = plan_create(&simulation->domain, &made, error);
     if (status) return status;
     if (__atomic_compare_exchange_n(kept, plan, made, false, __ATOMIC_ACQ_REL, __ATOMIC_ACQUIRE))
