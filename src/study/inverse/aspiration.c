@@ -18,8 +18,10 @@ static lar_status choose_load(const lar_scene *scene, const lar_yaml *node,
     lar_status status =
         own ? lar_scene_integer(scene, own, "an integer, for example 1", &number) : LAR_OK;
     if (status) return status;
-    e->aspiration.load = (int)number - 1;
-    if (number >= 1 && number <= count && (own || count == 1)) return LAR_OK;
+    if (number >= 1 && number <= count && (own || count == 1)) {
+        e->aspiration.load = (int)number - 1;
+        return LAR_OK;
+    }
     return lar_scene_fail(scene, own ? own : node, LAR_ERROR_MODEL,
                           "the scene %s has %d pressures; %s", e->scene, count,
                           count == 0
