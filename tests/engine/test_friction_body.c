@@ -2,12 +2,9 @@
  * where he says; momentum and moments are kept, and energy never rises. */
 #include "engine/body_contact_test.h"
 #include "engine/fleet_test.h"
-#include "engine/tool_contact_test.h"
+#include "engine/friction_test.h"
 
-/* Stiff, so that the block is nearly rigid; low and long, so that no edge of it lifts. */
-static const brick block = {{6, 4, 2}, 0.01, 0, LAR_LAW_neo_hookean, 2e5, 4e5, 1000};
 static const brick slab = {{12, 6, 2}, 0.0125, 0, LAR_LAW_neo_hookean, 1e5, 4e5, 1000};
-static const double weight = 9.81;
 
 /* The block's first node. */
 static int32_t first_of(const lar_model *model) {
@@ -18,55 +15,18 @@ static int32_t first_of(const lar_model *model) {
 /* A block above a slab, which stands on its fixed lowest nodes; gravity is turned instead. */
 static lar_model *block_model(double friction, double angle) {
     lar_model *model = two_bricks(&slab, &block, 1e-4, true);
-    model->contact[0].friction = friction;
-    model->gravity[0] = weight * sin(angle);
-    model->gravity[2] = -weight * cos(angle);
+    tilt(model, friction, angle);
     return model;
 }
 
-/* Mean displacement and velocity of the block along the slope. */
 static void mean_slide(const lar_simulation *s, double *way, double *speed) {
-    double mass = 0, u = 0, v = 0;
-    for (int32_t n = first_of(s->domain.model); n < s->domain.model->mesh.node_count; n++) {
-        double m = s->domain.mass[s->domain.layout.local[n]];
-        u += m * node_u(s, n)[0];
-        v += m * node_v(s, n)[0];
-        mass += m;
-    }
-    *way = u / mass;
-    *speed = v / mass;
-}
-
-/* How far the block gets in 0.3 s after the slope, which becomes as steep as that in 0.4 s, has
- * been so for 0.3 s. */
-static double slides(double friction, double angle, double damping) {
-    lar_model *model = block_model(friction, angle);
-    model->damping = damping;
-    model->gravity_curve[0] = add_ramp(model, 0.4);
-    lar_simulation *s = start(model);
-    double way, before, speed;
-    while (lar_simulation_time(s) < 0.7) advance(s, 100);
-    mean_slide(s, &before, &speed);
-    while (lar_simulation_time(s) < 1.0) advance(s, 100);
-    mean_slide(s, &way, &speed);
-    finish(s, model);
-    return way - before;
+    mean_slide_of(s, first_of(s->domain.model), way, speed);
 }
 
 static void a_block_starts_to_slide_at_the_angle_of_friction(void **unused) {
     (void)unused;
-    static const double frictions[] = {0.1, 0.3, 0.5}, damping = 100;
-    for (int i = 0; i < 3; i++) {
-        double angle = atan(frictions[i]), below = slides(frictions[i], 0.99 * angle, damping);
-        double above = slides(frictions[i], 1.01 * angle, damping);
-        double a = weight * (sin(1.01 * angle) - frictions[i] * cos(1.01 * angle));
-        print_message("friction %.1f: slides %.2e m in 0.3 s at 0.99 of its angle, %.2e m at 1.01; "
-                      "rigid %.2e m\n",
-                      frictions[i], below, above, a / damping * 0.3);
-        assert_below(fabs(below), 1e-9);
-        assert_below(0.5 * a / damping * 0.3, above);
-        assert_below(above, 6 * a / damping * 0.3);
-    }
+    const slope tissue = {.make = block_model, .first = first_of(NULL), .settled = 0.7};
+    starts_to_slide_at_the_angle_of_friction(&tissue);
 }
 
 /* The block is set going on a level slab; damping keeps both from trembling. With v' = -a - c v it
@@ -197,61 +157,35 @@ static void energy_never_rises(void **unused) {
 
 /* ---- the same bits --------------------------------------------------------------------------- */
 
-static const uint64_t half_way = 24, end = 60;
-
-static uint64_t hash_of(const lar_model *model, lar_options options, const char *from) {
-    lar_simulation *s = start_with(model, options);
-    lar_error error;
-    if (from && lar_simulation_load(s, from, &error)) fail_msg("%s", error.message);
-    advance(s, from ? end - half_way : end);
-    uint64_t hash = lar_simulation_hash(s);
-    lar_simulation_destroy(s);
-    return hash;
-}
+static const halves run = {24, 60};
 
 static void the_same_bits_everywhere(void **unused) {
     (void)unused;
-    static const char *const grids[] = {"1x1x1", "2x1x1", "2x2x1", "1x1x1", "2x1x1", "1x1x2"};
-    static const int32_t threads[] = {1, 1, 1, 3, 2, 2};
-    static const lar_isa sets[] = {LAR_ISA_C, LAR_ISA_NEON, LAR_ISA_AVX2, LAR_ISA_AVX512};
     const char *path = LAR_TEST_BUILD "/friction_body.lar";
     lar_model *model = flying_model(0.4, 3e-3);
     lar_simulation *s = start(model);
     lar_saved *saved;
     lar_error error;
-    advance(s, half_way);
+    advance(s, run.half_way);
     lar_contact_info info;
     lar_simulation_contact(s, &info);
     assert_true(info.touching > 0);
     if (lar_simulation_save(s, path, &error)) fail_msg("%s", error.message);
     assert_int_equal(lar_saved_create(s, &saved, &error), LAR_OK);
     assert_int_equal(lar_simulation_save_to(s, saved, &error), LAR_OK);
-    advance(s, end - half_way);
+    advance(s, run.end - run.half_way);
     uint64_t hash = lar_simulation_hash(s);
     if (lar_simulation_load_from(s, saved, &error)) fail_msg("%s", error.message);
-    advance(s, end - half_way);
+    advance(s, run.end - run.half_way);
     assert_true(lar_simulation_hash(s) == hash);
     lar_saved_destroy(saved);
     lar_simulation_destroy(s);
-    for (int g = 0; g < 6; g++) {
-        lar_options options = lar_options_default();
-        options.grid = grids[g];
-        options.threads = threads[g];
-        assert_true(hash_of(model, options, NULL) == hash);
-        assert_true(hash_of(model, options, path) == hash);
-    }
-    for (int i = 0; i < 4; i++) {
-        const lar_kernels *kernels;
-        if (lar_kernels_find(sets[i], &kernels, NULL)) continue;
-        lar_options options = lar_options_default();
-        options.isa = sets[i];
-        assert_true(hash_of(model, options, NULL) == hash);
-    }
+    has_the_same_bits(model, path, run, hash);
     lar_options always = lar_options_default();
     always.search_always = true;
-    assert_true(hash_of(model, always, NULL) == hash);
+    assert_true(hash_of(model, always, NULL, run) == hash);
     model->contact[0].friction = 0;
-    assert_true(hash_of(model, lar_options_default(), NULL) != hash);
+    assert_true(hash_of(model, lar_options_default(), NULL, run) != hash);
     lar_model_destroy(model);
 }
 
@@ -259,22 +193,22 @@ static void processes_tell_each_other_what_sticks(void **unused) {
     (void)unused;
     const char *path = LAR_TEST_BUILD "/friction_body_processes.lar";
     lar_model *model = flying_model(0.4, 3e-3);
-    uint64_t hash = hash_of(model, lar_options_default(), NULL);
+    uint64_t hash = hash_of(model, lar_options_default(), NULL, run);
     lar_options options = lar_options_default();
     lar_error error;
     options.grid = "2x2x1";
     options.comm = "shm";
     fleet f;
     start_fleet(&f, model, options, 4, NULL);
-    advance(f.zero, half_way);
+    advance(f.zero, run.half_way);
     if (lar_simulation_save(f.zero, path, &error)) fail_msg("%s", error.message);
-    advance(f.zero, end - half_way);
+    advance(f.zero, run.end - run.half_way);
     assert_true(lar_simulation_hash(f.zero) == hash);
     if (lar_simulation_load(f.zero, path, &error)) fail_msg("%s", error.message);
-    advance(f.zero, end - half_way);
+    advance(f.zero, run.end - run.half_way);
     assert_true(lar_simulation_hash(f.zero) == hash);
     end_fleet(&f);
-    assert_true(hash_of(model, lar_options_default(), path) == hash);
+    assert_true(hash_of(model, lar_options_default(), path, run) == hash);
     lar_model_destroy(model);
 }
 

@@ -1,66 +1,30 @@
 /* Friction on planes: a block on a slope starts to slide where Coulomb says and stops where he
  * says, and the energy account closes on the way. */
-#include "engine/engine_test.h"
-#include "engine/tool_contact_test.h"
+#include "engine/friction_test.h"
 
-/* Stiff, so that the block is nearly rigid; low and long, so that no edge of it lifts. */
-static const brick block = {{6, 4, 2}, 0.01, 0, LAR_LAW_neo_hookean, 2e5, 4e5, 1000};
-static const double weight = 9.81;
-
-/* On the plane z = 0; gravity is turned instead of the plane. */
+/* On the plane z = 0. */
 static lar_model *block_model(double friction, double angle) {
     lar_model *model = brick_model(&block);
     add_plane(model, (double[]){0, 0, 0}, (double[]){0, 0, 1});
-    model->contact[0].friction = friction;
-    model->gravity[0] = weight * sin(angle);
-    model->gravity[2] = -weight * cos(angle);
+    tilt(model, friction, angle);
     return model;
 }
 
-/* Mean displacement and velocity along the slope. */
 static void mean_slide(const lar_simulation *s, double *way, double *speed) {
-    double mass = 0, u = 0, v = 0;
-    for (int32_t n = 0; n < s->domain.model->mesh.node_count; n++) {
-        double m = s->domain.mass[s->domain.layout.local[n]];
-        u += m * node_u(s, n)[0];
-        v += m * node_v(s, n)[0];
-        mass += m;
-    }
-    *way = u / mass;
-    *speed = v / mass;
+    mean_slide_of(s, 0, way, speed);
 }
 
-/* How far the block gets in 0.3 s after the slope, which becomes as steep as that in 0.4 s, has
- * been so for 0.2 s. Damping keeps what slides from trembling, and slows it: to a / c. */
-static double slides(double friction, double angle, double damping) {
+/* It takes something before it gives back rounding. */
+static lar_model *block_above(double friction, double angle) {
     lar_model *model = block_model(friction, angle);
-    model->damping = damping;
-    model->contact[0].through[2] = -1e-5; /* it takes something before it gives back rounding */
-    model->gravity_curve[0] = add_ramp(model, 0.4);
-    lar_simulation *s = start(model);
-    double way, before, speed;
-    while (lar_simulation_time(s) < 0.6) advance(s, 100);
-    mean_slide(s, &before, &speed);
-    while (lar_simulation_time(s) < 0.9) advance(s, 100);
-    mean_slide(s, &way, &speed);
-    finish(s, model);
-    return way - before;
+    model->contact[0].through[2] = -1e-5;
+    return model;
 }
 
 static void a_block_starts_to_slide_at_the_angle_of_friction(void **unused) {
     (void)unused;
-    static const double frictions[] = {0.1, 0.3, 0.5}, damping = 100;
-    for (int i = 0; i < 3; i++) {
-        double angle = atan(frictions[i]), below = slides(frictions[i], 0.99 * angle, damping);
-        double above = slides(frictions[i], 1.01 * angle, damping);
-        double a = weight * (sin(1.01 * angle) - frictions[i] * cos(1.01 * angle));
-        print_message("friction %.1f: slides %.2e m in 0.3 s at 0.99 of its angle, %.2e m at 1.01; "
-                      "rigid %.2e m\n",
-                      frictions[i], below, above, a / damping * 0.3);
-        assert_below(fabs(below), 1e-9);
-        assert_below(0.5 * a / damping * 0.3, above);
-        assert_below(above, 6 * a / damping * 0.3);
-    }
+    const slope plane = {.make = block_above, .first = 0, .settled = 0.6};
+    starts_to_slide_at_the_angle_of_friction(&plane);
 }
 
 /* Set going down a slope that is not steep enough, with v' = -a - c v, it goes
@@ -189,7 +153,7 @@ static void held_axes_stay_held(void **unused) {
 
 /* ---- the same bits --------------------------------------------------------------------------- */
 
-static const uint64_t half_way = 150, end = 300;
+static const halves run = {150, 300};
 
 /* Irregular, and on its way. */
 static lar_model *sliding_model(void) {
@@ -205,49 +169,23 @@ static lar_model *sliding_model(void) {
     return model;
 }
 
-static uint64_t hash_of(const lar_model *model, lar_options options, const char *from) {
-    lar_simulation *s = start_with(model, options);
-    lar_error error;
-    if (from && lar_simulation_load(s, from, &error)) fail_msg("%s", error.message);
-    advance(s, from ? end - half_way : end);
-    uint64_t hash = lar_simulation_hash(s);
-    lar_simulation_destroy(s);
-    return hash;
-}
-
 static void the_same_bits_everywhere(void **unused) {
     (void)unused;
-    static const char *const grids[] = {"1x1x1", "2x1x1", "2x2x1", "1x1x1", "2x1x1"};
-    static const int32_t threads[] = {1, 1, 1, 3, 2};
-    static const lar_isa sets[] = {LAR_ISA_C, LAR_ISA_NEON, LAR_ISA_AVX2, LAR_ISA_AVX512};
     const char *path = LAR_TEST_BUILD "/friction_plane.lar";
     lar_model *model = sliding_model();
     lar_simulation *s = start(model);
     lar_error error;
-    advance(s, half_way);
+    advance(s, run.half_way);
     lar_contact_info info;
     lar_simulation_contact(s, &info);
     assert_true(info.touching > 0);
     if (lar_simulation_save(s, path, &error)) fail_msg("%s", error.message);
-    advance(s, end - half_way);
+    advance(s, run.end - run.half_way);
     uint64_t hash = lar_simulation_hash(s);
     lar_simulation_destroy(s);
-    for (int g = 0; g < 5; g++) {
-        lar_options options = lar_options_default();
-        options.grid = grids[g];
-        options.threads = threads[g];
-        assert_true(hash_of(model, options, NULL) == hash);
-        assert_true(hash_of(model, options, path) == hash);
-    }
-    for (int i = 0; i < 4; i++) {
-        const lar_kernels *kernels;
-        if (lar_kernels_find(sets[i], &kernels, NULL)) continue;
-        lar_options options = lar_options_default();
-        options.isa = sets[i];
-        assert_true(hash_of(model, options, NULL) == hash);
-    }
+    has_the_same_bits(model, path, run, hash);
     model->contact[0].friction = model->contact[1].friction = 0;
-    assert_true(hash_of(model, lar_options_default(), NULL) != hash);
+    assert_true(hash_of(model, lar_options_default(), NULL, run) != hash);
     lar_model_destroy(model);
 }
 
