@@ -130,11 +130,11 @@ bad 'opposite sign.*turn axis' tube
 profile 'time,r,z\n1,0,0.001\n3,0.005,0.001\n'
 printf 'time,pressure\n0,0\n2,300\n' >suction.csv
 bad 'profile\.csv:3: this profile is of 3 s, and .*suction\.csv ends at 2 s' tube ', pressure: suction.csv'
-bad 'bad\.yaml:5:.*"load" *\|bad\.yaml:5:.*has 1 pressures; say which' tube ', load: 2'
+bad 'bad\.yaml:5:.*has 1 pressure; say which' tube ', load: 2'
 printf 'time,druck\n0,0\n2,300\n' >suction.csv
 bad 'suction\.csv:1: the column pressure is missing' tube ', pressure: suction.csv'
 scene=one.yaml
-bad 'one\.yaml has 0 pressures; give its faces' tube
+bad 'one\.yaml has no pressure; give its faces' tube
 scene=
 
 # In millimetres and with other names, once that is said.

@@ -41,17 +41,13 @@ typedef struct carrier {
     double row;        /* how hard a force on the point is for the corners, at least 1 */
 } carrier;
 
-static inline double size_of(const double a[3]) {
-    return sqrt(lar_dot(a, a));
-}
-
 /* False: the point is too far from the face, or the face has no area. */
 static bool carry(const double x[3], const double corner[4][3], const double closest[4],
                   carrier *c) {
     static const double BESIDE = 0.5, TILT = 2; /* of the diagonals */
     double diagonal[2][3], dual[2][3], way[3], length;
     lar_face_normal(corner, c->normal);
-    length = size_of(c->normal);
+    length = lar_length(c->normal);
     if (!(length > 0)) return false;
     lar_face_mean(corner, closest, way);
     length = 1 / length;
@@ -170,7 +166,7 @@ bool lar_body_friction_rub(lar_body_contact *contact, const lar_state *state, co
         share += weight[k];
         for (int i = 0; i < 3; i++) slip[i] += weight[k] * ((holds ? own[i] : 0) + lead * moved[i]);
     }
-    double wanted = stiffness * size_of(slip), max = share * most;
+    double wanted = stiffness * lar_length(slip), max = share * most;
     if (!(wanted > 0)) return false;
     double part = wanted > max ? max / wanted : 1;
     for (int i = 0; i < 3; i++) slip[i] *= -part * stiffness;
@@ -192,7 +188,7 @@ static void take_on(const lar_rub_note *note, double *stick) {
         stick[3] = note->leading + 1;
         return;
     }
-    double size = size_of(note->slip), part = size > note->limit ? note->limit / size : 1;
+    double size = lar_length(note->slip), part = size > note->limit ? note->limit / size : 1;
     for (int i = 0; i < 3; i++) stick[i] = part * note->slip[i];
 }
 

@@ -22,12 +22,16 @@ static lar_status choose_load(const lar_scene *scene, const lar_yaml *node,
         e->aspiration.load = (int)number - 1;
         return LAR_OK;
     }
-    return lar_scene_fail(scene, own ? own : node, LAR_ERROR_MODEL,
-                          "the scene %s has %d pressures; %s", e->scene, count,
-                          count == 0
-                              ? "give its faces in the tube one: load: [ { faces: tube, pressure: "
-                                "-1.0e3 } ]"
-                              : "say which one is the tube's, from 1: load: 1");
+    const lar_yaml *at = own ? own : node;
+    if (count == 0)
+        return lar_scene_fail(scene, at, LAR_ERROR_MODEL,
+                              "the scene %s has no pressure; give its faces in the tube one: load: "
+                              "[ { faces: tube, pressure: -1.0e3 } ]",
+                              e->scene);
+    return lar_scene_fail(scene, at, LAR_ERROR_MODEL,
+                          "the scene %s has %d pressure%s; say which one is the tube's, from 1: "
+                          "load: 1",
+                          e->scene, count, count == 1 ? "" : "s");
 }
 
 /* A new list of the nodes of the loaded faces, each once, ascending. */
