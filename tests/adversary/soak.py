@@ -293,12 +293,8 @@ class Soak:
                   flush=True)
 
     def organ_scene(self):
-        made = os.environ.get("LARIAT_TEST_DEMO", "")  # by ctest, once for all tests
-        if os.path.isdir(made):
-            shutil.copytree(made, os.path.join(self.scratch, "demo"))
-        else:
-            subprocess.run([self.lariat, "demo-model", "demo"], cwd=self.scratch, check=True,
-                           stdout=subprocess.DEVNULL)
+        subprocess.run([self.lariat, "demo-model", "demo"], cwd=self.scratch, check=True,
+                       stdout=subprocess.DEVNULL)
         return "demo/uterus_live.yaml"
 
 

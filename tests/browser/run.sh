@@ -25,7 +25,8 @@ command -v node >/dev/null || skip "node is not there (apt-get install nodejs)"
 
 rm -rf "$out"
 mkdir -p "$out"
-if "$lariat" view "$web/../examples/beam.yaml" --port 0 --seconds 0.1 2>&1 |
+"$lariat" demo-model "$out/probe" >/dev/null || exit 1
+if "$lariat" view "$out/probe/uterus_live.yaml" --port 0 --seconds 0.1 2>&1 |
     grep -q 'no server for viewers'; then
     skip "this build has no server for viewers (apt-get install libwebsockets-dev)"
 fi

@@ -57,7 +57,7 @@ grep '"\(over_plain\|speed_up\|efficiency\|us_per_step\)":' "$SCRATCH/out" |
     awk -F': *' '!($2 + 0 > 0) { exit 1 }' || fail "a figure that is not positive"
 [ "$(grep -c '"better":' "$SCRATCH/out")" -eq 6 ] || fail "not a figure for each of them"
 # A scene, whose processes read it themselves; the state is the one that a run comes to.
-expect 0 demo_organ "$SCRATCH/demo"
+expect 0 "$LARIAT" demo-model "$SCRATCH/demo"
 expect 0 "$LARIAT" bench scaling "$SCRATCH/demo/uterus.yaml" --grid 1x1x1,1x2x1 --comm shm \
     --scheme local --threads 3 --no-pin --quick --repeat 1 --json
 hash=$(value_of state_hash) steps=$(($(value_of warm_up_steps) + $(value_of steps_per_sample)))

@@ -65,7 +65,7 @@ else
     echo "left out: mpi: $(tail -n 1 err)"
 fi
 # The organ falls on its side, and its creases fold shut: it goes on.
-expect 0 demo_organ organ
+expect 0 "$LARIAT" demo-model organ
 sed -e '/^fix:/,/^$/d' -e '/^tools:/,/^$/d' -e '/^gravity:/s/\[.*\]/[9.81, 0, 0]/' \
     -e '/^contact:/s/{ self: true }/&, { faces: all, plane: { through: [0.0615, 0, 0], normal: [-1, 0, 0] } }/' \
     organ/uterus_live.yaml >organ/side.yaml

@@ -46,7 +46,7 @@ fi
 mkdir "$SCRATCH/small"
 if mount -t tmpfs -o size=64k none "$SCRATCH/small" 2>/dev/null; then
     trap 'umount "$SCRATCH/small" 2>/dev/null' EXIT
-    expect 0 demo_organ "$SCRATCH/demo"
+    expect 0 "$LARIAT" demo-model "$SCRATCH/demo"
     expect 1 "$LARIAT" run "$SCRATCH/demo/uterus.yaml" --steps 10 --out "$SCRATCH/small"
     complains 'No space left'
     left=$(find "$SCRATCH/small" -name '*.part' -o -name '*.vtu')
@@ -68,7 +68,7 @@ expect 0 "$LARIAT" run "$SCRATCH/again/beam.yaml" --steps 1 --out "$SCRATCH/else
 # What an earlier run left does not look like that of a later one which ends early; what other
 # scenes left stays, and so does the state that a run goes on from.
 later=$SCRATCH/later organ=$SCRATCH/organ
-expect 0 demo_organ "$organ"
+expect 0 "$LARIAT" demo-model "$organ"
 expect 0 "$LARIAT" run "$scene" --steps 1 --out "$later"
 expect 0 "$LARIAT" run "$organ/uterus.yaml" --time 0.2 --out "$later"
 frames() {

@@ -25,7 +25,7 @@ agree() {
         sed 's/^/    /' tried >&2
     }
 }
-expect 0 demo_organ organ
+expect 0 "$LARIAT" demo-model organ
 agree viewer "$LARIAT" view organ/uterus_live.yaml --port 0 --seconds 0.1
 agree ucx "$LARIAT" run "$SOURCE/examples/beam.yaml" --steps 1 --grid 2x1x1 --comm ucx
 agree metis "$LARIAT" partition organ/uterus.yaml --grid 2x1x1 --method metis

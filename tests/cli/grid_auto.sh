@@ -3,7 +3,7 @@
 . "$(dirname "$0")/lib.sh"
 cd "$SCRATCH" || exit 1
 unset LARIAT_GRID
-demo_organ demo || exit 1
+"$LARIAT" demo-model demo >/dev/null || exit 1
 scene=demo/uterus.yaml
 cores=$(nproc)
 

@@ -37,16 +37,6 @@ expect() {
     fi
 }
 
-# demo_organ FOLDER: the demonstration organ there, as `lariat demo-model` writes it, which takes some
-# seconds; ctest makes it once for all (cli/demo_organ).
-demo_organ() {
-    if [ -d "${LARIAT_TEST_DEMO:-}" ]; then
-        mkdir -p "$1" && cp "$LARIAT_TEST_DEMO"/* "$1"
-    else
-        "$LARIAT" demo-model "$1" >/dev/null
-    fi
-}
-
 # The last command's standard output or error contains (a basic regular expression).
 says() {
     grep -q -e "$1" "$SCRATCH/out" || fail "standard output lacks '$1'"

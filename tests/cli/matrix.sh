@@ -10,7 +10,7 @@
 every=${5:-1}
 steps=1000
 cd "$SCRATCH" || exit 1
-expect 0 demo_organ demo
+expect 0 "$LARIAT" demo-model demo
 scene=demo/uterus.yaml
 expect 0 "$LARIAT" run $scene --steps $steps --json
 hash=$(value_of state_hash)

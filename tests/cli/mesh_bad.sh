@@ -162,7 +162,7 @@ refused 'smaller or thinner than that' leaf_thinnest.obj --scale 0.05 --size 0.0
 refused 'crossing.obj' crossing.obj --scale 0.05
 refused 'no labels' closed.obj --label 1
 refused 'flat cut' closed.obj --fix cut --elements 100 --scale 0.05
-expect 0 demo_organ demo
+expect 0 "$LARIAT" demo-model demo
 cp demo/uterus.vtu uterus.vtp
 refused 'uterus.vtp' uterus.vtp
 printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 3 2\n' >leaf.obj

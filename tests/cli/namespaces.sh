@@ -12,7 +12,7 @@ trap clean_up EXIT
 trap 'exit 1' HUP INT TERM
 make_hosts
 cd "$SCRATCH" || exit 1
-expect 0 demo_organ demo
+expect 0 "$LARIAT" demo-model demo
 expect 0 "$LARIAT" run demo/uterus.yaml --steps 1000 --json
 hash=$(value_of state_hash)
 for backend in tcp ucx; do

@@ -2,7 +2,7 @@
 # A divided run is the same run: hash, frames, failures, interruption. Processors are threads here.
 . "$(dirname "$0")/lib.sh"
 cd "$SCRATCH" || exit 1
-expect 0 demo_organ demo
+expect 0 "$LARIAT" demo-model demo
 scene=demo/uterus.yaml
 expect 0 "$LARIAT" run $scene --steps 60 --json --out alone
 [ "$(value_of grid)$(value_of comm)$(value_of processors)" = '"1x1x1""none"1' ] || fail "not alone"

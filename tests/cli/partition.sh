@@ -2,7 +2,7 @@
 # lariat partition: figures, files that are read back, and what it refuses.
 . "$(dirname "$0")/lib.sh"
 cd "$SCRATCH" || exit 1
-expect 0 demo_organ demo
+expect 0 "$LARIAT" demo-model demo
 
 expect 0 "$LARIAT" partition demo/uterus.yaml --grid 2x2x3 --method cut --json \
     --out cut.dist --vtu cut.vtu

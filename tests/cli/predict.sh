@@ -2,7 +2,7 @@
 # lariat predict: a scene on machines that are not here, files, growing bodies, and what it refuses.
 . "$(dirname "$0")/lib.sh"
 cd "$SCRATCH" || exit 1
-expect 0 demo_organ demo
+expect 0 "$LARIAT" demo-model demo
 
 expect 0 "$LARIAT" predict demo/uterus.yaml --grid 2x2x3 --threads 2 --json
 has_keys scheme channels machine.name machine.element.source --numbers processors threads elements \

@@ -3,7 +3,7 @@
 # the answer is that of many steps within half a percent. Cases that eight steps get wrong.
 . "$(dirname "$0")/lib.sh"
 cd "$SCRATCH" || exit 1
-expect 0 demo_organ demo
+expect 0 "$LARIAT" demo-model demo
 
 # settles KEY ARGUMENTS...: the default beside --steps 200.
 settles() {

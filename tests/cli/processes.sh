@@ -111,7 +111,7 @@ lose STOP tcp 0
 
 # One that ends on its way to processor zero: nobody waits for it until the limit of the start. All
 # search for a distribution meanwhile, so that there is time to lose one.
-demo_organ organ || fail "no demonstration organ"
+"$LARIAT" demo-model organ >/dev/null || fail "no demonstration organ"
 for signal in KILL STOP; do
     "$LARIAT" run organ/uterus.yaml --steps 3 --grid 2x1x1 --comm shm --distribution genetic --json \
         >out 2>err &

@@ -2,7 +2,7 @@
 # How many elements keep the clock: lariat info says it, lariat mesh --real-time makes that mesh.
 . "$(dirname "$0")/lib.sh"
 cd "$SCRATCH" || exit 1
-demo_organ demo || exit 1
+"$LARIAT" demo-model demo >/dev/null || exit 1
 expect 0 "$LARIAT" info demo/uterus.yaml --json
 "$JSON" --print speed <out | grep -q 'real_time_elements' || fail "info does not say how many hold"
 expect 0 "$LARIAT" info demo/uterus.yaml

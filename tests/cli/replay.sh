@@ -2,7 +2,7 @@
 # lariat replay: a session again on other grids and by processes, as frames; and what is refused.
 . "$(dirname "$0")/lib.sh"
 cd "$SCRATCH" || exit 1
-demo_organ demo || exit 1
+"$LARIAT" demo-model demo >/dev/null || exit 1
 scene=demo/uterus_live.yaml
 
 expect 2 "$LARIAT" replay

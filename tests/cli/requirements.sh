@@ -2,7 +2,7 @@
 # lariat requirements: the thesis's tables, a model's, what it refuses.
 . "$(dirname "$0")/lib.sh"
 cd "$SCRATCH" || exit 1
-expect 0 demo_organ demo
+expect 0 "$LARIAT" demo-model demo
 
 # The thesis's quantities: its numbers stand beside what its formulas give.
 expect 0 "$LARIAT" requirements --thesis

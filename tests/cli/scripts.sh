@@ -9,7 +9,7 @@ if [ ! -f "$cases/grasper_deep.csv" ]; then
     finish "skipped: ../shared/cases is not there"
     exit 0
 fi
-demo_organ demo || exit 1
+"$LARIAT" demo-model demo >/dev/null || exit 1
 scene=demo/uterus_live.yaml
 
 # plays NAME OPTION...: the row says how it went. Nothing moves after 23 s.

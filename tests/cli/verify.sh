@@ -2,7 +2,7 @@
 # lariat verify: what it proves, and files that are damaged or foreign.
 . "$(dirname "$0")/lib.sh"
 cd "$SCRATCH" || exit 1
-expect 0 demo_organ demo
+expect 0 "$LARIAT" demo-model demo
 scene=demo/uterus.yaml
 
 expect 0 "$LARIAT" run $scene --steps 30 --json

@@ -2,7 +2,7 @@
 # lariat view: an address, a report, free ports, signals; and what makes no sense.
 . "$(dirname "$0")/lib.sh"
 cd "$SCRATCH" || exit 1
-demo_organ demo || exit 1
+"$LARIAT" demo-model demo >/dev/null || exit 1
 scene=demo/uterus_live.yaml
 
 expect 2 "$LARIAT" view

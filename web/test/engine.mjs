@@ -1,6 +1,6 @@
 // `lariat view` as its own process, on a free port of this machine, with a scene of the demonstration.
 import { spawn, spawnSync } from 'node:child_process';
-import { cpSync, mkdtempSync, readFileSync, writeFileSync } from 'node:fs';
+import { mkdtempSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { OUT } from './browser.mjs';
 
@@ -13,14 +13,11 @@ export function endAll() {
     engines.forEach((child) => child.kill('SIGKILL'));
 }
 
-/* A folder of its own with the demonstration organ, which ctest makes once for all tests. */
+/* A folder of its own with the demonstration organ. */
 export function demo() {
     const folder = mkdtempSync(join(OUT, 'demo-'));
-    if (process.env.LARIAT_TEST_DEMO) cpSync(process.env.LARIAT_TEST_DEMO, folder, { recursive: true });
-    else {
-        const made = spawnSync(LARIAT, ['demo-model', folder], { encoding: 'utf8' });
-        if (made.status !== 0) throw new Error(made.stderr);
-    }
+    const made = spawnSync(LARIAT, ['demo-model', folder], { encoding: 'utf8' });
+    if (made.status !== 0) throw new Error(made.stderr);
     return { folder, scene: join(folder, 'uterus_live.yaml'), saved: join(folder, 'saved') };
 }
 
