@@ -205,7 +205,8 @@ static bool same_pose(const lar_tool_pose *a, const lar_tool_pose *b) {
 /* Whether jaws that tissue pushes apart are to open farther in the interval than tools that are
  * held back go. */
 static bool springs_open(const lar_tool *tool, const lar_tool_limits *limits, const mean_load *mean,
-                         const follow_law *law, const lar_tool_pose *now, const lar_tool_pose *hand) {
+                         const follow_law *law, const lar_tool_pose *now,
+                         const lar_tool_pose *hand) {
     return tool->shape == LAR_TOOL_GRASPER && mean->squeeze > 0 &&
            limits->travel * (hand->opening - now->opening) > law->farthest;
 }
@@ -248,25 +249,38 @@ static bool follow(const lar_tool *tool, const lar_tool_limits *limits, lar_tool
     return true;
 }
 
+/* What becomes of how hard tools are, by one of them: the greatest wish of all is granted. */
+typedef enum hardness_wish { FADES, YIELDS, STAYS, HARDENS } hardness_wish;
+
 /* Tissue that is deep in a tool, although the tool presses no harder than it may, makes tools
- * harder, but not at once: what is already in the tool is driven out by that. */
+ * harder. One that presses too hard gives way instead, and presses softer until it does not; but
+ * not where its middle line is soon no longer outside. */
+static hardness_wish wish_of(double depth, double load) {
+    static const double SOFT = 0.3, HARD = 0.15, DANGER = 0.65; /* radii */
+    static const double HEAVY = 1.5;                            /* limits */
+    if (depth > DANGER) return HARDENS;
+    if (load > HEAVY) return YIELDS;
+    if (depth > SOFT) return load > 1 ? STAYS : HARDENS;
+    return depth < HARD ? FADES : STAYS;
+}
+
+/* Not at once: what is already in the tool is driven out by that. */
 static double harden(const lar_tool_list *list, const lar_tools *tools, double hardness,
                      double fading, double seconds, double unit) {
-    static const double SOFT = 0.3, HARD = 0.15; /* radii */
-    static const double RISE = 1e-3;             /* [s] */
-    double deepest = 0;
+    static const double RISE = 1e-3; /* [s] */
+    double change = 1 + seconds / RISE;
+    hardness_wish wish = FADES;
     for (int32_t i = 0; i < tools->count; i++) {
         const lar_tool_felt *felt = &tools->follower[i].felt;
         double load, depth = felt->depth / list->tool[i].radius;
         if (!(depth > 0)) continue;
         mean_load mean = mean_of(felt, &list->limits[i], (jaws_state){0}, 0, unit, &load);
-        /* One that presses too hard gives way before it is made harder. */
-        if (lar_length(mean.force) > list->limits[i].force && felt->depth < list->limits[i].depth)
-            depth = fmin(depth, SOFT);
-        deepest = fmax(deepest, depth);
+        hardness_wish own = wish_of(depth, lar_length(mean.force) / list->limits[i].force);
+        if (own > wish) wish = own;
     }
-    if (deepest > SOFT) return fmin((1 + seconds / RISE) * hardness, LAR_HARDNESS_MAX);
-    return deepest < HARD ? fmax(1, fading * hardness) : hardness;
+    if (wish == HARDENS) return fmin(change * hardness, LAR_HARDNESS_MAX);
+    if (wish == YIELDS) return fmax(1, hardness / change);
+    return wish == FADES ? fmax(1, fading * hardness) : hardness;
 }
 
 bool lar_tools_divide(const lar_tool_list *list, lar_tools *tools, uint64_t step, double seconds,

@@ -151,6 +151,40 @@ static void hardness_grows_with_time(void **unused) {
     lar_model_destroy(model);
 }
 
+/* Hardness after so many decisions in which a tool is so deep, in radii, and presses with so many
+ * times its limit. */
+static double hardness_of(const lar_simulation *simulation, double from, double depth, double load,
+                          int decisions) {
+    static const double SECONDS = 1e-4, UNIT = 1e-12;
+    const lar_step_room room = {.max = 0.9};
+    const lar_tool_list *list = simulation->domain.surroundings.list;
+    lar_tools tools = simulation->tools;
+    int64_t force = (int64_t)(load * list->limits[0].force * LAR_STEP_SHARES / UNIT);
+    tools.division.hardness = from;
+    for (int n = 1; n <= decisions; n++) {
+        tools.follower[0].felt =
+            (lar_tool_felt){.depth = depth * ball.radius, .steps = 1, .force = {0, 0, force}};
+        lar_tools_divide(list, &tools, (uint64_t)n, SECONDS, &room, UNIT);
+    }
+    return tools.division.hardness;
+}
+
+/* A tool that presses too hard already becomes no harder, and softer if it presses far too hard:
+ * what was met at 1 m/s was pressed by a hard ball with forty times its limit. Close to its middle
+ * line it holds whatever it takes. */
+static void a_tool_that_presses_too_hard_yields(void **unused) {
+    (void)unused;
+    lar_model *model = pressed_model();
+    lar_simulation *simulation = start(model);
+    assert_below(20, hardness_of(simulation, 10, 0.5, 0.5, 10));
+    assert_true(hardness_of(simulation, 10, 0.5, 1.2, 10) == 10);
+    assert_below(hardness_of(simulation, 10, 0.5, 2, 10), 4);
+    assert_true(hardness_of(simulation, 10, 0.5, 2, 100) == 1);
+    assert_below(20, hardness_of(simulation, 10, 0.7, 2, 10));
+    lar_simulation_destroy(simulation);
+    lar_model_destroy(model);
+}
+
 /* A hard tool goes as its hand leads where the tissue pushes that way, and not where it resists: a
  * ball of 3 mm in a coarse liver came out of its own fold at 4 mm/s, while the hand was gone. */
 static void nothing_holds_what_leaves_the_tissue(void **unused) {
@@ -192,6 +226,7 @@ int main(void) {
         cmocka_unit_test(a_pushed_tool_stays_outside_and_comes_back),
         cmocka_unit_test(what_is_said_does_not_depend_on_the_grid),
         cmocka_unit_test(hardness_grows_with_time),
+        cmocka_unit_test(a_tool_that_presses_too_hard_yields),
         cmocka_unit_test(nothing_holds_what_leaves_the_tissue),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
