@@ -9,6 +9,7 @@
 #include "base/clock.h"
 #include "base/memory.h"
 #include "base/pin.h"
+#include "base/thread.h"
 
 /* Polls before a waiting thread yields. */
 enum { POLLS = 50 };
@@ -31,6 +32,7 @@ struct lar_thread_pool {
     int32_t first_core;
     double awake;             /* [s] */
     lar_pin *caller;          /* where the caller's thread was before */
+    uint64_t caller_slice;    /* as long as its turns were; see base/thread.h */
     lar_thread_pool_job *job; /* NULL: end */
     void *context;
     uint64_t orders;  /* atomic: jobs given out */
@@ -64,6 +66,7 @@ static void *attend(void *argument) {
     worker *own = argument;
     lar_thread_pool *pool = own->pool;
     if (pool->pin) lar_pin_to(pool->first_core + own->number);
+    lar_thread_shorten_slice();
     for (uint64_t known = 0;; known++) {
         wait_for_order(pool, known);
         if (!pool->job) return NULL;
@@ -116,6 +119,7 @@ lar_status lar_thread_pool_create(int32_t count, bool pin, int32_t first_core,
         pool->caller = lar_pin_remember();
         lar_pin_to(first_core);
     }
+    pool->caller_slice = lar_thread_shorten_slice();
     *out = pool;
     return LAR_OK;
 }
@@ -125,6 +129,7 @@ void lar_thread_pool_destroy(lar_thread_pool *pool) {
     give_order(pool, NULL, NULL);
     for (int32_t i = 1; i <= pool->started; i++) pthread_join(pool->worker[i].thread, NULL);
     lar_pin_restore(pool->caller);
+    lar_thread_restore_slice(pool->caller_slice);
     pthread_cond_destroy(&pool->wake);
     pthread_mutex_destroy(&pool->lock);
     free(pool->worker);

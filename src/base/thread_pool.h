@@ -23,7 +23,8 @@ typedef void lar_thread_pool_job(void *context, int32_t worker);
 
 /* Starts count - 1 threads. With `pin` every worker gets a core of its own, from number
  * `first_core` of those that this process may use, where there are enough (base/pin.h); the
- * caller's thread is bound while the pool lives. */
+ * caller's thread is bound while the pool lives. All take short turns beside other programs
+ * (base/thread.h), the caller as long as the pool lives. */
 lar_status lar_thread_pool_create(int32_t count, bool pin, int32_t first_core,
                                   lar_thread_pool **pool, lar_error *error);
 void lar_thread_pool_destroy(lar_thread_pool *pool); /* accepts NULL */

@@ -1,0 +1,50 @@
+/* Workers of a pool all do their part of a job, in short turns; the caller's are as long afterwards
+ * as they were before. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "base/thread.h"
+#include "base/thread_pool.h"
+
+enum { WORKERS = 3, JOBS = 200 };
+
+typedef struct seen {
+    int32_t times;
+    uint64_t longer; /* than what a pool asks for [ns]; 0: no longer, or nobody can say */
+} seen;
+
+static void look(void *context, int32_t worker) {
+    seen *own = (seen *)context + worker;
+    own->times++;
+    own->longer = lar_thread_shorten_slice();
+}
+
+static void workers_take_short_turns_and_the_caller_only_meanwhile(void **state) {
+    (void)state;
+    lar_thread_pool *pool;
+    lar_error error;
+    seen seen[WORKERS] = {0};
+    uint64_t before = lar_thread_shorten_slice();
+    lar_thread_restore_slice(before);
+    if (!before) print_message("this system gives no thread slices of its own, or short ones\n");
+    if (lar_thread_pool_create(WORKERS, false, 0, &pool, &error)) fail_msg("%s", error.message);
+    for (int i = 0; i < JOBS; i++) lar_thread_pool_run(pool, look, seen);
+    for (int i = 0; i < WORKERS; i++) {
+        assert_int_equal(seen[i].times, JOBS);
+        assert_true(seen[i].longer == 0);
+    }
+    lar_thread_pool_destroy(pool);
+    uint64_t after = lar_thread_shorten_slice();
+    lar_thread_restore_slice(after);
+    assert_true(after == before);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(workers_take_short_turns_and_the_caller_only_meanwhile)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
