@@ -257,7 +257,7 @@ typedef enum hardness_wish { FADES, YIELDS, STAYS, HARDENS } hardness_wish;
  * not where its middle line is soon no longer outside. */
 static hardness_wish wish_of(double depth, double load) {
     static const double SOFT = 0.3, HARD = 0.15, DANGER = 0.65; /* radii */
-    static const double HEAVY = 1.5;                            /* limits */
+    static const double HEAVY = 3;                              /* limits */
     if (depth > DANGER) return HARDENS;
     if (load > HEAVY) return YIELDS;
     if (depth > SOFT) return load > 1 ? STAYS : HARDENS;

@@ -178,9 +178,10 @@ static void a_tool_that_presses_too_hard_yields(void **unused) {
     lar_simulation *simulation = start(model);
     assert_below(20, hardness_of(simulation, 10, 0.5, 0.5, 10));
     assert_true(hardness_of(simulation, 10, 0.5, 1.2, 10) == 10);
-    assert_below(hardness_of(simulation, 10, 0.5, 2, 10), 4);
-    assert_true(hardness_of(simulation, 10, 0.5, 2, 100) == 1);
-    assert_below(20, hardness_of(simulation, 10, 0.7, 2, 10));
+    assert_true(hardness_of(simulation, 10, 0.5, 2.5, 10) == 10);
+    assert_below(hardness_of(simulation, 10, 0.5, 4, 10), 4);
+    assert_true(hardness_of(simulation, 10, 0.5, 4, 100) == 1);
+    assert_below(20, hardness_of(simulation, 10, 0.7, 4, 10));
     lar_simulation_destroy(simulation);
     lar_model_destroy(model);
 }
