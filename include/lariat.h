@@ -749,7 +749,8 @@ LAR_API lar_status lar_simulation_load(lar_simulation *simulation, const char *p
  * settings, and what the tools felt in the last advance (lar_tool_force), to the last bit. Memory
  * is asked for when it is created and not again, but to reach other processes. It serves all
  * simulations of the model, on any grid, that have as many tools, hands and spares, the same kind
- * of element and time step; others are refused (LAR_ERROR_ARGUMENT). One thread at a time. */
+ * of element and time step; others are refused (LAR_ERROR_ARGUMENT). One thread at a time, but any
+ * number may take up what is there at once. */
 typedef struct lar_saved lar_saved;
 
 /* Empty; the caller destroys it, after or before the simulation, but before the model. */

@@ -186,26 +186,22 @@ static PyObject *simulation_reduce(PyObject *me, PyObject *nothing) {
 
 /* ---- advance -------------------------------------------------------------------------------- */
 
-/* Looks whether Ctrl-C was pressed. */
-typedef struct watch {
-    PyThreadState *thread;
-    struct timespec last;
-    unsigned calls;
-    bool stopped; /* an exception is set */
-} watch;
-
 static double since(const struct timespec *then, struct timespec *now) {
     clock_gettime(CLOCK_MONOTONIC, now);
     return (double)(now->tv_sec - then->tv_sec) + 1e-9 * (double)(now->tv_nsec - then->tv_nsec);
 }
 
-static int look_for_signals(void *context, uint64_t step) {
-    watch *w = context;
+/* Python delivers signals on the main thread only. */
+bool python_watch_begin(python_watch *watch) {
+    *watch = (python_watch){.watching = syscall(SYS_gettid) == getpid()};
+    if (watch->watching) clock_gettime(CLOCK_MONOTONIC, &watch->last);
+    return watch->watching;
+}
+
+bool python_watch_look(python_watch *w) {
     struct timespec now;
-    (void)step;
-    if (w->stopped) return 0;
-    /* Steps of large models are long, those of small ones shorter than asking the time. */
-    if (++w->calls % 8 != 0 || since(&w->last, &now) < 0.1) return 1;
+    if (w->stopped) return false;
+    if (!w->watching || since(&w->last, &now) < 0.1) return true;
     w->last = now;
     PyEval_RestoreThread(w->thread);
     w->stopped = PyErr_CheckSignals() != 0;
@@ -213,15 +209,21 @@ static int look_for_signals(void *context, uint64_t step) {
     return !w->stopped;
 }
 
-/* One call of the library. Python delivers signals on the main thread only. */
+static int look_for_signals(void *context, uint64_t step) {
+    python_watch *w = context;
+    (void)step;
+    /* Steps of large models are long, those of small ones shorter than asking the time. */
+    return ++w->calls % 8 != 0 || python_watch_look(w);
+}
+
+/* One call of the library. */
 static bool advance_once(python_simulation *self, unsigned long long steps) {
     lar_simulation *simulation = python_simulation_take(self, "advance");
     if (!simulation) return false;
     lar_error error;
     lar_status status;
-    watch w = {.stopped = false};
-    bool watched = steps > 8 && syscall(SYS_gettid) == getpid();
-    if (watched) clock_gettime(CLOCK_MONOTONIC, &w.last);
+    python_watch w = {.stopped = false};
+    bool watched = steps > 8 && python_watch_begin(&w);
     w.thread = PyEval_SaveThread();
     status = watched ? lar_simulation_advance_with(simulation, steps, look_for_signals, &w, &error)
                      : lar_simulation_advance(simulation, steps, &error);

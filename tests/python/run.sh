@@ -59,7 +59,7 @@ asan)
         -fPIC -D_GNU_SOURCE -DPy_LIMITED_API=0x030b0000 -I"$include" -I"$source/include" \
         "$source"/python/*.c -o "$scratch/python/lariat/_lariat.abi3.so" -L"$build" -llariat \
         -Wl,-rpath,"$build"
-    for test in model simulation session misuse; do
+    for test in model simulation batch session misuse; do
         env LD_PRELOAD="$runtime $undefined" ASAN_OPTIONS=detect_leaks=0 PYTHONMALLOC=malloc \
             LARIAT_TEST_SANITIZED=1 PYTHONPATH="$scratch/python:$here" \
             "$python" "$here/test_$test.py" || exit 1
