@@ -231,6 +231,7 @@ class Env(Base):
     metadata = {"render_modes": []}
     render_mode = None
     task_class = None
+    _core = None
 
     def __init__(self, model=None):
         self.task = self.task_class()
@@ -243,9 +244,15 @@ class Env(Base):
         numbers. options: dict, `stiffness` (how many times as stiff all materials are, 0.1 to 4)
         and `goal` (three numbers, m)."""
         self._open()
-        self._core.reset(self._all, None if seed is None else [check_seed(seed)], options)
-        self._core.observe()
-        return self._core.observations[0].copy(), {"success": False}
+        core = self._core
+        if self._np_random is not None:
+            core.random[0] = self._np_random
+        core.reset(self._all, None if seed is None else [check_seed(seed)], options)
+        self._np_random = core.random[0]
+        if seed is not None:
+            self._np_random_seed = int(seed)
+        core.observe()
+        return core.observations[0].copy(), {"success": False}
 
     def step(self, action):
         """One control step; returns observation, reward, terminated, truncated, info."""
@@ -305,6 +312,7 @@ class VectorEnv(VectorBase):
     metadata = {"render_modes": [], "autoreset_mode": NEXT_STEP}
     render_mode = None
     spec = None
+    _core = None
 
     def __init__(self, env, num_envs, *, workers=0, model=None):
         if not (isinstance(env, type) and issubclass(env, Env) and env.task_class):
@@ -337,12 +345,13 @@ class VectorEnv(VectorBase):
         self._open()
         self._core.reset(self._all, self._seeds(seed), options)
         self._core.observe()
-        return self._core.observations.copy(), {"success": np.zeros(self.num_envs, bool)}
+        return self._core.observations.copy(), {"success": np.zeros(self.num_envs, bool),
+                                                "_success": np.ones(self.num_envs, bool)}
 
     def step(self, actions):
         """One control step of all runs; returns observations, rewards, terminations, truncations,
-        infos, arrays [n, ...]. infos["success"]: [n]; infos["unstable"], where there are any: dict
-        of run: why."""
+        infos, arrays [n, ...]. infos["success"]: [n]; infos["unstable"], where there are any: why,
+        [n], None for those that are sound (infos["_unstable"] says which)."""
         self._open()
         core, n = self._core, self.num_envs
         actions = core.check_actions(actions, self.action_space.shape)
@@ -357,9 +366,11 @@ class VectorEnv(VectorBase):
              unstable) = core.step(actions[going], going)
         else:
             core.observe()
-        infos = {"success": success}
+        infos = {"success": success, "_success": np.ones(n, bool)}
         if unstable:
-            infos["unstable"] = unstable
+            infos["unstable"], infos["_unstable"] = np.full(n, None, object), np.zeros(n, bool)
+            for i, why in unstable.items():
+                infos["unstable"][i], infos["_unstable"][i] = why, True
         return core.observations.copy(), rewards, terminated, truncated, infos
 
     @property

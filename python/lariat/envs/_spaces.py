@@ -5,15 +5,22 @@ import numpy as np
 
 try:
     import gymnasium
-    from gymnasium.spaces import Box
-    from gymnasium.vector import AutoresetMode
-    from gymnasium.vector import VectorEnv as VectorBase
-
-    Base = gymnasium.Env
-    NEXT_STEP = AutoresetMode.NEXT_STEP
 except ImportError:
     gymnasium = None
-    NEXT_STEP = "NextStep"
+
+NEXT_STEP = "NextStep"
+if gymnasium is not None:
+    from gymnasium import Env as Base
+    from gymnasium.spaces import Box
+    from gymnasium.vector import VectorEnv as VectorBase
+
+    try:
+        from gymnasium.vector import AutoresetMode
+
+        NEXT_STEP = AutoresetMode.NEXT_STEP
+    except ImportError:  # before 1.1
+        pass
+else:
 
     class Box:
         """Numbers between `low` and `high`, of Gymnasium's interface: sample, seed, contains."""
@@ -60,11 +67,20 @@ except ImportError:
         metadata = {"render_modes": []}
         render_mode = None
         spec = None
+        _np_random = None
+        _np_random_seed = None
 
         @property
         def unwrapped(self):
             """The environment itself."""
             return self
+
+        @property
+        def np_random(self):
+            """The numpy Generator that goals come from."""
+            if self._np_random is None:
+                self._np_random = np.random.default_rng()
+            return self._np_random
 
         def render(self):
             """Nothing: there is no picture."""
