@@ -11,7 +11,6 @@
 #include <math.h>
 
 #include "module.h"
-#include "pool.h"
 
 PyTypeObject *python_batch_type;
 

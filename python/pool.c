@@ -1,4 +1,4 @@
-#include "pool.h"
+#include "module.h"
 
 #include <errno.h>
 #include <pthread.h>

@@ -278,6 +278,12 @@ class Env(Base):
         self._open()
         return self._core.batch[0]
 
+    @property
+    def steps(self):
+        """Control steps of the run, an int."""
+        self._open()
+        return int(self._core.steps[0])
+
     def hash(self):
         """Simulation.hash() of the run."""
         return self.simulation.hash()

@@ -32,7 +32,10 @@ class Policy:
 
     def __init__(self, task, count=None):
         self.task, self.count = task, count
-        self.stages = STAGES[type(task)](task)
+        known = [kind for kind in type(task).__mro__ if kind in STAGES]
+        if not known:
+            raise ValueError(f"there is no scripted policy for {type(task).__name__}")
+        self.stages = STAGES[known[0]](task)
         self.reset()
 
     def reset(self, which=None):
@@ -161,6 +164,4 @@ STAGES = {_tasks.PalpateTask: palpate, _tasks.LiftTask: lift, _tasks.RetractTask
 
 def policy(env):
     """The Policy of an Env or VectorEnv of lariat.envs."""
-    if type(env.task) not in STAGES:
-        raise ValueError(f"there is no scripted policy for {type(env.task).__name__}")
     return Policy(env.task, getattr(env, "num_envs", None))

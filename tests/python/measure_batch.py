@@ -1,0 +1,93 @@
+"""How fast batches and environments are beside bare steps: prints medians of pairs measured in turn.
+
+    PYTHONPATH=build/python python3 tests/python/measure_batch.py [PAIRS]
+"""
+
+import statistics
+import sys
+import tempfile
+import time
+
+import numpy
+
+import lariat
+from lariat import envs
+
+PAIRS = int(sys.argv[1]) if len(sys.argv) > 1 else 40
+folder = tempfile.TemporaryDirectory(prefix="lariat-")
+lariat.write_demo(folder.name)
+ORGAN = lariat.Model(folder.name + "/uterus_live.yaml")
+
+
+class Organ(envs.Env):
+    """The demonstration organ, 1,840 elements, pressed by a ball."""
+
+    class task_class(envs.Task):
+        jaws, settle, horizon = False, 0.05, 10**9
+        low, high = (-0.2,) * 3, (0.2,) * 3
+        watched = tuple(range(0, 2567, 100))
+
+        def model(self):
+            return ORGAN
+
+        def goal(self, random):
+            return random.uniform(-1, 1, 3)
+
+        def judge(self, seen):
+            return -seen.tip[:, 0], seen.tip[:, 0] > 1
+
+
+def timed(call, times=1):
+    begin = time.perf_counter()
+    for _ in range(times):
+        call()
+    return (time.perf_counter() - begin) / times
+
+
+def pairs(one, other, count=PAIRS, times=1):
+    """Medians of both, and of their quotients."""
+    a, b = [], []
+    for _ in range(count):
+        a.append(timed(one, times))
+        b.append(timed(other, times))
+    return statistics.median(a), statistics.median(b), statistics.median(y / x for x, y in zip(a, b))
+
+
+def environment(kind):
+    env, still = kind(), None
+    env.reset(seed=0)
+    still = numpy.zeros(env.action_space.shape, numpy.float32)
+    steps = env._core.control_steps
+    bare = lariat.Simulation(env.simulation.model)
+    bare.load(env._core.start)
+    a, b, quotient = pairs(lambda: bare.advance(steps), lambda: env.step(still))
+    print(f"{kind.__name__:12} control step of {steps} steps: bare {1e3 * a:.3f} ms, environment "
+          f"{1e3 * b:.3f} ms: {1 / b:.0f} a second, {100 * (quotient - 1):+.1f} %")
+    print(f"{'':12} reset {1e6 * min(timed(env.reset, 50) for _ in range(10)):.0f} us")
+
+
+def workers(model, n, steps):
+    one, two = (lariat.Batch(model, n, workers=w) for w in (1, 2))
+    a, b, quotient = pairs(lambda: one.advance(steps), lambda: two.advance(steps))
+    print(f"{n} members, {steps} steps: one worker {1e3 * a:.2f} ms, two {1e3 * b:.2f} ms: "
+          f"{1 / quotient:.2f} times")
+
+
+def batch_of_one(model, steps):
+    bare, batch = lariat.Simulation(model), lariat.Batch(model, 1)
+    a, b, quotient = pairs(lambda: bare.advance(steps), lambda: batch.advance(steps), times=20)
+    print(f"{steps} steps: Simulation {1e6 * a:.1f} us, Batch of one {1e6 * b:.1f} us")
+
+
+print(ORGAN)
+for kind in (Organ, envs.Palpate, envs.Lift):
+    environment(kind)
+batch_of_one(ORGAN, 1)
+workers(ORGAN, 8, 211)
+workers(envs.Palpate().simulation.model, 32, 39)
+begin = time.perf_counter()
+batch = lariat.Batch(ORGAN, 16)
+print(f"a batch of 16 organs is made in {time.perf_counter() - begin:.3f} s")
+saved = batch[0].save()
+print(f"reset of one member {1e6 * min(timed(lambda: batch.reset([3], saved), 50) for _ in range(20)):.0f} us, "
+      f"all positions {1e6 * min(timed(batch.positions, 5) for _ in range(20)):.0f} us")
