@@ -255,6 +255,19 @@ static bool is_alone(PyObject *options) {
     return !PyDict_GetItemString(options, "grid") && !PyDict_GetItemString(options, "threads");
 }
 
+/* A simulation of a model: the clone of one that is known, or a new one. */
+static PyObject *make_simulation(PyObject *model, PyObject *options, PyObject *known) {
+    PyObject *first = PyDict_GetItem(known, model); /* borrowed */
+    if (first) return PyObject_CallMethod(first, "clone", NULL);
+    if (PyErr_Occurred()) return NULL;
+    PyObject *arguments = PyTuple_Pack(1, model);
+    PyObject *made =
+        arguments ? PyObject_Call((PyObject *)python_simulation_type, arguments, options) : NULL;
+    Py_XDECREF(arguments);
+    if (made && PyDict_SetItem(known, model, made)) Py_CLEAR(made);
+    return made;
+}
+
 /* A list of simulations from one model n times, a sequence of models, or of simulations. */
 static PyObject *list_simulations(PyObject *source, PyObject *count, PyObject *options) {
     bool one = Py_TYPE(source) == python_model_type;
@@ -283,7 +296,7 @@ static PyObject *list_simulations(PyObject *source, PyObject *count, PyObject *o
     bool ok = total > 0 || python_refuse("model: expected at least one");
     if (ok && !one && count != Py_None && (Py_ssize_t)n != total)
         ok = python_refuse("n: %zd models or simulations are given, and n is %R", total, count);
-    PyObject *list = ok ? PyList_New(0) : NULL;
+    PyObject *known = ok ? PyDict_New() : NULL, *list = known ? PyList_New(0) : NULL;
     for (Py_ssize_t i = 0; list && i < total; i++) {
         PyObject *item = one ? source : PyTuple_GetItem(each, i), *made = NULL;
         if (Py_TYPE(item) == python_simulation_type && PyDict_Size(options) == 0) {
@@ -291,10 +304,7 @@ static PyObject *list_simulations(PyObject *source, PyObject *count, PyObject *o
         } else if (Py_TYPE(item) == python_simulation_type) {
             python_refuse_type("Batch: simulations are there already, options are for models");
         } else if (Py_TYPE(item) == python_model_type) {
-            PyObject *arguments = PyTuple_Pack(1, item);
-            if (arguments)
-                made = PyObject_Call((PyObject *)python_simulation_type, arguments, options);
-            Py_XDECREF(arguments);
+            made = make_simulation(item, options, known);
         } else {
             python_refuse_type("model: expected Models or Simulations, item %zd is %R", i,
                                (PyObject *)Py_TYPE(item));
@@ -302,6 +312,7 @@ static PyObject *list_simulations(PyObject *source, PyObject *count, PyObject *o
         if (!made || PyList_Append(list, made) || PyErr_CheckSignals()) Py_CLEAR(list);
         Py_XDECREF(made);
     }
+    Py_XDECREF(known);
     Py_XDECREF(each);
     return list;
 }

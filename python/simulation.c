@@ -99,25 +99,45 @@ static bool parse_options(PyObject *args, PyObject *keywords, PyObject **model, 
     return true;
 }
 
+/* Closed, with the model and a copy of the options. */
+static python_simulation *fresh(PyObject *model, PyObject *options) {
+    python_simulation *self = PyObject_New(python_simulation, python_simulation_type);
+    if (!self) return NULL;
+    *self = (python_simulation){.ob_base = self->ob_base, .generation = python_generation};
+    python_asked_forget(self->asked);
+    Py_INCREF(model);
+    self->model = (python_model *)model;
+    self->options = options ? PyDict_Copy(options) : PyDict_New();
+    if (!self->options) Py_CLEAR(self);
+    return self;
+}
+
+static PyObject *simulation_clone(PyObject *me, PyObject *nothing) {
+    (void)nothing;
+    python_simulation *from = (python_simulation *)me;
+    lar_simulation *simulation = python_simulation_take(from, "clone");
+    if (!simulation) return NULL;
+    python_simulation *self = fresh((PyObject *)from->model, from->options);
+    lar_simulation *made = NULL;
+    lar_error error;
+    lar_status status = LAR_OK;
+    if (self) PYTHON_UNLOCKED(status = lar_simulation_clone(simulation, &made, &error));
+    python_simulation_give(from);
+    if (!self) return NULL;
+    self->simulation = made;
+    memcpy(self->asked, from->asked, sizeof self->asked);
+    if (!status) return (PyObject *)self;
+    Py_DECREF(self);
+    return python_raise(&error);
+}
+
 static PyObject *simulation_new(PyTypeObject *type, PyObject *args, PyObject *keywords) {
     (void)type;
     PyObject *model;
     lar_options options;
     if (!parse_options(args, keywords, &model, &options)) return NULL;
-    python_simulation *self = PyObject_New(python_simulation, python_simulation_type);
+    python_simulation *self = fresh(model, keywords);
     if (!self) return NULL;
-    self->simulation = NULL;
-    self->session = NULL;
-    self->busy = false;
-    self->generation = python_generation;
-    python_asked_forget(self->asked);
-    Py_INCREF(model);
-    self->model = (python_model *)model;
-    self->options = keywords ? PyDict_Copy(keywords) : PyDict_New();
-    if (!self->options) {
-        Py_DECREF(self);
-        return NULL;
-    }
     if (keywords && PyDict_GetItemString(self->options, "model"))
         PyDict_DelItemString(self->options, "model");
     lar_simulation *made = NULL;
@@ -409,6 +429,9 @@ static PyMethodDef simulation_methods[] = {
      "What\n"
      "          tools feel is then the mean over the last `every` steps.\n\n"
      "UnstableError names element, place, time and cause; reset() or load() take it up again."},
+    {"clone", simulation_clone, METH_NOARGS,
+     "clone($self)\n--\n\nAnother Simulation in this one's state, some ten times as fast as a new "
+     "one: what never changes\nis there once. Not for grid and threads."},
     {"close", simulation_close, METH_NOARGS,
      "close($self)\n--\n\nFrees it. Nothing else may be asked of it then; closing twice is fine."},
     {"__enter__", simulation_enter, METH_NOARGS, NULL},

@@ -105,6 +105,39 @@ class Bits(unittest.TestCase):
         self.assertEqual(other.hashes(), batch.hashes())
 
 
+class Clones(unittest.TestCase):
+    def test_they_go_on_with_the_same_bits_and_do_not_know_each_other(self):
+        sim = lariat.Simulation(block(), hands=1)
+        sim.tool_move(0, (0.03, 0.025, 0.035), 100)
+        sim.grasp(1, (0.0, 0.0, 0.03))
+        sim.advance(150)
+        sim.set_stiffness(1.5)
+        other = sim.clone()
+        self.assertEqual((other.hash(), other.wrench(0), other.options),
+                         (sim.hash(), sim.wrench(0), {"hands": 1}))
+        self.assertEqual(other.stiffness(0), 1.5)
+        third = other.clone()
+        for one in (sim, other):
+            one.advance(100)
+        self.assertEqual(other.hash(), sim.hash())
+        other.set_stiffness(0.5)
+        other.advance(100)
+        sim.advance(100)
+        self.assertNotEqual(other.hash(), sim.hash())
+        end = sim.hash()
+        sim.close()
+        del sim, other
+        third.advance(200)
+        self.assertEqual(third.hash(), end)
+
+    def test_what_cannot_be(self):
+        with self.assertRaisesRegex(lariat.UnsupportedError, "processors"):
+            lariat.Simulation(block(), grid="2x1x1").clone()
+        sim = lariat.Simulation(block())
+        sim.close()
+        self.assertRaises(lariat.StateError, sim.clone)
+
+
 class States(unittest.TestCase):
     def test_reset_of_single_members(self):
         batch = lariat.Batch(block(), 4, workers=2)
