@@ -28,10 +28,28 @@ python_batch *python_batch_look(PyObject *me, const char *call) {
     return NULL;
 }
 
+/* [True, False] is meant as a mask, and would be taken as members 1 and 0. */
+static bool refuse_mask(PyObject *source) {
+    if (PyObject_CheckBuffer(source) || !PySequence_Check(source) || PyUnicode_Check(source))
+        return true;
+    Py_ssize_t count = PySequence_Size(source);
+    for (Py_ssize_t i = 0; i < count; i++) {
+        PyObject *item = PySequence_GetItem(source, i);
+        bool is_mask = item && PyBool_Check(item);
+        Py_XDECREF(item);
+        if (!item) return false;
+        if (is_mask)
+            return python_refuse_type("members: expected numbers of members, got True or False; "
+                                      "numpy.flatnonzero makes them of a mask");
+    }
+    return count >= 0;
+}
+
 bool python_members_parse(python_batch *self, PyObject *source, python_members *members) {
     *members = (python_members){.count = self->count};
     if (!source || source == Py_None) return true;
-    if (!python_integers(source, "members", 0, &members->rows)) return false;
+    if (!refuse_mask(source) || !python_integers(source, "members", 0, &members->rows))
+        return false;
     members->count = (int)members->rows.rows;
     const int32_t *index = members->rows.data;
     char *seen = PyMem_Calloc((size_t)self->count + 1, 1);

@@ -279,7 +279,8 @@ class Misuse(unittest.TestCase):
         batch = lariat.Batch(block(), 2)
         for arguments, options in (((), {}), ((1,), {"seconds": 1}), ((1.5,), {}), (("1",), {}),
                                    ((1, 2), {}), ((1,), {"members": 5}), ((1,), {"members": ["a"]}),
-                                   ((1,), {"members": "01"}), ((1,), {"other": 5})):
+                                   ((1,), {"members": "01"}), ((1,), {"other": 5}),
+                                   ((1,), {"members": [True, False]})):
             with self.assertRaises(TypeError, msg=(arguments, options)):
                 batch.advance(*arguments, **options)
         for arguments, options in (((-1,), {}), ((2**64,), {}), ((), {"seconds": -1.0}),

@@ -1,6 +1,7 @@
 """Environments: a policy by hand solves each; the same bits with any number of workers and after
 pickling; Gymnasium's own checks where it is installed; misuse."""
 
+import copy
 import os
 import pickle
 import sys
@@ -114,7 +115,11 @@ class Bits(unittest.TestCase):
     def test_pickled_single_runs_draw_the_same_goals(self):
         env = envs.Palpate()
         env.reset(seed=3)
-        other = pickle.loads(pickle.dumps(env))
+        twin, other = copy.deepcopy(env), pickle.loads(pickle.dumps(env))
+        for one in (env, twin, other):
+            one.step([0.5, 0, -1])
+        self.assertEqual(env.hash(), twin.hash())
+        self.assertEqual(env.hash(), other.hash())
         for _ in range(3):
             self.assertEqual(env.reset()[0].tobytes(), other.reset()[0].tobytes())
 
@@ -180,6 +185,8 @@ class Runs(unittest.TestCase):
         self.assertEqual(env.simulation.stiffness(0), 2)
         env.reset()
         self.assertEqual(env.simulation.stiffness(0), 1)
+        self.assertRaises(ValueError, envs.Palpate, model=envs.Lift().simulation.model)
+        self.assertRaises(TypeError, envs.Palpate, model="pad.yaml")
         again = envs.Palpate(model=env.simulation.model)
         self.assertEqual(again.reset(seed=4)[0].tobytes(), env.reset(seed=4)[0].tobytes())
 

@@ -55,10 +55,6 @@ class Seen:
         self.goal = observations[:, 11:14]
         self.points = observations[:, 14:].reshape(len(observations), -1, 3)
 
-    def rows(self, which):
-        """The same of some runs."""
-        return Seen(self.observations[which])
-
 
 class Core:
     """`n` runs of a task."""
@@ -88,6 +84,9 @@ class Core:
         self.home_opening = pose["opening"]
         self.control_steps = max(1, round(task.control / first.time_step))
         n, watched = len(self.batch), np.asarray(task.watched, np.int64)
+        if len(watched) and not 0 <= watched.min() <= watched.max() < self.model.node_count:
+            raise lariat.ArgumentError(f"model: it has {self.model.node_count} nodes, and the task "
+                                       f"watches node {watched.max()}")
         self.watched = watched
         self.low, self.high = np.asarray(task.low, float), np.asarray(task.high, float)
         self._places = np.empty((n, self.model.node_count, 3))
@@ -150,27 +149,26 @@ class Core:
 
     def act(self, actions, which):
         """One control step of some runs. Returns {run: why} of those that became unstable."""
-        task = self.task
-        low, high = self.low, self.high
-        asked, opening = self.asked, self.opening
-        place = asked[which, 0, :3] + actions[:, :3] * (task.speed * task.control)
-        asked[which, 0, :3] = np.minimum(np.maximum(place, low), high)
+        task, some = self.task, self.rows(which)
+        place = self.asked[some, 0, :3] + actions[:, :3] * (task.speed * task.control)
+        self.asked[some, 0, :3] = np.minimum(np.maximum(place, self.low), self.high)
         if task.jaws:
-            wanted = 0.5 * (actions[:, 3:4] + 1)
-            change = np.minimum(np.maximum(wanted - opening[which], -0.2), 0.2)
-            opening[which] += change
-        some = len(which) < len(asked)
-        members = which if some else None
+            change = 0.5 * (actions[:, 3:4] + 1) - self.opening[some]
+            self.opening[some] += np.minimum(np.maximum(change, -0.2), 0.2)
+        members = None if isinstance(some, slice) else which
         unstable = {}
         try:
-            self.batch.set_tool_poses(asked[which] if some else asked, self.control_steps,
-                                      openings=opening[which] if some else opening, tools=(0,),
-                                      members=members)
+            self.batch.set_tool_poses(self.asked[some], self.control_steps,
+                                      openings=self.opening[some], tools=(0,), members=members)
             self.batch.advance(self.control_steps, members=members)
         except lariat.UnstableError as error:
             unstable = error.members
-        self.steps[which] += 1
+        self.steps[some] += 1
         return unstable
+
+    def rows(self, which):
+        """What selects the rows of these runs: all of them without a copy."""
+        return slice(None) if len(which) == len(self.steps) else which
 
     def check_actions(self, actions, shape):
         """Actions as float64, within -1 and 1."""
@@ -185,18 +183,20 @@ class Core:
 
     def step(self, actions, which):
         """Rewards, terminations, truncations and unstable runs, of `which`."""
-        task = self.task
+        task, some = self.task, self.rows(which)
         unstable = self.act(actions, which)
         self.observe(unstable)
-        rewards, reached = task.judge(Seen(self.observations).rows(which))
-        self.kept[which] = np.where(reached, self.kept[which] + 1, 0)
-        success = self.kept[which] >= task.patience
-        broken = np.array([int(i) in unstable for i in which], bool)
-        success &= ~broken
-        rewards = np.where(broken, -10.0, rewards + np.where(success, 10.0, 0.0))
-        terminated = success | broken
-        truncated = ~terminated & (self.steps[which] >= task.horizon)
-        self.done[which] = terminated | truncated
+        rewards, reached = task.judge(Seen(self.observations[some]))
+        self.kept[some] = (self.kept[some] + 1) * reached
+        success = terminated = self.kept[some] >= task.patience
+        rewards = rewards + 10.0 * success
+        if unstable:
+            broken = np.array([int(i) in unstable for i in which], bool)
+            success = success & ~broken
+            terminated = success | broken
+            rewards = np.where(broken, -10.0, rewards)
+        truncated = ~terminated & (self.steps[some] >= task.horizon)
+        self.done[some] = terminated | truncated
         return rewards, terminated, truncated, success, unstable
 
 

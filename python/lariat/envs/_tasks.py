@@ -10,7 +10,18 @@ from ._meshes import Mesh
 
 def distance(a, b):
     """Between points, along the last axis."""
-    return np.sqrt(((a - b) ** 2).sum(axis=-1))
+    way = a - b
+    return np.sqrt(np.add.reduce(way * way, axis=-1))
+
+
+def middle_of(points):
+    """Means [n, 3] of points [n, k, 3]."""
+    return np.add.reduce(points, axis=1) / points.shape[1]
+
+
+def between(values):
+    """Not less than 0 and not more than 1."""
+    return np.minimum(np.maximum(values, 0), 1)
 
 
 def tissue(shear, name="tissue", cells="all"):
@@ -55,7 +66,7 @@ class PalpateTask(Task):
 
     def judge(self, seen):
         low, high = self.band
-        force = np.sqrt((seen.wrench[:, :3] ** 2).sum(axis=1))
+        force = distance(seen.wrench[:, :3], 0)
         aside = distance(seen.tip[:, :2], seen.goal[:, :2])
         reached = (aside < 0.004) & (force >= low) & (force <= high)
         reward = (-distance(seen.tip, seen.goal) / 0.05 + reached
@@ -91,7 +102,7 @@ class FlapTask(Task):
 
     def towards_edge(self, seen):
         """-1 to 0: how far the tip is from the middle of the free edge."""
-        middle = seen.points[:, : len(self.edge)].mean(axis=1)
+        middle = middle_of(seen.points[:, : len(self.edge)])
         return -np.minimum(distance(seen.tip, middle) / 0.05, 1)
 
 
@@ -102,9 +113,9 @@ class LiftTask(FlapTask):
         return np.array([0.05, 0.01, random.uniform(0.015, 0.025)])
 
     def judge(self, seen):
-        height = seen.points[:, :, 2].mean(axis=1)
+        height = middle_of(seen.points)[:, 2]
         holds = seen.held > 0
-        lifted = np.clip(height / seen.goal[:, 2], 0, 1)
+        lifted = between(height / seen.goal[:, 2])
         return np.where(holds, lifted, self.towards_edge(seen)), holds & (height >= seen.goal[:, 2])
 
 
@@ -124,7 +135,7 @@ class RetractTask(FlapTask):
     def judge(self, seen):
         flap = seen.points[:, len(self.edge):, :2]
         free = distance(flap, seen.goal[:, None, :2]).min(axis=1)
-        exposed = np.clip(free / self.clear, 0, 1)
+        exposed = between(free / self.clear)
         return np.where(seen.held > 0, exposed, self.towards_edge(seen)), free >= self.clear
 
 
@@ -154,11 +165,11 @@ class ThroughRingTask(FlapTask):
         return np.array([self.ring_at[0] + random.uniform(0.003, 0.006), *self.ring_at[1:]])
 
     def judge(self, seen):
-        end = seen.points.mean(axis=1)
+        end = middle_of(seen.points)
         beyond = end[:, 0] - seen.goal[:, 0]
         inside = distance(end[:, 1:], seen.goal[:, 1:]) < self.inner
         holds = seen.held > 0
-        drawn = np.clip(1 + beyond / 0.015, 0, 1)
+        drawn = between(1 + beyond / 0.015)
         return (np.where(holds, drawn, self.towards_edge(seen)), holds & inside & (beyond >= 0))
 
 
@@ -196,12 +207,12 @@ class ThreadRingTask(Task):
 
     def judge(self, seen):
         count = len(self.tip)
-        end, grip = seen.points[:, :count].mean(axis=1), seen.points[:, count:].mean(axis=1)
+        end, grip = middle_of(seen.points[:, :count]), middle_of(seen.points[:, count:])
         beyond = end[:, 0] - seen.goal[:, 0]
         aside = distance(end[:, 1:], seen.goal[:, 1:])
         reached = (beyond >= 0) & (aside < self.inner)
         near = -np.minimum(distance(seen.tip, grip) / 0.05, 1)
-        threaded = np.clip(1 - distance(end, seen.goal) / 0.03, 0, 1)
+        threaded = between(1 - distance(end, seen.goal) / 0.03)
         return np.where(seen.held > 0, threaded, near), reached
 
 
