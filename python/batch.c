@@ -28,28 +28,27 @@ python_batch *python_batch_look(PyObject *me, const char *call) {
     return NULL;
 }
 
-/* [True, False] is meant as a mask, and would be taken as members 1 and 0. */
-static bool refuse_mask(PyObject *source) {
-    if (PyObject_CheckBuffer(source) || !PySequence_Check(source) || PyUnicode_Check(source))
-        return true;
-    Py_ssize_t count = PySequence_Size(source);
-    for (Py_ssize_t i = 0; i < count; i++) {
-        PyObject *item = PySequence_GetItem(source, i);
-        bool is_mask = item && PyBool_Check(item);
-        Py_XDECREF(item);
-        if (!item) return false;
-        if (is_mask)
-            return python_refuse_type("members: expected numbers of members, got True or False; "
-                                      "numpy.flatnonzero makes them of a mask");
-    }
-    return count >= 0;
+/* Whether an array or a list is made of True and False. */
+static bool is_mask(PyObject *source) {
+    PyObject *view = PyObject_CheckBuffer(source) ? PyMemoryView_FromObject(source) : NULL;
+    PyObject *format = view ? PyObject_GetAttrString(view, "format") : NULL;
+    bool mask = format && PyUnicode_CompareWithASCIIString(format, "?") == 0;
+    Py_XDECREF(format);
+    Py_XDECREF(view);
+    PyObject *first = !view && PySequence_Check(source) ? PySequence_GetItem(source, 0) : NULL;
+    mask = mask || (first && PyBool_Check(first));
+    Py_XDECREF(first);
+    PyErr_Clear();
+    return mask;
 }
 
 bool python_members_parse(python_batch *self, PyObject *source, python_members *members) {
     *members = (python_members){.count = self->count};
     if (!source || source == Py_None) return true;
-    if (!refuse_mask(source) || !python_integers(source, "members", 0, &members->rows))
-        return false;
+    if (is_mask(source)) /* [True, False] would be taken as members 1 and 0 */
+        return python_refuse_type("members: expected numbers of members, got True or False; "
+                                  "numpy.flatnonzero makes them of a mask");
+    if (!python_integers(source, "members", 0, &members->rows)) return false;
     members->count = (int)members->rows.rows;
     const int32_t *index = members->rows.data;
     char *seen = PyMem_Calloc((size_t)self->count + 1, 1);

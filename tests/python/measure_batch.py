@@ -1,4 +1,6 @@
-"""How fast batches and environments are beside bare steps: prints medians of pairs measured in turn.
+"""How fast batches and environments are beside bare steps: medians of pairs measured in turn, and the
+least of each, which other programs disturb less. What one thread does is measured by its processor
+time, what several do by the clock.
 
     PYTHONPATH=build/python python3 tests/python/measure_batch.py [PAIRS]
 """
@@ -37,20 +39,22 @@ class Organ(envs.Env):
             return -seen.tip[:, 0], seen.tip[:, 0] > 1
 
 
-def timed(call, times=1):
-    begin = time.perf_counter()
+def timed(call, times=1, clock=time.thread_time):
+    begin = clock()
     for _ in range(times):
         call()
-    return (time.perf_counter() - begin) / times
+    return (clock() - begin) / times
 
 
-def pairs(one, other, count=PAIRS, times=1):
-    """Medians of both, and of their quotients."""
+def pairs(one, other, count=PAIRS, times=1, clock=time.thread_time):
+    """The least of both, the quotient of these, and the median of the pairs' quotients."""
     a, b = [], []
-    for _ in range(count):
-        a.append(timed(one, times))
-        b.append(timed(other, times))
-    return statistics.median(a), statistics.median(b), statistics.median(y / x for x, y in zip(a, b))
+    for i in range(count):
+        first = (timed(one, times, clock), timed(other, times, clock)) if i % 2 else (
+            timed(other, times, clock), timed(one, times, clock))[::-1]
+        a.append(first[0])
+        b.append(first[1])
+    return (min(a), min(b), min(b) / min(a), statistics.median(y / x for x, y in zip(a, b)))
 
 
 def environment(kind):
@@ -60,34 +64,42 @@ def environment(kind):
     steps = env._core.control_steps
     bare = lariat.Simulation(env.simulation.model)
     bare.load(env._core.start)
-    a, b, quotient = pairs(lambda: bare.advance(steps), lambda: env.step(still))
+    place = bare.tool_pose(0)["position"]
+
+    def alone():
+        bare.tool_move(0, place, steps)
+        bare.advance(steps)
+
+    a, b, least, median = pairs(alone, lambda: env.step(still))
     print(f"{kind.__name__:12} control step of {steps} steps: bare {1e3 * a:.3f} ms, environment "
-          f"{1e3 * b:.3f} ms: {1 / b:.0f} a second, {100 * (quotient - 1):+.1f} %")
-    print(f"{'':12} reset {1e6 * min(timed(env.reset, 50) for _ in range(10)):.0f} us")
+          f"{1e3 * b:.3f} ms: {1 / b:.0f} a second, {100 * (least - 1):+.1f} %, median "
+          f"{100 * (median - 1):+.1f} %")
+    print(f"{'':12} reset {1e6 * min(timed(env.reset, 10) for _ in range(100)):.0f} us")
 
 
 def workers(model, n, steps):
     one, two = (lariat.Batch(model, n, workers=w) for w in (1, 2))
-    a, b, quotient = pairs(lambda: one.advance(steps), lambda: two.advance(steps))
+    a, b, least, median = pairs(lambda: one.advance(steps), lambda: two.advance(steps),
+                                clock=time.perf_counter)
     print(f"{n} members, {steps} steps: one worker {1e3 * a:.2f} ms, two {1e3 * b:.2f} ms: "
-          f"{1 / quotient:.2f} times")
+          f"{1 / least:.2f} times, median {1 / median:.2f}")
 
 
 def batch_of_one(model, steps):
     bare, batch = lariat.Simulation(model), lariat.Batch(model, 1)
-    a, b, quotient = pairs(lambda: bare.advance(steps), lambda: batch.advance(steps), times=20)
+    a, b, _, _ = pairs(lambda: bare.advance(steps), lambda: batch.advance(steps), times=20)
     print(f"{steps} steps: Simulation {1e6 * a:.1f} us, Batch of one {1e6 * b:.1f} us")
 
 
 print(ORGAN)
-for kind in (Organ, envs.Palpate, envs.Lift):
+for kind in (Organ, *envs.TASKS):
     environment(kind)
 batch_of_one(ORGAN, 1)
 workers(ORGAN, 8, 211)
 workers(envs.Palpate().simulation.model, 32, 39)
-begin = time.perf_counter()
+print(f"a simulation is made in {1e3 * min(timed(lambda: lariat.Simulation(ORGAN)) for _ in range(5)):.1f} ms, "
+      f"a clone in {1e3 * min(timed(lariat.Simulation(ORGAN).clone) for _ in range(20)):.2f} ms")
 batch = lariat.Batch(ORGAN, 16)
-print(f"a batch of 16 organs is made in {time.perf_counter() - begin:.3f} s")
 saved = batch[0].save()
-print(f"reset of one member {1e6 * min(timed(lambda: batch.reset([3], saved), 50) for _ in range(20)):.0f} us, "
+print(f"reset of one member {1e6 * min(timed(lambda: batch.reset([3], saved), 10) for _ in range(100)):.0f} us, "
       f"all positions {1e6 * min(timed(batch.positions, 5) for _ in range(20)):.0f} us")

@@ -238,6 +238,13 @@ class Arrays(unittest.TestCase):
         self.assertTrue(held[0][1] > 0 and held[2][1] == held[0][1] and held[1][1] == 0, held)
 
     @unittest.skipUnless(numpy, WITHOUT_NUMPY)
+    def test_masks_are_not_numbers(self):
+        with self.assertRaisesRegex(TypeError, "flatnonzero"):
+            self.batch.advance(1, members=numpy.array([True, False, True]))
+        self.batch.advance(1, members=numpy.flatnonzero([True, False, True]))
+        self.assertEqual(self.batch.steps(), (21, 20, 21))
+
+    @unittest.skipUnless(numpy, WITHOUT_NUMPY)
     def test_numpy(self):
         x = numpy.empty((3, self.batch.node_count, 3))
         self.assertIs(self.batch.positions(out=x), x)
@@ -253,7 +260,36 @@ class Arrays(unittest.TestCase):
             self.batch.set_tool_poses("no", 10)
 
 
+class Closes:
+    """A number that closes the batch when it is looked at."""
+
+    def __init__(self, batch):
+        self.batch = batch
+
+    def __index__(self):
+        self.batch.close()
+        return 0
+
+    def __float__(self):
+        self.batch.close()
+        return 0.03
+
+
 class Misuse(unittest.TestCase):
+    def test_numbers_that_run_code(self):
+        place = [0.025, 0.04, 1.0, 0.0, 0.0, 0.0]
+        for call in (lambda b, evil: b.set_tool_poses([[[evil, *place]]] * 2),
+                     lambda b, evil: b.set_tool_poses([[[0.03, *place]]] * 2, tools=[evil]),
+                     lambda b, evil: b.set_tool_poses([[[0.03, *place]]] * 2, evil),
+                     lambda b, evil: b.set_tool_poses([[[0.03, *place]]] * 2, openings=[[evil]] * 2),
+                     lambda b, evil: b.advance(evil), lambda b, evil: b.advance(seconds=evil),
+                     lambda b, evil: b.advance(1, members=[evil]),
+                     lambda b, evil: b.reset([evil])):
+            batch = lariat.Batch(block(), 2)
+            with self.assertRaises((lariat.StateError, ValueError)):
+                call(batch, Closes(batch))
+            self.assertTrue(batch.closed)
+
     def test_of_the_constructor(self):
         model, other = block(), lariat.Model.from_arrays(*block_arrays((2, 2, 2))[:2])
         sim, grid = lariat.Simulation(model), lariat.Simulation(model, grid="2x1x1")

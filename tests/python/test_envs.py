@@ -246,6 +246,7 @@ class Misuse(unittest.TestCase):
         self.assertRaises(lariat.StateError, many.hashes)
 
     def test_of_vector_environments(self):
+        self.assertRaisesRegex(TypeError, "no task", envs.Env)
         for wrong in (envs.Palpate(), "Palpate", int, envs.Env):
             self.assertRaises(TypeError, envs.VectorEnv, wrong, 2)
         for count in (0, -1):
@@ -307,6 +308,26 @@ try: envs.VectorEnv(int, 2)
 except TypeError: pass
 print(sorted(ids))
 """
+
+
+class Words(unittest.TestCase):
+    """Everything has a docstring, and a line in the stub."""
+
+    def test_docstrings_and_stub(self):
+        with open(envs.__file__ + "i", encoding="utf-8") as file:
+            stub = file.read()
+        for name in envs.__all__:
+            thing = getattr(envs, name)
+            self.assertTrue(thing.__doc__, name)
+            self.assertRegex(stub, rf"\b(class|as) {name}\b")
+            for part, value in vars(thing).items():
+                if part.startswith("_") or name in ("Box", "scripted"):
+                    continue
+                if callable(value) and not isinstance(value, type):
+                    self.assertTrue(value.__doc__, part)
+                    self.assertRegex(stub, rf"def {part}\(")
+        for env in envs.TASKS:
+            self.assertIn("Reward", env.__doc__)
 
 
 class WithGymnasium(unittest.TestCase):

@@ -234,6 +234,8 @@ class Env(Base):
     _core = None
 
     def __init__(self, model=None):
+        if self.task_class is None:
+            raise TypeError("Env: there is no task; take a class such as lariat.envs.Lift")
         self.task = self.task_class()
         self._core = Core(self.task, 1, 1, model)
         self._all = np.arange(1)
