@@ -14,7 +14,7 @@ typedef struct python_array {
     const void *data;
     char format[2];
     int dimensions;
-    Py_ssize_t item, shape[2], strides[2];
+    Py_ssize_t item, shape[3], strides[3];
 } python_array;
 
 static Py_ssize_t item_of(char format) {
@@ -32,9 +32,8 @@ static int array_getbuffer(PyObject *me, Py_buffer *view, int flags) {
         PyErr_SetString(PyExc_BufferError, "this array is stored by rows");
         return -1;
     }
-    Py_ssize_t count = self->shape[0] * (self->dimensions > 1 ? self->shape[1] : 1);
     view->buf = (void *)(uintptr_t)self->data;
-    view->len = count * self->item;
+    view->len = self->shape[0] * self->strides[0];
     view->itemsize = self->item;
     view->readonly = self->owner != NULL;
     view->ndim = self->dimensions;
@@ -67,8 +66,8 @@ bool python_array_add(PyObject *module) {
     return python_array_type != NULL;
 }
 
-static python_array *array_of(PyObject *owner, const void *data, char format, Py_ssize_t rows,
-                              Py_ssize_t columns) {
+static python_array *array_of(PyObject *owner, const void *data, char format, int dimensions,
+                              const Py_ssize_t *shape) {
     python_array *self = PyObject_New(python_array, python_array_type);
     if (!self) return NULL;
     Py_XINCREF(owner);
@@ -78,11 +77,12 @@ static python_array *array_of(PyObject *owner, const void *data, char format, Py
     self->format[0] = format;
     self->format[1] = 0;
     self->item = item_of(format);
-    self->dimensions = columns > 0 ? 2 : 1;
-    self->shape[0] = rows;
-    self->shape[1] = columns;
-    self->strides[0] = self->item * (columns > 0 ? columns : 1);
-    self->strides[1] = self->item;
+    self->dimensions = dimensions;
+    Py_ssize_t stride = self->item;
+    for (int i = dimensions; i-- > 0; stride *= shape[i]) {
+        self->shape[i] = shape[i];
+        self->strides[i] = stride;
+    }
     return self;
 }
 
@@ -94,14 +94,16 @@ static PyObject *view_of(python_array *array) {
 
 PyObject *python_array_of(PyObject *owner, const void *data, char format, Py_ssize_t rows,
                           Py_ssize_t columns) {
-    return view_of(array_of(owner, data, format, rows, columns));
+    const Py_ssize_t shape[2] = {rows, columns};
+    return view_of(array_of(owner, data, format, columns > 0 ? 2 : 1, shape));
 }
 
-PyObject *python_array_new(char format, Py_ssize_t rows, Py_ssize_t columns, void **data) {
-    size_t items = (size_t)rows * (size_t)(columns > 0 ? columns : 1);
+static PyObject *new_of_shape(char format, int dimensions, const Py_ssize_t *shape, void **data) {
+    size_t items = 1;
+    for (int i = 0; i < dimensions; i++) items *= (size_t)shape[i];
     void *own = calloc(items ? items : 1, (size_t)item_of(format));
     if (!own) return PyErr_NoMemory();
-    python_array *array = array_of(NULL, own, format, rows, columns);
+    python_array *array = array_of(NULL, own, format, dimensions, shape);
     if (array) {
         array->own = own;
         *data = own;
@@ -109,6 +111,11 @@ PyObject *python_array_new(char format, Py_ssize_t rows, Py_ssize_t columns, voi
         free(own);
     }
     return view_of(array);
+}
+
+PyObject *python_array_new(char format, Py_ssize_t rows, Py_ssize_t columns, void **data) {
+    const Py_ssize_t shape[2] = {rows, columns};
+    return new_of_shape(format, columns > 0 ? 2 : 1, shape, data);
 }
 
 /* ---- what came from the caller -------------------------------------------------------------- */
@@ -141,11 +148,24 @@ static bool has_shape(const Py_buffer *view, int columns) {
     return columns > 0 ? view->ndim == 2 && view->shape[1] == columns : view->ndim == 1;
 }
 
-bool python_target_open(PyObject *out, char format, Py_ssize_t rows, Py_ssize_t columns,
-                        python_target *target) {
+static void shape_text(int dimensions, const Py_ssize_t *shape, char *text, size_t size) {
+    int at = snprintf(text, size, "[");
+    for (int i = 0; i < dimensions; i++)
+        at += snprintf(text + at, size - (size_t)at, "%s%lld", i ? ", " : "", (long long)shape[i]);
+    snprintf(text + at, size - (size_t)at, "]");
+}
+
+static bool same_shape(const Py_buffer *view, int dimensions, const Py_ssize_t *shape) {
+    bool same = view->ndim == dimensions;
+    for (int i = 0; i < dimensions && same; i++) same = view->shape[i] == shape[i];
+    return same;
+}
+
+bool python_target_of_shape(PyObject *out, char format, int dimensions, const Py_ssize_t *shape,
+                            python_target *target) {
     *target = (python_target){.result = NULL};
     if (!out || out == Py_None) {
-        target->result = python_array_new(format, rows, columns, &target->data);
+        target->result = new_of_shape(format, dimensions, shape, &target->data);
         return target->result != NULL;
     }
     const char *kind = format == 'd' ? "float64" : format == 'f' ? "float32" : "int32";
@@ -154,15 +174,13 @@ bool python_target_open(PyObject *out, char format, Py_ssize_t rows, Py_ssize_t 
                                   (PyObject *)Py_TYPE(out));
     if (PyObject_GetBuffer(out, &target->view, PyBUF_RECORDS_RO)) return false;
     const Py_buffer *view = &target->view;
-    bool fits = view->ndim == (columns > 0 ? 2 : 1) && view->shape[0] == rows &&
-                (columns == 0 || view->shape[1] == columns) && type_of(view) == format &&
+    bool fits = same_shape(view, dimensions, shape) && type_of(view) == format &&
                 view->itemsize == item_of(format) && !view->readonly &&
                 PyBuffer_IsContiguous(view, 'C');
     if (!fits) {
-        char got[160], wanted[64];
+        char got[160], wanted[80];
         describe(view, got, sizeof got);
-        snprintf(wanted, sizeof wanted, columns > 0 ? "[%lld, %lld]" : "[%lld]", (long long)rows,
-                 (long long)columns);
+        shape_text(dimensions, shape, wanted, sizeof wanted);
         python_refuse("out: expected a writable, contiguous array of %s (format '%c') of shape %s, "
                       "got %s%s%s",
                       kind, format, wanted, got, view->readonly ? ", read only" : "",
@@ -174,6 +192,12 @@ bool python_target_open(PyObject *out, char format, Py_ssize_t rows, Py_ssize_t 
     Py_INCREF(out);
     target->result = out;
     return true;
+}
+
+bool python_target_open(PyObject *out, char format, Py_ssize_t rows, Py_ssize_t columns,
+                        python_target *target) {
+    const Py_ssize_t shape[2] = {rows, columns};
+    return python_target_of_shape(out, format, columns > 0 ? 2 : 1, shape, target);
 }
 
 PyObject *python_target_close(python_target *target, bool failed) {
@@ -360,6 +384,68 @@ bool python_integers(PyObject *source, const char *name, int columns, python_row
         ok = open_buffer(source, name, "int32", columns, out) && narrow(name, columns, out);
     else
         ok = take_sequence(source, name, columns, 4, take_int32, out);
+    if (!ok) python_rows_free(out);
+    return ok;
+}
+
+/* ---- blocks: one layer of rows for each member of a batch -------------------------------------
+ */
+
+static bool block_of_layers(PyObject *source, const char *name, const Py_ssize_t shape[3],
+                            python_rows *out) {
+    char wanted[80];
+    shape_text(3, shape, wanted, sizeof wanted);
+    PyObject *list =
+        PySequence_Check(source) && !PyUnicode_Check(source) ? PySequence_Tuple(source) : NULL;
+    if (!list) {
+        PyErr_Clear();
+        return python_refuse_type(
+            "%s: expected an array of float64 of shape %s, or nested lists, got %R", name, wanted,
+            (PyObject *)Py_TYPE(source));
+    }
+    size_t layer = (size_t)shape[1] * (size_t)shape[2];
+    double *own = out->own = PyMem_Calloc((size_t)shape[0] * layer + 1, sizeof *own);
+    bool ok =
+        PyTuple_Size(list) == shape[0] ||
+        python_refuse("%s: expected shape %s, got %zd layers", name, wanted, PyTuple_Size(list));
+    if (ok && !own) ok = PyErr_NoMemory() != NULL;
+    for (Py_ssize_t i = 0; i < shape[0] && ok; i++) {
+        python_rows rows;
+        ok = python_doubles(PyTuple_GetItem(list, i), name, (int)shape[2], &rows);
+        if (!ok) break;
+        ok = rows.rows == shape[1] || python_refuse("%s: expected shape %s, layer %zd has %zd rows",
+                                                    name, wanted, i, rows.rows);
+        if (ok) memcpy(own + (size_t)i * layer, rows.data, layer * sizeof *own);
+        python_rows_free(&rows);
+    }
+    Py_DECREF(list);
+    out->data = own;
+    return ok;
+}
+
+static bool block_of_buffer(PyObject *source, const char *name, const Py_ssize_t shape[3],
+                            python_rows *out) {
+    if (PyObject_GetBuffer(source, &out->view, PyBUF_RECORDS_RO)) return false;
+    out->held = true;
+    out->data = out->view.buf;
+    if (same_shape(&out->view, 3, shape) && type_of(&out->view) == 'd' && out->view.itemsize == 8 &&
+        PyBuffer_IsContiguous(&out->view, 'C'))
+        return true;
+    char got[160], wanted[80];
+    describe(&out->view, got, sizeof got);
+    shape_text(3, shape, wanted, sizeof wanted);
+    return python_refuse("%s: expected a contiguous array of float64 (format 'd') of shape %s, got "
+                         "%s%s",
+                         name, wanted, got,
+                         PyBuffer_IsContiguous(&out->view, 'C') ? "" : ", not contiguous");
+}
+
+bool python_block(PyObject *source, const char *name, const Py_ssize_t shape[3], python_rows *out) {
+    *out = (python_rows){.data = NULL};
+    bool ok = PyObject_CheckBuffer(source) ? block_of_buffer(source, name, shape, out)
+                                           : block_of_layers(source, name, shape, out);
+    out->rows = shape[0] * shape[1];
+    ok = ok && check_finite(out, name, (int)shape[2]);
     if (!ok) python_rows_free(out);
     return ok;
 }

@@ -65,9 +65,11 @@ def _build(folder):
 
 def _files(package):
     """(path in the wheel, path on disk) of everything that is installed."""
-    for name in sorted(os.listdir(package)):
-        if name.endswith((".py", ".pyi", ".so", ".typed")):
-            yield "lariat/" + name, os.path.join(package, name)
+    for at, _, names in sorted(os.walk(package)):
+        for name in sorted(names):
+            if name.endswith((".py", ".pyi", ".so", ".typed")):
+                path = os.path.join(at, name)
+                yield "lariat/" + os.path.relpath(path, package), path
     page = os.path.join(SOURCE, "web", "dist")
     if not os.path.exists(os.path.join(page, "index.html")):
         return

@@ -7,7 +7,8 @@
  *     change.c        gravity, stiffness, forces         tools.c     tools and their contacts
  *     session.c       class Session: life, clock         session_state.c   states, snapshots
  *     saved.c         class Saved: a state in memory     view.c      class View: the browser
- *     module.c        the module itself
+ *     batch.c         class Batch: its life, advance     batch_state.c    arrays, tools, resets
+ *     pool.c          its threads                        module.c    the module itself
  *
  * It is written against CPython's stable ABI (Py_LIMITED_API 3.11): one binary for all later
  * versions, nothing but Python's headers to build it, and of Lariat nothing but lariat.h.
@@ -29,6 +30,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 /* What was asked of a tool, which a move keeps where it says nothing; NaN: what is now. */
 typedef struct python_asked {
@@ -81,13 +83,14 @@ struct python_view {
 };
 
 extern PyTypeObject *python_model_type, *python_simulation_type, *python_saved_type,
-    *python_session_type, *python_view_type, *python_array_type;
+    *python_batch_type, *python_session_type, *python_view_type, *python_array_type;
 
 bool python_errors_add(PyObject *module);
 bool python_array_add(PyObject *module);
 bool python_model_add(PyObject *module);
 bool python_saved_add(PyObject *module);
 bool python_simulation_add(PyObject *module);
+bool python_batch_add(PyObject *module);
 bool python_session_add(PyObject *module);
 bool python_view_add(PyObject *module);
 /* Makes a type and adds it to the module, where it has a public name. */
@@ -105,6 +108,19 @@ extern unsigned python_generation;
         statement;                                                                                 \
         PyEval_RestoreThread(python_thread);                                                       \
     } while (0)
+
+/* Looks whether Ctrl-C was pressed while a call computes without the lock. `thread` is what
+ * PyEval_SaveThread gave; the caller takes the lock back with it. */
+typedef struct python_watch {
+    PyThreadState *thread;
+    struct timespec last;
+    unsigned calls;
+    bool watching; /* this is the main thread */
+    bool stopped;  /* an exception is set */
+} python_watch;
+bool python_watch_begin(python_watch *watch); /* true: this is the main thread */
+/* Ten times a second; false: stop. */
+bool python_watch_look(python_watch *watch);
 
 /* ---- errors: all return NULL, or false ------------------------------------------------------ */
 
@@ -173,6 +189,9 @@ typedef struct python_target {
 /* `out` NULL or None: a fresh one. */
 bool python_target_open(PyObject *out, char format, Py_ssize_t rows, Py_ssize_t columns,
                         python_target *target);
+/* The same of one, two or three dimensions. */
+bool python_target_of_shape(PyObject *out, char format, int dimensions, const Py_ssize_t *shape,
+                            python_target *target);
 /* Gives what the call returns, a new reference, or NULL when `failed`. */
 PyObject *python_target_close(python_target *target, bool failed);
 
@@ -189,6 +208,8 @@ bool python_doubles(PyObject *source, const char *name, int columns, python_rows
 /* Likewise int32; other integers are converted. */
 bool python_integers(PyObject *source, const char *name, int columns, python_rows *out);
 void python_rows_free(python_rows *rows);
+/* Likewise float64 [members][rows][columns], of exactly this shape. */
+bool python_block(PyObject *source, const char *name, const Py_ssize_t shape[3], python_rows *out);
 
 /* ---- simulations ---------------------------------------------------------------------------- */
 
@@ -203,6 +224,83 @@ bool python_simulation_tool(lar_simulation *simulation, PyObject *source, int32_
 /* Rows of the class that stand in other files; each table ends with a row of NULL. */
 extern PyMethodDef python_state_methods[], python_change_methods[], python_tool_methods[];
 extern PyGetSetDef python_change_properties[], python_tool_properties[];
+
+/* ---- threads of a batch ------------------------------------------------------------------------
+ *
+ *     items      0 . . . . . . . . n - 1      each takes the next one that is left
+ *     caller     ###   ####   ##  (waits, looks for Ctrl-C)
+ *     thread 1      ###    ###  ###           asleep before and after: a condition, no polling
+ *
+ * Threads start with the first run and live as long as the pool. They know nothing of Python. */
+
+typedef struct python_pool python_pool;
+
+/* Does one item; `caller`: in the thread that called python_pool_run. */
+typedef void python_pool_work(void *context, int item, bool caller);
+/* Called by the caller ten times a second while it only waits for others. */
+typedef void python_pool_wait(void *context);
+
+/* Cores that this process may use, at least 1. */
+int python_pool_cores(void);
+
+/* The caller and threads - 1 more; NULL: no memory. */
+python_pool *python_pool_create(int threads);
+/* Nobody runs anything on it. In a child of a fork its threads are not there: `lost` frees nothing.
+ */
+void python_pool_destroy(python_pool *pool, bool lost);
+
+/* Does `items` items and returns when all are done. Where the system gives fewer threads these do
+ * it: what comes out may not depend on it. */
+void python_pool_run(python_pool *pool, int items, python_pool_work *work, python_pool_wait *wait,
+                     void *context);
+
+/* ---- batches -------------------------------------------------------------------------------- */
+
+/* A simulation of a batch, and what became of it in the call under way. */
+typedef struct python_member {
+    python_simulation *simulation;
+    lar_simulation *taken;
+    lar_status status;
+    char *message; /* owned; NULL: nothing failed */
+} python_member;
+
+typedef struct python_batch {
+    PyObject_HEAD int count, workers;
+    int nodes, tools; /* of every member, tools without spares */
+    bool busy;
+    unsigned generation; /* of the pool's threads */
+    python_pool *pool;
+    python_member *member; /* [count]; NULL: closed */
+} python_batch;
+
+/* Some members, or all, for a call on them. */
+typedef struct python_members {
+    python_rows rows;
+    int count;
+} python_members;
+static inline int python_member_at(const python_members *members, int place) {
+    return members->rows.data ? ((const int32_t *)members->rows.data)[place] : place;
+}
+/* Each at most once; NULL or None: all. */
+bool python_members_parse(python_batch *self, PyObject *source, python_members *members);
+
+/* What a call does with one member, the `place`-th of those that it is for, in any thread. */
+typedef struct python_member_call python_member_call;
+typedef lar_status python_member_work(python_member_call *call, python_member *member, int place,
+                                      bool caller, lar_error *error);
+struct python_member_call {
+    const char *name;
+    python_member_work *work;
+    python_members members;
+    double cost; /* about how long it takes for one [s]: threads are woken for more than some */
+    void *context;
+    python_watch watch;
+    int stop; /* atomic */
+};
+/* Takes the members, does it on all of them, frees call->members, and raises what failed first. */
+bool python_batch_run(python_batch *self, python_member_call *call);
+python_batch *python_batch_look(PyObject *me, const char *call);
+extern PyMethodDef python_batch_state_methods[];
 
 /* ---- sessions ------------------------------------------------------------------------------- */
 

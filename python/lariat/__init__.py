@@ -8,6 +8,7 @@
         print(sim.time, sim.energies(), f"{sim.hash():016x}")
 
 Model: what is simulated, constant. Simulation: the state that moves. Saved: a state in memory.
+Batch: many simulations, advanced on all cores; lariat.envs: environments of Gymnasium's interface.
 Session: a simulation in real time, with tools, devices and the viewer. SI units; vectors are x, y,
 z; nodes and elements count from 0. Arrays are memoryviews, which numpy.asarray takes without a copy;
 numpy is not needed. What is refused raises a subclass of Error with the library's sentence.
@@ -18,6 +19,7 @@ import os as _os
 
 from ._lariat import (
     ArgumentError,
+    Batch,
     Error,
     FileError,
     FormatError,
@@ -38,9 +40,9 @@ from ._lariat import (
 )
 
 __all__ = [
-    "ArgumentError", "Error", "FileError", "FormatError", "Model", "ModelError", "OutOfMemoryError",
-    "PeerError", "Saved", "Session", "Simulation", "StateError", "UnstableError", "UnsupportedError",
-    "View", "__version__", "checkpoint_info", "write_demo",
+    "ArgumentError", "Batch", "Error", "FileError", "FormatError", "Model", "ModelError",
+    "OutOfMemoryError", "PeerError", "Saved", "Session", "Simulation", "StateError", "UnstableError",
+    "UnsupportedError", "View", "__version__", "checkpoint_info", "write_demo",
 ]
 
 # Wheels bring the viewer's page along; elsewhere the library knows where it was installed.
@@ -93,3 +95,7 @@ def _restore_simulation(model, options, state):
     simulation = Simulation(model, **options)
     _through_file(load)
     return simulation
+
+
+def _restore_batch(simulations, workers):
+    return Batch(simulations, workers=workers)

@@ -9,6 +9,7 @@
 #include "base/vector.h"
 #include "contact/tool_body.h"
 #include "simulation/field.h"
+#include "step/domain_share.h"
 #include "step/viscous_history.h"
 #include "step/measure.h"
 
@@ -145,8 +146,8 @@ void lar_simulation_set_start(lar_simulation *simulation) {
     lar_interactions_forget(&simulation->interactions);
 }
 
-/* The state, and what stands beside it. */
-static lar_status create_state(lar_simulation *simulation, bool search_always, lar_error *error) {
+lar_status lar_simulation_create_state(lar_simulation *simulation, bool search_always,
+                                       lar_error *error) {
     const lar_domain *domain = &simulation->domain;
     lar_interactions *interactions = &simulation->interactions;
     lar_status status = lar_state_create(&simulation->state, domain->layout.node_padded,
@@ -185,7 +186,8 @@ static lar_status compile(const lar_model *model, const lar_options *options,
                                              &domain->surroundings, error);
     if (!status) lar_history_plan_nodes(domain, &domain->surroundings.bodies.surface);
     if (!status) status = check_damping(domain, error);
-    if (!status) status = create_state(simulation, options->search_always != 0, error);
+    if (!status)
+        status = lar_simulation_create_state(simulation, options->search_always != 0, error);
     if (!status) lar_simulation_set_start(simulation);
     return status;
 }
@@ -237,7 +239,7 @@ void lar_simulation_destroy(lar_simulation *simulation) {
     lar_interactions_destroy(&simulation->interactions);
     lar_strained_destroy(&simulation->strained);
     lar_state_destroy(&simulation->state);
-    lar_domain_destroy(&simulation->domain);
+    lar_domain_leave(&simulation->domain);
     free(simulation);
 }
 

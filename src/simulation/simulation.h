@@ -73,6 +73,10 @@ void lar_simulation_tool_asked(const lar_simulation *simulation, int32_t tool, l
 /* The start as lar_simulation_create makes it, into state and tools, also again. */
 void lar_simulation_set_start(lar_simulation *simulation);
 
+/* Memory for the state, and what stands beside it: domain, list and tools are there. */
+lar_status lar_simulation_create_state(lar_simulation *simulation, bool search_always,
+                                       lar_error *error);
+
 /* Materials become as stiff as simulation->tools say, spares what these say, and tools bear what
  * the tissues bear. */
 void lar_simulation_settle(lar_simulation *simulation);

@@ -83,7 +83,9 @@ typedef struct lar_domain {
     lar_hex8_limits limits;
     lar_leapfrog leapfrog; /* without gravity when gravity follows a curve */
 
-    lar_surroundings surroundings; /* of a part: none, they belong to its threads */
+    lar_surroundings surroundings;    /* of a part: none, they belong to its threads */
+    struct lar_domain_shared *shared; /* with whom it has constants in common (domain_share.h);
+                                         NULL: nobody */
 } lar_domain;
 
 /* Compiles a checked model. The step is options->time_step, or the model's, or automatic

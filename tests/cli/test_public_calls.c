@@ -298,6 +298,13 @@ static void restart_and_picture_calls(void **unused) {
     assert_int_equal(lar_simulation_save_to(simulation, saved, &error), LAR_OK);
     REFUSED(lar_simulation_load_from(NULL, saved, &error));
     REFUSED(lar_simulation_load_from(simulation, NULL, &error));
+    lar_simulation *clone = NULL;
+    REFUSED(lar_simulation_clone(NULL, &clone, &error));
+    REFUSED(lar_simulation_clone(simulation, NULL, &error));
+    assert_int_equal(lar_simulation_clone(simulation, &clone, &error), LAR_OK);
+    assert_int_equal(lar_simulation_hash(clone), lar_simulation_hash(simulation));
+    assert_int_equal(lar_simulation_load_from(clone, saved, &error), LAR_OK);
+    lar_simulation_destroy(clone);
     REFUSED(lar_session_save_to(NULL, saved, &error));
     REFUSED(lar_session_load_from(NULL, saved, &error));
     for (int i = 0; i < 4; i++) {

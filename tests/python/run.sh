@@ -3,7 +3,7 @@
 #
 #   run.sh NAME SOURCE BUILD SCRATCH WHY      WHY: why there is nothing to test; "" when there is
 #
-# NAME is that of test_NAME.py; `docs` runs the blocks of docs/python.md, `pip` installs a copy of the
+# NAME is that of test_NAME.py; `docs` runs the blocks of docs/python.md and docs/environments.md, `pip` installs a copy of the
 # checkout into an empty virtual environment, without network, and tests what is there then; `asan` builds
 # the module once more with the sanitizers for addresses and undefined behaviour, on the same library.
 set -eu
@@ -26,7 +26,11 @@ export LARIAT_COMMAND="$build/lariat" PYTHONDONTWRITEBYTECODE=1
 
 case $name in
 docs)
-    PYTHONPATH="$build/python" "$python" -X faulthandler "$here/docs.py" "$source/docs/python.md"
+    for page in python environments; do
+        mkdir "$page"
+        (cd "$page" && PYTHONPATH="$build/python" "$python" -X faulthandler "$here/docs.py" \
+            "$source/docs/$page.md") || exit 1
+    done
     ;;
 pip)
     "$python" -c 'import venv, ensurepip' 2>/dev/null || { echo "skipped: no venv (apt-get install python3-venv)"; exit 77; }
@@ -42,7 +46,7 @@ pip)
         "$scratch/venv/bin/python" -m pip install --no-index --disable-pip-version-check \
         "$scratch/copy" >"$scratch/log" 2>&1 || { cat "$scratch/log"; exit 1; }
     rm -rf "$scratch/copy"
-    for test in model misuse; do
+    for test in model misuse envs; do
         PYTHONPATH="$here" "$scratch/venv/bin/python" -X faulthandler "$here/test_$test.py" || exit 1
     done
     "$scratch/venv/bin/python" -m pip uninstall -y lariat >>"$scratch/log" 2>&1
@@ -59,7 +63,7 @@ asan)
         -fPIC -D_GNU_SOURCE -DPy_LIMITED_API=0x030b0000 -I"$include" -I"$source/include" \
         "$source"/python/*.c -o "$scratch/python/lariat/_lariat.abi3.so" -L"$build" -llariat \
         -Wl,-rpath,"$build"
-    for test in model simulation session misuse; do
+    for test in model simulation batch envs session misuse; do
         env LD_PRELOAD="$runtime $undefined" ASAN_OPTIONS=detect_leaks=0 PYTHONMALLOC=malloc \
             LARIAT_TEST_SANITIZED=1 PYTHONPATH="$scratch/python:$here" \
             "$python" "$here/test_$test.py" || exit 1
