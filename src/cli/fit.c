@@ -175,7 +175,8 @@ const cli_command cli_fit = {
         "is chance.\n"
         "EXPERIMENT is a file (.yaml) that names scenes, tables of measured numbers (.csv) and\n"
         "the free parameters. Simulations go on all cores. Ctrl-C ends a fit with the best so\n"
-        "far (exit status 130).",
+        "far (exit status 130).\n"
+        "With --profile it measures: frames of a camera become the profiles of an aspiration.",
     .examples = "  lariat fit examples/fit_tension.yaml\n"
                 "  lariat fit examples/fit_tension.yaml --out fitted\n"
                 "  lariat fit examples/fit_tension.yaml --json\n"

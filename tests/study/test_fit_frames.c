@@ -110,11 +110,6 @@ static void frames_lead_to_the_tissue(void **state) {
                   "frames/s\n",
                   p.found, p.missed, 1e6 * worst, 1e6 * p.error, 100 * covered / (p.found - POINTS),
                   FRAMES / p.seconds);
-    for (int k = 0; k < POINTS; k++) {
-        double sum = 0, err = 0;
-        for (int i = 2; i < FRAMES; i++) { sum += p.point[i * POINTS + k].z - z[(i - 1) * POINTS + k]; err += p.point[i*POINTS+k].error; }
-        print_message("DBG %d bias %.2f um, stated %.2f z %.3f mm\n", k, 1e6 * sum / (FRAMES - 2), 1e6 * err / (FRAMES - 2), 1e3 * z[29*POINTS+k]);
-    }
     assert_below(worst, 30e-6);
     lar_profiles_clear(&p);
     write_experiment("seen.yaml", twin_path("seen.csv"));

@@ -44,12 +44,16 @@ static void lay(const lar_view *v, const lar_grey *image, raster *r) {
 }
 
 static void take_light(const lar_view *v, const lar_grey *image, raster *r) {
+    double from[2], right[2], up[2]; /* column and row of the picture; one step across, and up */
+    lar_view_to_picture(v, r->x, r->y, &from[0], &from[1]);
+    lar_view_to_picture(v, r->x + r->step, r->y, &right[0], &right[1]);
+    lar_view_to_picture(v, r->x, r->y + r->step, &up[0], &up[1]);
     for (int c = 0; c < r->columns; c++)
         for (int k = 0; k < r->rows; k++) {
-            double column, row;
-            lar_view_to_picture(v, r->x + c * r->step, r->y + k * r->step, &column, &row);
-            bool in = column >= -0.5 && column < image->width - 0.5 && row >= -0.5 &&
-                      row < image->height - 0.5;
+            const double column = from[0] + c * (right[0] - from[0]) + k * (up[0] - from[0]),
+                         row = from[1] + c * (right[1] - from[1]) + k * (up[1] - from[1]);
+            const bool in = column >= -0.5 && column < image->width - 0.5 && row >= -0.5 &&
+                            row < image->height - 0.5;
             r->light[(size_t)c * (size_t)r->rows + (size_t)k] =
                 in ? image->value[(size_t)(row + 0.5) * (size_t)image->width +
                                   (size_t)(column + 0.5)]
