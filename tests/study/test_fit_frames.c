@@ -7,30 +7,40 @@
 enum { FRAMES = 31, POINTS = 12 };
 static const double REACH = 0.0046, TUBE = 0.005;
 
-/* Heights at some distances from the axis, and nothing at the rim; between them cubic, so that a
- * frame is smooth where it is not read. */
+/* Heights at some distances from the axis, and nothing at the rim; between them a cubic spline,
+ * level at the axis: tissue has no kinks. */
 typedef struct knots {
-    double z[POINTS + 1];
+    double r[POINTS + 1], z[POINTS + 1], bend[POINTS + 1]; /* second derivatives */
 } knots;
 
-static double slope_at(const double *z, const double *r, int k) {
-    if (k == 0) return 0;
-    if (k == POINTS) return (z[k] - z[k - 1]) / (r[k] - r[k - 1]);
-    return (z[k + 1] - z[k - 1]) / (r[k + 1] - r[k - 1]);
+static void make_knots(const double *z, knots *s) {
+    double right[POINTS + 1], above[POINTS + 1];
+    for (int k = 0; k <= POINTS; k++) {
+        s->r[k] = k < POINTS ? REACH * k / (POINTS - 1) : TUBE;
+        s->z[k] = z && k < POINTS ? z[k] : 0;
+    }
+    /* A tridiagonal system: slope 0 at the axis, no bend at the rim. */
+    double first = s->r[1] - s->r[0];
+    above[0] = 0.5;
+    right[0] = 3 * (s->z[1] - s->z[0]) / (first * first);
+    for (int k = 1; k < POINTS; k++) {
+        double h = s->r[k] - s->r[k - 1], next = s->r[k + 1] - s->r[k];
+        double jump = (s->z[k + 1] - s->z[k]) / next - (s->z[k] - s->z[k - 1]) / h;
+        double pivot = 2 * (h + next) - h * above[k - 1];
+        above[k] = next / pivot;
+        right[k] = (6 * jump - h * right[k - 1]) / pivot;
+    }
+    s->bend[POINTS] = 0;
+    for (int k = POINTS - 1; k >= 0; k--) s->bend[k] = right[k] - above[k] * s->bend[k + 1];
 }
 
 static double height_at(const void *context, double r) {
     const knots *s = context;
-    double at[POINTS + 1];
-    for (int k = 0; k < POINTS; k++) at[k] = REACH * k / (POINTS - 1);
-    at[POINTS] = TUBE;
     int k = 0;
-    while (k + 1 < POINTS && r > at[k + 1]) k++;
-    double h = at[k + 1] - at[k], t = (r - at[k]) / h;
-    return (2 * t * t * t - 3 * t * t + 1) * s->z[k] +
-           (t * t * t - 2 * t * t + t) * h * slope_at(s->z, at, k) +
-           (3 * t * t - 2 * t * t * t) * s->z[k + 1] +
-           (t * t * t - t * t) * h * slope_at(s->z, at, k + 1);
+    while (k + 1 < POINTS && r > s->r[k + 1]) k++;
+    double h = s->r[k + 1] - s->r[k], b = (r - s->r[k]) / h, a = 1 - b;
+    return a * s->z[k] + b * s->z[k + 1] +
+           h * h / 6 * ((a * a * a - a) * s->bend[k] + (b * b * b - b) * s->bend[k + 1]);
 }
 
 /* The example's experiment with another table in SI units. */
@@ -84,8 +94,8 @@ static void frames_lead_to_the_tissue(void **state) {
     twin_measure("whole.yaml", truth, z);
     film_folder("whole");
     for (int i = 0; i < FRAMES; i++) {
-        knots s = {{0}};
-        if (i > 0) memcpy(s.z, &z[(i - 1) * POINTS], POINTS * sizeof *z);
+        knots s;
+        make_knots(i > 0 ? &z[(i - 1) * POINTS] : NULL, &s);
         snprintf(path, sizeof path, "%s/side%d.pgm", twin_path("whole"), i);
         film_write(&f, height_at, &s, path);
     }

@@ -6,11 +6,13 @@
 
 enum { UNKNOWN = 9, PIXELS = 1024 };
 enum { Y0, SLOPE, BEND, BLUR, A0, A1, B, C0, C1 };
-static const double HALF_WIDTH = 4.5, HIGHEST = 40; /* of the strip, half its height [pixels] */
+static const double WIDEST_STRIP = 4.5, NARROWEST = 1.5,
+                    HIGHEST = 40; /* of strips, half [pixels] */
 
 typedef struct strip {
     int count, columns;                         /* columns of the block of pixels that it lies in */
     double centre, half;                        /* of its heights */
+    double wide;                                /* half of its width */
     double x[PIXELS], y[PIXELS], light[PIXELS]; /* x of half a width, y of half a height */
     double weight[PIXELS], left[PIXELS];
     int place[PIXELS]; /* in the block, row by row */
@@ -24,8 +26,8 @@ typedef struct strip {
 static double take_pixels(const lar_view *v, const lar_grey *image, double x, strip *s) {
     double column, row;
     lar_view_to_picture(v, x, s->centre, &column, &row);
-    const double reach = HALF_WIDTH * fabs(sin(v->turn)) + s->half * fabs(cos(v->turn)),
-                 beside = HALF_WIDTH * fabs(cos(v->turn)) + s->half * fabs(sin(v->turn));
+    const double reach = s->wide * fabs(sin(v->turn)) + s->half * fabs(cos(v->turn)),
+                 beside = s->wide * fabs(cos(v->turn)) + s->half * fabs(sin(v->turn));
     const int first = (int)ceil(fmax(column - beside, 0)),
               last = (int)floor(fmin(column + beside, image->width - 1)),
               top = (int)ceil(fmax(row - reach, 0)),
@@ -37,13 +39,13 @@ static double take_pixels(const lar_view *v, const lar_grey *image, double x, st
             double dx = i - column, dy = j - row;
             double across = dx * cos(v->turn) + dy * sin(v->turn),
                    up = dx * sin(v->turn) - dy * cos(v->turn);
-            if (fabs(across) > HALF_WIDTH || fabs(up) > s->half || s->count == PIXELS) continue;
-            s->x[s->count] = across / HALF_WIDTH;
+            if (fabs(across) > s->wide || fabs(up) > s->half || s->count == PIXELS) continue;
+            s->x[s->count] = across / s->wide;
             s->y[s->count] = up / s->half;
             s->light[s->count] = image->value[(size_t)j * (size_t)image->width + (size_t)i];
             s->place[s->count++] = (j - top) * s->columns + i - first;
         }
-    return s->count / (4 * HALF_WIDTH * s->half);
+    return s->count / (4 * s->wide * s->half);
 }
 
 /* ---- least squares --------------------------------------------------------------------------- */
@@ -236,7 +238,7 @@ static void guess(strip *s, double slope, double blur) {
     for (int k = 0; k < 2; k++)
         if (count[k] > 0) middle[k] = median(light[k], count[k]);
     const double contrast = middle[1] - middle[0];
-    const double p[UNKNOWN] = {0, slope * HALF_WIDTH, 0, log(blur), middle[0], 0, 0, contrast, 0};
+    const double p[UNKNOWN] = {0, slope * s->wide, 0, log(blur), middle[0], 0, 0, contrast, 0};
     memcpy(s->p, p, sizeof p);
     for (int i = 0; i < s->count; i++) s->weight[i] = 1;
     evaluate(s, s->p);
@@ -264,13 +266,13 @@ static double variance_of(double l[UNKNOWN][UNKNOWN], const double part[UNKNOWN]
 }
 
 static void judge(strip *s, double noise, double out, int tissue, lar_edge *edge) {
-    static const double SURE = 6, WIDEST = 2, SPECKS = 0.3, FLOOR = 0.05, BENT = 0.25;
+    static const double SURE = 6, WIDEST = 2, SPECKS = 0.3, FLOOR = 0.02, BENT = 0.25;
     double l[UNKNOWN][UNKNOWN];
     if (!isfinite(noise) || !factor(s, 0, l)) return;
-    const double more = correlation_factor(s), slope = s->p[SLOPE] / HALF_WIDTH;
+    const double more = correlation_factor(s), slope = s->p[SLOPE] / s->wide;
     const double tilt = 1 + slope * slope, blur = exp(s->p[BLUR]);
     /* Blur moves a bent edge inwards: by half its curvature times sigma^2, along the normal. */
-    const double all = pow(blur / (HALF_WIDTH * tilt), 2), part = fmin(all, BENT);
+    const double all = pow(blur / (s->wide * tilt), 2), part = fmin(all, BENT);
     const double height[UNKNOWN] = {[Y0] = 1, [BEND] = -part}, contrast[UNKNOWN] = {[C0] = 1};
     const double variance = noise * noise * more * variance_of(l, height);
     const double sure = noise * sqrt(more * variance_of(l, contrast));
@@ -293,6 +295,12 @@ static double wanted_height(const strip *s, const lar_edge *edge) {
     return fmin(wanted, HIGHEST);
 }
 
+/* No pixel has a say in two points, whose errors would be alike then. */
+static double strip_width(const lar_view *v) {
+    const double apart = v->radius / v->scale / (v->points - 1);
+    return fmin(fmax(0.5 * apart, NARROWEST), WIDEST_STRIP);
+}
+
 void lar_edge_find(const lar_view *view, const lar_grey *image, const lar_outline *outline,
                    int tissue, double x, lar_edge *edge) {
     static const double NEAR = 10, WHOLE = 0.7, ROUNDED = 0.29;
@@ -301,8 +309,9 @@ void lar_edge_find(const lar_view *view, const lar_grey *image, const lar_outlin
     *edge = (lar_edge){0};
     if (!(outline->change > 0)) return;
     lar_outline_at(outline, x, &y, &slope);
+    s.wide = strip_width(view);
     s.centre = y;
-    s.half = fmin(NEAR + HALF_WIDTH * fabs(slope) + 3 * (outline->step - 1), HIGHEST);
+    s.half = fmin(NEAR + s.wide * fabs(slope) + 3 * (outline->step - 1), HIGHEST);
     for (int round = 0; round < 2; round++) {
         lar_edge look = {0};
         if (take_pixels(view, image, x, &s) < WHOLE) return;

@@ -1,6 +1,7 @@
 /* The edge of the tissue at one place, to a small part of a pixel, and how well it is known.
  *
- *     light                  All pixels of a strip, some 9 wide and 20 high around the outline, are
+ *     light                  All pixels of a strip, 9 wide or less where points are closer, and
+ * some 20 high, are
  *       |-----.   background  taken as they are, without interpolation: light on either side that
  * may |      \              lean, and between them a step that is blurred by a normal curve,
  *       |tissue '-----
@@ -9,7 +10,7 @@
  * Least squares of these nine by Levenberg and Marquardt, with weights that leave out what lies far
  * off (Tukey's biweight: specks, glints). y0 is the height; its variance is that of the squares,
  * with the noise from what is left, times what is known less where neighbours' noise is alike. To
- * it comes a twentieth of a pixel across the edge, for what no fit sees: pixels that are no points,
+ * it comes a fiftieth of a pixel across the edge, for what no fit sees: pixels that are no points,
  * bent lenses. Any blur that is alike on both sides leaves y0 where it is.
  */
 #ifndef LAR_STUDY_FRAMES_EDGE_H

@@ -65,6 +65,12 @@ static axes axes_of(const lar_profiles *p) {
     return a;
 }
 
+/* 1, 2 or 5 times a power of ten: some five of them in a range. */
+static double tick_of(double range) {
+    const double power = pow(10, floor(log10(range / 5))), part = range / 5 / power;
+    return power * (part < 2 ? 1 : part < 5 ? 2 : 5);
+}
+
 static void draw_frame(FILE *out, const lar_profiles *p, const axes *a) {
     char title[256];
     plain(p->film, title, sizeof title);
@@ -79,17 +85,20 @@ static void draw_frame(FILE *out, const lar_profiles *p, const axes *a) {
             "text-anchor=\"middle\">height [mm]</text>\n",
             LEFT + WIDTH + 30, TOP + HEIGHT + 50, LEFT, title, (int)p->frames.count, LEFT, TOP,
             WIDTH, HEIGHT, LEFT + WIDTH / 2, TOP + HEIGHT + 38, TOP + HEIGHT / 2, TOP + HEIGHT / 2);
-    for (int i = 0; i <= 4; i++) {
-        double r = a->radius * i / 4, z = a->low + (a->high - a->low) * i / 4;
-        fprintf(out,
-                "<text x=\"%.1f\" y=\"%d\" text-anchor=\"middle\" fill=\"#555\">%.3g</text>\n"
-                "<text x=\"%d\" y=\"%.1f\" text-anchor=\"end\" fill=\"#555\">%.3g</text>\n",
-                x_of(a, r), TOP + HEIGHT + 16, 1e3 * r, LEFT - 6, y_of(a, z) + 4, 1e3 * z);
-    }
+    double tick = 1e-3 * tick_of(1e3 * a->radius);
+    for (double r = 0; r <= a->radius * (1 + 1e-9); r += tick)
+        fprintf(out, "<text x=\"%.1f\" y=\"%d\" text-anchor=\"middle\" fill=\"#555\">%.4g</text>\n",
+                x_of(a, r), TOP + HEIGHT + 16, 1e3 * r);
+    tick = 1e-3 * tick_of(1e3 * (a->high - a->low));
+    for (double z = tick * ceil(a->low / tick); z <= a->high; z += tick)
+        fprintf(out, "<text x=\"%d\" y=\"%.1f\" text-anchor=\"end\" fill=\"#555\">%.4g</text>\n",
+                LEFT - 6, y_of(a, z) + 4, fabs(z) < 1e-6 * tick ? 0 : 1e3 * z);
 }
 
-/* Dots with bars of 95 %, and the time at the axis. */
-static void draw_profile(FILE *out, const lar_profiles *p, const axes *a, int32_t frame) {
+/* Dots with bars of 95 %, and the time at the axis where there is room below `*label`. */
+static void draw_profile(FILE *out, const lar_profiles *p, const axes *a, int32_t frame,
+                         double *label) {
+    static const double ROOM = 11;
     const lar_profile_point *point = &p->point[(size_t)frame * (size_t)p->view.points];
     int last = -1;
     for (int k = 0; k < p->view.points; k++) {
@@ -107,9 +116,11 @@ static void draw_profile(FILE *out, const lar_profiles *p, const axes *a, int32_
                     y_of(a, point[k].z));
         last = k;
     }
-    if (point[0].error > 0)
-        fprintf(out, "<text x=\"%d\" y=\"%.1f\" fill=\"#555\" font-size=\"10\">%.3g s</text>\n",
-                LEFT + 6, y_of(a, point[0].z) - 5, lar_profiles_time(p, frame));
+    const double y = y_of(a, point[0].z) - 5;
+    if (!(point[0].error > 0) || fabs(y - *label) < ROOM) return;
+    *label = y;
+    fprintf(out, "<text x=\"%d\" y=\"%.1f\" fill=\"#555\" font-size=\"10\">%.3g s</text>\n",
+            LEFT + 6, y, lar_profiles_time(p, frame));
 }
 
 lar_status lar_profiles_draw(const lar_profiles *p, const char *path, lar_error *error) {
@@ -119,8 +130,10 @@ lar_status lar_profiles_draw(const lar_profiles *p, const char *path, lar_error 
     if (status) return lar_part_close(&out, status);
     draw_frame(out.file, p, &a);
     const int32_t curves = p->frames.count < CURVES ? p->frames.count : CURVES;
+    double label = INFINITY;
     for (int32_t i = 0; i < curves; i++)
-        draw_profile(out.file, p, &a, curves > 1 ? (p->frames.count - 1) * i / (curves - 1) : 0);
+        draw_profile(out.file, p, &a, curves > 1 ? (p->frames.count - 1) * i / (curves - 1) : 0,
+                     &label);
     fprintf(out.file, "</svg>\n");
     return lar_part_close(&out, LAR_OK);
 }

@@ -55,7 +55,10 @@ static lar_status find_columns(source *s) {
             status = lar_scene_number(s->scene, scale, "a number, for example 0.001", &s->scale[c]);
         if (status) break;
         s->column[c] = lar_inverse_table_find(&s->table, text);
-        bool elsewhere = c == PRESSURE && s->e->pressure; /* in a table of its own */
+        /* The pressure's own table may have names that this one has not. */
+        bool elsewhere = s->e->pressure && (c == PRESSURE || c == TIME);
+        if (s->column[c] < 0 && elsewhere)
+            s->column[c] = lar_inverse_table_find(&s->table, column_name[c]);
         if (name && s->column[c] < 0 && !elsewhere)
             return lar_scene_fail(s->scene, name, LAR_ERROR_FORMAT, "%s:%d has no column %s",
                                   s->table.path, s->table.header_line, text);
