@@ -55,7 +55,7 @@ says 'frames  *3 of 120 x 70 pixels, 0 to 0.2 s'
 says 'missing  *3 numbers'
 says 'tissue  *brighter'
 expect 0 "$LARIAT" fit --profile film view.yaml --json
-has_keys --numbers frames missing_frames early_frames width height points points_missed uncertainty \
+has_keys --numbers frames missing_frames early_frames width height points points_missed points_clipped uncertainty \
     uncertainty_worst blur wall_time frames_per_second
 [ "$(value_of points)" = 18 ] || fail "$(value_of points) points"
 grep -q '</svg>' measured/profiles.svg || fail "no picture of the profiles"

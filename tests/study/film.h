@@ -20,6 +20,7 @@ typedef struct film {
     double tissue, behind;         /* light, of 1 */
     double blur, noise, uneven;    /* pixels; of 1; of the light, from one corner to the other */
     double gamma;                  /* of the camera: 0 is 1 */
+    double grain;                  /* over which noise is alike [pixels] */
     int specks;
     bool motion; /* blurred by a box, not by a normal curve */
     uint64_t seed;
@@ -105,10 +106,25 @@ TEST_UNUSED static void film_specks(film *f, float *light) {
     }
 }
 
+/* Normal numbers of deviation 1, alike over the grain. */
+TEST_UNUSED static void film_noise(film *f, float *noise) {
+    const int count = f->width * f->height;
+    for (int i = 0; i < count; i++) noise[i] = (float)twin_noise(&f->seed);
+    if (!(f->grain > 0)) return;
+    film alike = *f;
+    double squares = 0;
+    alike.blur = f->grain;
+    alike.motion = false;
+    film_blur(&alike, noise, true);
+    film_blur(&alike, noise, false);
+    for (int i = 0; i < count; i++) squares += (double)noise[i] * (double)noise[i];
+    for (int i = 0; i < count; i++) noise[i] /= (float)sqrt(squares / count);
+}
+
 /* One frame into a file, .pgm or .png. */
 TEST_UNUSED static void film_write(film *f, film_height *height, const void *context,
                                    const char *path) {
-    static float light[FILM_PIXELS];
+    static float light[FILM_PIXELS], noise[FILM_PIXELS];
     static uint8_t grey[FILM_PIXELS];
     const int count = f->width * f->height;
     assert_in_range(count, 1, FILM_PIXELS);
@@ -116,10 +132,11 @@ TEST_UNUSED static void film_write(film *f, film_height *height, const void *con
     film_blur(f, light, true);
     film_blur(f, light, false);
     film_specks(f, light);
+    film_noise(f, noise);
     for (int i = 0; i < count; i++) {
         double place = 0.5 * (i % f->width) / f->width + 0.5 * i / count;
-        double value = light[i] * (1 - f->uneven * place * place);
-        value = fmin(fmax(value + f->noise * twin_noise(&f->seed), 0), 1);
+        double value = (double)light[i] * (1 - f->uneven * place * place);
+        value = fmin(fmax(value + f->noise * (double)noise[i], 0), 1);
         if (f->gamma > 0) value = pow(value, 1 / f->gamma);
         grey[i] = (uint8_t)(255 * value + 0.5);
     }

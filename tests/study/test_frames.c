@@ -129,11 +129,36 @@ static void edges_are_found(void **state) {
     f.behind = 0.35;
     look("all of it", f, "", "pgm", &all);
     f = GOOD;
+    f.grain = 1;
+    look("grainy", f, "", "pgm", &all);
+    f = GOOD;
     if (lar_grey_has_png()) look("png", f, "", "png", &all);
     double share = all.covered / (double)all.points;
     print_message("%d points, %.1f %% of them within 1.96 standard deviations\n", all.points,
                   100 * share);
     assert_true(share > 0.9 && share <= 0.995);
+}
+
+/* A background that is lighter than white moves the edge, and the errors say so. */
+static void exposure_is_felt(void **state) {
+    (void)state;
+    film f = GOOD;
+    const bump b = {2.5e-3, 3};
+    lar_profiles p = {0};
+    lar_error error = {0};
+    char path[600];
+    f.behind = 1.2;
+    film_folder("film");
+    snprintf(path, sizeof path, "%s/1.pgm", twin_path("film"));
+    film_write(&f, bump_at, &b, path);
+    write_view("view.yaml", &f, "");
+    if (lar_profiles_read(twin_path("film"), twin_path("view.yaml"), NULL, &p, &error))
+        fail_msg("%s", error.message);
+    assert_int_equal(p.clipped, p.found);
+    for (int k = 0; k < p.view.points; k++)
+        assert_below(fabs(p.point[k].z - bump_at(&b, lar_profiles_radius(&p, k))),
+                     1.96 * p.point[k].error);
+    lar_profiles_clear(&p);
 }
 
 /* ---- what is refused ------------------------------------------------------------------------- */
@@ -337,8 +362,8 @@ static void wrong_axis_is_felt(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(edges_are_found), cmocka_unit_test(bad_frames_are_refused),
-        cmocka_unit_test(bad_views_are_refused), cmocka_unit_test(time_is_counted),
-        cmocka_unit_test(wrong_axis_is_felt)};
+        cmocka_unit_test(edges_are_found),        cmocka_unit_test(exposure_is_felt),
+        cmocka_unit_test(bad_frames_are_refused), cmocka_unit_test(bad_views_are_refused),
+        cmocka_unit_test(time_is_counted),        cmocka_unit_test(wrong_axis_is_felt)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -15,6 +15,11 @@ void profile_report_table(const lar_profiles *p, FILE *out) {
     fprintf(out, "tissue          %s than what is behind it, edges blurred by %.1f pixels\n",
             p->view.tissue > 0 ? "brighter" : "darker", p->blur);
     fprintf(out, "points          %d, %d without an edge\n", (int)p->found, (int)p->missed);
+    if (p->clipped > 0)
+        fprintf(out,
+                "exposure        %d points lie where the picture is black or white in full; their "
+                "errors are as long as the blur: take other light\n",
+                (int)p->clipped);
     fprintf(out,
             "uncertainty     %.2g um, %.2g um at worst (one standard deviation, pixels of %g um)\n",
             UM * p->error, UM * p->worst, UM * p->view.scale);
@@ -33,6 +38,7 @@ void profile_report_json(const lar_profiles *p, FILE *out) {
     lar_json_text(&json, "tissue", p->view.tissue > 0 ? "bright" : "dark");
     lar_json_integer(&json, "points", p->found);
     lar_json_integer(&json, "points_missed", p->missed);
+    lar_json_integer(&json, "points_clipped", p->clipped);
     lar_json_number(&json, "uncertainty", p->error);
     lar_json_number(&json, "uncertainty_worst", p->worst);
     lar_json_number(&json, "blur", p->blur);

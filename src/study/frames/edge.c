@@ -11,6 +11,7 @@ static const double WIDEST_STRIP = 4.5, NARROWEST = 1.5,
 
 typedef struct strip {
     int count, columns;                         /* columns of the block of pixels that it lies in */
+    int clipped;                                /* pixels that are black or white in full */
     double centre, half;                        /* of its heights */
     double wide;                                /* half of its width */
     double x[PIXELS], y[PIXELS], light[PIXELS]; /* x of half a width, y of half a height */
@@ -32,7 +33,7 @@ static double take_pixels(const lar_view *v, const lar_grey *image, double x, st
               last = (int)floor(fmin(column + beside, image->width - 1)),
               top = (int)ceil(fmax(row - reach, 0)),
               bottom = (int)floor(fmin(row + reach, image->height - 1));
-    s->count = 0;
+    s->count = s->clipped = 0;
     s->columns = last - first + 1;
     for (int j = top; j <= bottom; j++)
         for (int i = first; i <= last; i++) {
@@ -42,7 +43,9 @@ static double take_pixels(const lar_view *v, const lar_grey *image, double x, st
             if (fabs(across) > s->wide || fabs(up) > s->half || s->count == PIXELS) continue;
             s->x[s->count] = across / s->wide;
             s->y[s->count] = up / s->half;
-            s->light[s->count] = image->value[(size_t)j * (size_t)image->width + (size_t)i];
+            const float light = image->value[(size_t)j * (size_t)image->width + (size_t)i];
+            s->light[s->count] = (double)light;
+            s->clipped += light <= 0 || light >= 1;
             s->place[s->count++] = (j - top) * s->columns + i - first;
         }
     return s->count / (4 * s->wide * s->half);
@@ -266,7 +269,7 @@ static double variance_of(double l[UNKNOWN][UNKNOWN], const double part[UNKNOWN]
 }
 
 static void judge(strip *s, double noise, double out, int tissue, lar_edge *edge) {
-    static const double SURE = 6, WIDEST = 2, SPECKS = 0.3, FLOOR = 0.02, BENT = 0.25;
+    static const double SURE = 6, WIDEST = 2, SPECKS = 0.3, FLOOR = 0.02, BENT = 0.25, MANY = 0.1;
     double l[UNKNOWN][UNKNOWN];
     if (!isfinite(noise) || !factor(s, 0, l)) return;
     const double more = correlation_factor(s), slope = s->p[SLOPE] / s->wide;
@@ -282,8 +285,11 @@ static void judge(strip *s, double noise, double out, int tissue, lar_edge *edge
     edge->clear = sure > 0 ? -tissue * edge->contrast / sure : 0;
     edge->y = s->centre + s->p[Y0] - part * s->p[BEND];
     edge->error = sqrt(variance + FLOOR * FLOOR * tilt + rest * rest);
-    edge->found = edge->clear > SURE && edge->error < WIDEST && fabs(s->p[Y0]) < 0.8 * s->half &&
-                  blur < 0.5 * s->half && out < SPECKS;
+    /* What was lighter than white had its edge elsewhere: by how much of the blur nobody knows. */
+    edge->clipped = s->clipped > MANY * s->count;
+    if (edge->clipped) edge->error = hypot(edge->error, blur);
+    edge->found = edge->clear > SURE && (edge->error < WIDEST || edge->clipped) &&
+                  fabs(s->p[Y0]) < 0.8 * s->half && blur < 0.5 * s->half && out < SPECKS;
 }
 
 /* How high a strip shall be that was looked at: what is more blurred than thought, or hardly stands

@@ -11,7 +11,9 @@
  * off (Tukey's biweight: specks, glints). y0 is the height; its variance is that of the squares,
  * with the noise from what is left, times what is known less where neighbours' noise is alike. To
  * it comes a fiftieth of a pixel across the edge, for what no fit sees: pixels that are no points,
- * bent lenses. Any blur that is alike on both sides leaves y0 where it is.
+ * bent lenses. Blur leaves a straight edge where it is, and moves a bent one inwards by half its
+ * curvature times sigma^2, which is taken back. Where more than a tenth of the pixels are black or
+ * white in full the curve is cut off, and the error is as long as the blur.
  */
 #ifndef LAR_STUDY_FRAMES_EDGE_H
 #define LAR_STUDY_FRAMES_EDGE_H
@@ -19,7 +21,7 @@
 #include "study/frames/outline.h"
 
 typedef struct lar_edge {
-    bool found;
+    bool found, clipped;   /* clipped: where much is black or white in full */
     double y, error;       /* height and its standard deviation [pixels] */
     double blur, contrast; /* sigma [pixels]; light of the background less that of the tissue */
     double clear;          /* contrast in its own standard deviations */

@@ -39,10 +39,13 @@ static void put_together(const lar_edge side[2], double scale, lar_profile_point
         sum += weight * side[i].y;
         weights += weight;
         *blur = side[i].blur;
+        point->clipped = point->clipped || side[i].clipped;
     }
     if (!(weights > 0)) return;
     point->z = scale * sum / weights;
     point->error = scale / sqrt(weights);
+    /* Too much light moves both sides alike. */
+    if (point->clipped) point->error = scale * fmax(side[0].error, side[1].error);
     double apart = fabs(side[0].y - side[1].y);
     if (side[0].found && side[1].found && apart > CHANCE * hypot(side[0].error, side[1].error))
         point->error = fmax(point->error, 0.5 * scale * apart);
@@ -165,6 +168,7 @@ static void count_up(lar_profiles *p, double *scratch) {
     for (size_t i = 0; i < all; i++) {
         scratch[i] = p->point[i].error;
         *(scratch[i] > 0 ? &p->found : &p->missed) += 1;
+        p->clipped += p->point[i].clipped;
         p->worst = fmax(p->worst, scratch[i]);
     }
     p->error = median(scratch, all);

@@ -10,6 +10,7 @@
 
 typedef struct lar_profile_point {
     double z, error; /* height and its standard deviation [m]; error 0: no edge was found there */
+    bool clipped;    /* the picture is black or white in full there */
 } lar_profile_point;
 
 typedef struct lar_profiles {
@@ -19,6 +20,7 @@ typedef struct lar_profiles {
     lar_profile_point *point; /* [frames][view.points] */
     int width, height;        /* of the frames */
     int32_t found, missed;    /* points of all frames */
+    int32_t clipped;          /* of those found, beside too much black or white in full */
     int32_t early;            /* frames before time 0, which the table leaves out */
     int64_t lost;             /* numbers without a frame */
     double error, worst,
