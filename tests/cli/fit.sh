@@ -95,6 +95,8 @@ if grep -q libcminpack-dev err; then
     exit 77
 fi
 
+expect 1 "$LARIAT" fit view.yaml
+complains 'view\.yaml:1:1: this is the file of a view.*--profile FRAMES view\.yaml'
 expect 0 "$LARIAT" fit fit.yaml --out made --json
 has_keys --numbers parameters.0.value parameters.0.low parameters.0.high deviation wall_time runs
 value_of parameters.0.value | awk '{ exit !($1 > 1960 && $1 < 2040) }' ||

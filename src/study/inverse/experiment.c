@@ -248,6 +248,11 @@ static lar_status read_root(reader *r) {
     const lar_yaml *root = s->root, *version, *parameters, *experiments, *entry;
     const char *title = r->scene.path;
     int64_t number;
+    if (lar_yaml_get(root, "lariat-view"))
+        return lar_scene_fail(s, root, LAR_ERROR_UNSUPPORTED,
+                              "this is the file of a view, not of an experiment; it goes with "
+                              "frames: lariat fit --profile FRAMES %s",
+                              r->scene.path);
     lar_status status = lar_scene_keys(s, root, "a fit", keys);
     if (!status) status = lar_scene_need(s, root, "a fit", "lariat-fit", "lariat-fit: 1", &version);
     if (status) return status;
