@@ -7,7 +7,7 @@
 # Debian brings halves along: openmpi-bin has mpicc without mpi.h, a library comes without its
 # -dev package. Everything is asked again at every configuration, so that what was installed or
 # removed meanwhile is seen; a try takes some hundredths of a second, which try_compile does not.
-set(LARIAT_OPTIONAL_NAMES cminpack hwloc libwebsockets metis mpi nifti petsc python sdl2 ucx)
+set(LARIAT_OPTIONAL_NAMES cminpack hwloc libwebsockets metis mpi nifti petsc png python sdl2 ucx)
 set(LARIAT_WITHOUT "" CACHE STRING "Optional libraries to leave out: a list of ${LARIAT_OPTIONAL_NAMES}")
 foreach(name ${LARIAT_WITHOUT})
   if(NOT name IN_LIST LARIAT_OPTIONAL_NAMES)
@@ -94,6 +94,13 @@ lariat_optional(cminpack CALLED cminpack PACKAGE libcminpack-dev WITHOUT "no lar
   SIGNS "${CMINPACK_FOUND}" INCLUDES ${CMINPACK_INCLUDE_DIRS} LIBRARIES ${CMINPACK_LINK_LIBRARIES}
   SOURCE "#include <cminpack.h>
 int main(void) { double x[2] = {3, 4}; return enorm(2, x) != 5; }")
+
+# Frames of a camera, for profiles.
+lariat_pkg(PNG libpng>=1.6)
+lariat_optional(png CALLED libpng PACKAGE libpng-dev WITHOUT "lariat fit --profile reads no .png"
+  SIGNS "${PNG_FOUND}" INCLUDES ${PNG_INCLUDE_DIRS} LIBRARIES ${PNG_LINK_LIBRARIES}
+  SOURCE "#include <png.h>
+int main(void) { png_image i = {.version = PNG_IMAGE_VERSION}; png_image_free(&i); return 0; }")
 
 # Label images of NIfTI, -1 and -2. Older packages of libnifti lack the second.
 find_library(NIFTI_LIBRARY nifti2 NO_CACHE)

@@ -7,7 +7,7 @@
 #
 #   build   what the library and the command need; an error when it cannot be had
 #   scan    what scans are read with: libnifti
-#   fit     what `lariat fit` finds parameters with: cminpack
+#   fit     what `lariat fit` finds parameters with, cminpack, and reads frames with, libpng
 #   web     what people look through: libwebsockets for the server, Node.js and npm for the page
 #   python  what the Python module is built with: Python and its headers, and what `pip install .` needs
 #   check   what the tests need: cmocka; and what widens them: a second compiler, METIS, hwloc, UCX,
@@ -58,6 +58,8 @@ NIFTI_PACKAGES="
 libnifti-dev      -"
 FIT_PACKAGES="
 libcminpack-dev   m:cminpack"
+PNG_PACKAGES="
+libpng-dev        m:libpng"
 PETSC_PACKAGES="
 petsc-dev         m:PETSc"
 REPORT_PACKAGES="
@@ -191,7 +193,10 @@ for group in "$@"; do
     case $group in
     build) need "$BUILD_PACKAGES" ;;
     scan) want "$NIFTI_PACKAGES" "lariat mesh is built without .nii" || true ;;
-    fit) want "$FIT_PACKAGES" "lariat fit is built without its solver" || true ;;
+    fit)
+        want "$FIT_PACKAGES" "lariat fit is built without its solver" || true
+        want "$PNG_PACKAGES" "lariat fit --profile reads no .png" || true
+        ;;
     web)
         want "$LWS_PACKAGES" "lariat view is built without its server" || true
         want "$NODE_PACKAGES" "the viewer's page is not built" || true

@@ -8,6 +8,7 @@
 #include "base/file/part_file.h"
 #include "cli/commands.h"
 #include "cli/report/fit.h"
+#include "cli/report/profile.h"
 #include "cli/stop.h"
 #include "study/inverse/output.h"
 
@@ -103,17 +104,51 @@ static int fit(const lar_inverse_problem *problem, const char *folder, bool json
     return status;
 }
 
+/* ---- profiles from frames -------------------------------------------------------------------- */
+
+static lar_status write_profiles(const lar_profiles *p, const char *folder, lar_error *error) {
+    char path[PATH_SIZE];
+    lar_status status = lar_folder_make(folder, error);
+    snprintf(path, sizeof path, "%.3900s/profiles.csv", folder);
+    if (!status) status = lar_profiles_write(p, path, error);
+    snprintf(path, sizeof path, "%.3900s/profiles.svg", folder);
+    return status ? status : lar_profiles_draw(p, path, error);
+}
+
+static int measure(const char *film, const char *view, const char *folder, bool json) {
+    lar_profiles profiles = {0};
+    lar_error error = {0};
+    int status = CLI_DONE;
+    cli_catch_stop();
+    lar_status failed = lar_profiles_read(film, view, &cli_stop_asked, &profiles, &error);
+    if (!failed && !json) profile_report_table(&profiles, stdout);
+    if (!failed && folder) failed = write_profiles(&profiles, folder, &error);
+    if (failed)
+        status = cli_complain(&cli_fit, cli_stop_asked ? CLI_INTERRUPTED : CLI_FAILED, "%s",
+                              error.message);
+    else if (json)
+        profile_report_json(&profiles, stdout);
+    lar_profiles_clear(&profiles);
+    return status;
+}
+
 static int fit_main(int argc, char **argv) {
-    const char *path = NULL, *folder = NULL;
+    const char *path = NULL, *folder = NULL, *film = NULL;
     bool json = false;
     const cli_option options[] = {
+        CLI_TEXT("--profile", "FRAMES",
+                 "measure instead of fitting: FRAMES are side views of tissue in a\ntube, a folder "
+                 "(.png, .pgm) or a list (.txt), EXPERIMENT is the\nfile of the view (.yaml)",
+                 &film),
         CLI_TEXT("--out", "DIR",
                  "write tissue files for scenes (.tissue.yaml), pictures of\nmeasurement and model "
-                 "(.svg) and fit.json there",
+                 "(.svg) and fit.json there; with --profile\nprofiles.csv, which an aspiration "
+                 "reads, and its picture",
                  &folder),
         CLI_FLAG("--json", "the answer as one JSON object on standard output", &json), CLI_END};
     int status = cli_parse(&cli_fit, options, argc, argv, &path, 1);
     if (status >= 0) return status;
+    if (film) return measure(film, path, folder, json);
     lar_inverse_problem problem = {0};
     lar_error error = {0};
     if (!lar_inverse_available())
@@ -140,8 +175,10 @@ const cli_command cli_fit = {
         "is chance.\n"
         "EXPERIMENT is a file (.yaml) that names scenes, tables of measured numbers (.csv) and\n"
         "the free parameters. Simulations go on all cores. Ctrl-C ends a fit with the best so\n"
-        "far (exit status 130).",
+        "far (exit status 130).\n"
+        "With --profile it measures: frames of a camera become the profiles of an aspiration.",
     .examples = "  lariat fit examples/fit_tension.yaml\n"
                 "  lariat fit examples/fit_tension.yaml --out fitted\n"
-                "  lariat fit examples/fit_tension.yaml --json\n",
+                "  lariat fit examples/fit_tension.yaml --json\n"
+                "  lariat fit --profile frames view.yaml --out measured\n",
     .main = fit_main};

@@ -12,6 +12,7 @@
 #include "comm/mpi_world.h"
 #include "simulation/simulation.h"
 #include "study/bench/step.h"
+#include "study/frames/image.h"
 #include "study/inverse/solver.h"
 #include "study/implicit/linear_solver.h"
 #include "study/real_time.h"
@@ -81,6 +82,8 @@ void lar_features_look(lar_feature feature[LAR_FEATURES]) {
          metis},
         {"fit", "lariat fit, parameters of tissue from experiments",
          "apt-get install libcminpack-dev, then make", lar_inverse_available()},
+        {"png", "lariat fit --profile reads frames in .png",
+         "apt-get install libpng-dev, then make", lar_grey_has_png()},
         {"ucx", "--comm ucx, processors of a cluster", "apt-get install libucx-dev, then make",
          backend("ucx")},
         {"openmpi", "processors that Open MPI's mpirun starts",

@@ -29,7 +29,7 @@ typedef struct lar_feature {
     bool there;        /* built in, and it works here */
 } lar_feature;
 
-enum { LAR_FEATURES = 12 };
+enum { LAR_FEATURES = 13 };
 
 /* The optional parts, always the same rows in the same order. */
 void lar_features_look(lar_feature feature[LAR_FEATURES]);

@@ -39,12 +39,64 @@ fit >fit.yaml
 
 expect 0 "$LARIAT" fit --help
 says 'EXPERIMENT'
+
+# Frames of a camera need no solver. Three of a bump, bright before dark, with blurred edges; the last
+# one is of the same film four numbers later.
+mkdir film
+for n in 1 2 6; do
+    awk -v n=$n 'BEGIN { print "P2\n# a frame\n120 70\n255"
+        for (j = 0; j < 70; j++) for (i = 0; i < 120; i++) {
+            t = (j - 60 + 6 * n * (1 - ((i - 60) / 50) ^ 2)) / 1.2
+            print int(60 + 140 / (1 + exp(-1.7 * t)) + (i * 7 + j * 13 + n) % 5) } }' >film/side$n.pgm
+done
+printf 'lariat-view: 1\nmm_per_pixel: 0.1\naxis_pixel: 60\nrim_pixel: 60\nradius_mm: 4.5\npoints: 6\n' >view.yaml
+expect 0 "$LARIAT" fit --profile film view.yaml --out measured
+says 'frames  *3 of 120 x 70 pixels, 0 to 0.2 s'
+says 'missing  *3 numbers'
+says 'tissue  *brighter'
+expect 0 "$LARIAT" fit --profile film view.yaml --json
+has_keys --numbers frames missing_frames early_frames width height points points_missed points_clipped uncertainty \
+    uncertainty_worst blur wall_time frames_per_second
+[ "$(value_of points)" = 18 ] || fail "$(value_of points) points"
+grep -q '</svg>' measured/profiles.svg || fail "no picture of the profiles"
+# At the axis it is 0.6 mm a number high.
+awk -F, '$1 + 0 == $1 && $2 == 0 { n = $1 * 25 + 1; off = $3 - 6e-4 * n
+    if (off * off > 25e-12 || $4 > 1e-5 || $4 <= 0) exit 1; rows++ } END { exit rows != 3 }' \
+    measured/profiles.csv || fail "other heights: $(cat measured/profiles.csv)"
+wrong_film() { # PATTERN FILM VIEW
+    expect 1 "$LARIAT" fit --profile "$2" "$3"
+    complains "$1"
+    silent
+    [ "$(wc -l <err)" -eq 1 ] || fail "more than one line: $(cat err)"
+}
+mkdir empty
+wrong_film 'empty: there is no image (.png, .pgm) in this folder' empty view.yaml
+wrong_film 'cannot read nowhere' nowhere view.yaml
+sed 's/axis_pixel: 60/axis_pixel: 20/' view.yaml >beside.yaml
+wrong_film 'side1\.pgm: the tube lies out of the picture.*beside\.yaml' film beside.yaml
+sed 's/radius_mm/radius_m/' view.yaml >slip.yaml
+wrong_film 'slip\.yaml:5:1: the key "radius_m" is unknown; did you mean radius_mm' film slip.yaml
+cp -r film other
+printf 'P2 60 140 255\n' >other/side6.pgm
+tail -n +5 film/side6.pgm >>other/side6.pgm
+wrong_film 'side6\.pgm: frame 3 has 60 x 140 pixels' other view.yaml
+awk 'BEGIN { print "P2 120 70 255"; for (i = 0; i < 8400; i++) print 90 + i * i % 7 }' >other/side6.pgm
+wrong_film 'side6\.pgm: in frame 3 of 3 an edge of bright tissue was found at . of 6 places' other view.yaml
+if [ -c /dev/full ]; then
+    mkdir full_film
+    ln -s /dev/full full_film/profiles.csv.part
+    expect 1 "$LARIAT" fit --profile film view.yaml --out full_film
+    complains 'profiles\.csv: .*No space left'
+fi
+
 "$LARIAT" fit fit.yaml >out 2>err
 if grep -q libcminpack-dev err; then
     echo "skipped: built without cminpack"
     exit 77
 fi
 
+expect 1 "$LARIAT" fit view.yaml
+complains 'view\.yaml:1:1: this is the file of a view.*--profile FRAMES view\.yaml'
 expect 0 "$LARIAT" fit fit.yaml --out made --json
 has_keys --numbers parameters.0.value parameters.0.low parameters.0.high deviation wall_time runs
 value_of parameters.0.value | awk '{ exit !($1 > 1960 && $1 < 2040) }' ||
@@ -97,6 +149,14 @@ sed 's/by: 0.002/by: -0.002/; s/fix:/gravity: [0, 0, -1.0e6]\nfix:/' one.yaml >w
 fit | sed 's/one\.yaml/wild.yaml/' >bad.yaml
 expect 3 "$LARIAT" fit bad.yaml
 complains 'no answer with the first guess'
+
+# How well each row is known may stand beside it.
+printf 'displacement,force,error\n0.001,0.0286,1e-4\n0.002,0.2,10\n0.003,0.0788,1e-4\n0.004,0.1011,1e-4\n' >known.csv
+fit shear_modulus 1e3 known.csv >known.yaml
+expect 0 "$LARIAT" fit known.yaml --json
+value_of parameters.0.value | awk '{ exit !($1 > 1940 && $1 < 2060) }' || fail "the wrong row had a say"
+sed -i 's/,10$/,0/' known.csv
+bad 'known\.csv:3: the error is 0; it is the standard deviation' fit shear_modulus 1e3 known.csv
 
 # A tube, of one element: profiles, pressures and the tube's place.
 sed 's/^move.*/load: [ { faces: { plane: { point: [0, 0, 0.02], normal: [0, 0, 1] } }, pressure: -100 } ]/' \

@@ -60,6 +60,9 @@ for file in .vtu .yaml _surface.vtp; do
     [ -s "Two_organs/Two_organs$file" ] || fail "no Two_organs$file"
 done
 find . -name '*.part' | grep -q . && fail "a part file is left"
+grep -q 'law: coupled-neo-hookean, *# a guess' Two_organs/Two_organs.yaml &&
+    grep -q '^ *shear_modulus: 2100,$' Two_organs/Two_organs.yaml &&
+    grep -q 'lariat fit' Two_organs/Two_organs.yaml || fail "the scene does not say what is a guess"
 
 # The pull moves the handle alike whatever the mesh; frames hold the embedded surface when asked to.
 furthest() { # the largest mean displacement of the handle in a run's probes

@@ -50,6 +50,7 @@ half sdl2 2.26.5
 half libwebsockets 4.1.6
 half PETSc 3.18.5
 half cminpack 1.3.6
+half libpng 1.6.39
 echo '#include <this_header_is_not_there.h>' >"$scratch/include/metis.h"
 echo '#include <this_header_is_not_there.h>' >"$scratch/include/Python.h"
 
@@ -74,6 +75,7 @@ compile() {
         src/CMakeFiles/lariat_core.dir/divide/distribution_metis.c.o \
         src/CMakeFiles/lariat_core.dir/meshing/image/nifti.c.o \
         src/CMakeFiles/lariat_core.dir/session/device/gamepad.c.o \
+        src/CMakeFiles/lariat_study.dir/study/frames/image_png.c.o \
         src/CMakeFiles/lariat_core.dir/server/absent.c.o >"$scratch/$1.build" 2>&1 || {
         fail "$1: what is built without the optional libraries does not compile:"
         cat "$scratch/$1.build" >&2
@@ -90,7 +92,7 @@ no_target() {
 
 configure half -DPYTHON_INCLUDE_FIRST="$scratch/include" -DMETIS_INCLUDE="$scratch/include" -DNIFTI_INCLUDE=/nowhere
 compile half
-for name in 'Open MPI' MPICH cminpack hwloc METIS libnifti UCX SDL2 libwebsockets PETSc 'Python headers'; do
+for name in 'Open MPI' MPICH cminpack libpng hwloc METIS libnifti UCX SDL2 libwebsockets PETSc 'Python headers'; do
     says_once half "^$name is only half installed and not used: .*(apt-get install [a-z0-9-]*)$"
 done
 for target in liblariat-mpi-openmpi liblariat-mpi-mpich liblariat-petsc _lariat.abi3.so of-nowhere; do
@@ -98,9 +100,9 @@ for target in liblariat-mpi-openmpi liblariat-mpi-mpich liblariat-petsc _lariat.
 done
 
 # The same by wish; nothing is looked for then.
-configure without '-DLARIAT_WITHOUT=cminpack;hwloc;metis;nifti;ucx;sdl2;libwebsockets;petsc;mpi;python'
+configure without '-DLARIAT_WITHOUT=cminpack;png;hwloc;metis;nifti;ucx;sdl2;libwebsockets;petsc;mpi;python'
 compile without
-for name in cminpack hwloc METIS libnifti UCX SDL2 libwebsockets PETSc MPI 'Python headers'; do
+for name in cminpack libpng hwloc METIS libnifti UCX SDL2 libwebsockets PETSc MPI 'Python headers'; do
     says_once without "^-- $name left out"
 done
 for target in liblariat-mpi liblariat-petsc _lariat.abi3.so of-nowhere nifti2; do

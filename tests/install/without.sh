@@ -52,6 +52,7 @@ targets_of() {
 tests_of() {
     case $1 in
     cminpack) echo 'study/fit|cli/fit' ;;
+    png) echo 'study/f|cli/f|fuzz/f' ;;
     hwloc) echo 'base/|comm/threads' ;;
     libwebsockets) echo 'session/(server|device)|cli/(view|replay)' ;;
     metis) echo 'divide/distribution|cli/partition' ;;

@@ -59,11 +59,24 @@ static void every_tissue_has_a_source(void **state) {
         assert_true(tissue->poisson_ratio > 0 && tissue->poisson_ratio < 0.5);
         assert_true(tissue->density > 100 && tissue->density < 2500);
         assert_int_equal(tissue->rigid, strcmp(tissue->name, "bone") == 0);
+        /* What nobody has measured says so first. */
+        assert_int_equal(tissue->guess, strncmp(tissue->source, "a guess: ", 9) == 0);
     }
+}
+
+static void guesses_are_named(void **state) {
+    (void)state;
+    static const char *const guesses[] = {"stomach", "bladder", "bone", "whatever"},
+                             *const known[] = {"liver", "kidney", "brain", "muscle", "lung"};
+    for (size_t i = 0; i < sizeof guesses / sizeof guesses[0]; i++)
+        assert_true(lar_tissue_find(guesses[i])->guess);
+    for (size_t i = 0; i < sizeof known / sizeof known[0]; i++)
+        assert_false(lar_tissue_find(known[i])->guess);
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(names_speak_of_tissues),
-                                       cmocka_unit_test(every_tissue_has_a_source)};
+                                       cmocka_unit_test(every_tissue_has_a_source),
+                                       cmocka_unit_test(guesses_are_named)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -159,6 +159,52 @@ static void indentation_is_fitted(void **state) {
     lar_inverse_result_clear(&r);
 }
 
+/* A flat punch, 20 mm wide: the nodes under it go down together, without friction and stuck to it.
+ */
+static void flat_punch_is_fitted(const char *more) {
+    static const double PAD[3] = {0.04, 0.04, 0.02};
+    static const double depth[2][2] = {{0.002}, {0.004}};
+    const double truth[1] = {2.3e3};
+    double force[2];
+    lar_inverse_result r;
+    char pressed[1024], finer[1100];
+    const bool full = test_in_full();
+    snprintf(
+        pressed, sizeof pressed,
+        "sets: [ { name: punch, nodes: { box: [[0.0099, 0.0099, 0.0199], [0.0301, 0.0301, 0.0201]] "
+        "} } ]\n"
+        "move: [ { nodes: punch, axes: z, by: -1, over: 1 } ]\n"
+        "fix:\n  - { nodes: " FACE("0") ", axes: xyz }\n%s",
+        more);
+    snprintf(finer, sizeof finer, "%s%s", pressed, full ? "" : "time_step: 1.0e-4\n");
+    twin_block("punched_fine.vtk", full ? (const int[3]){20, 20, 10} : (const int[3]){8, 8, 4},
+               PAD);
+    twin_block("punched.vtk", full ? (const int[3]){16, 16, 8} : (const int[3]){8, 8, 4}, PAD);
+    write_scene("punched_fine.yaml", "punched_fine.vtk", NEO, finer);
+    write_scene("punched.yaml", "punched.vtk", NEO, pressed);
+    write_curve("punched.csv", "depth", depth, 2, ONES, false);
+    write_fit("punched_fine_fit.yaml", FREE("shear_modulus", "1.5e3", "1.0e2", "1.0e5"),
+              "indentation", "punched_fine.yaml", "punched.csv", "");
+    twin_measure("punched_fine_fit.yaml", truth, force);
+    assert_true(force[0] > 0 && force[1] > force[0]);
+    write_curve("punched.csv", "depth", depth, 2, force, false);
+    write_fit("punched_fit.yaml", FREE("shear_modulus", "1.5e3", "1.0e2", "1.0e5"), "indentation",
+              "punched.yaml", "punched.csv", "");
+    twin_fit("punched_fit.yaml", &r);
+    print_message("flat punch: %.6g, %.4g and %.4g N, residual %.3g, %d runs, %.3g s\n",
+                  r.estimate[0].value, force[0], force[1], r.residuals[0].relative, r.runs,
+                  r.seconds);
+    assert_true(r.estimate[0].told);
+    assert_below(fabs(r.estimate[0].value / truth[0] - 1), 0.01);
+    lar_inverse_result_clear(&r);
+}
+
+static void flat_punches_are_fitted(void **state) {
+    (void)state;
+    flat_punch_is_fitted("");
+    flat_punch_is_fitted("  - { nodes: punch, axes: xy }\n");
+}
+
 /* ---- points --------------------------------------------------------------------------------- */
 
 static const char HANGING[] =
@@ -409,6 +455,7 @@ int main(void) {
                                        cmocka_unit_test(two_constants_are_fitted),
                                        cmocka_unit_test(relaxation_is_fitted),
                                        cmocka_unit_test(indentation_is_fitted),
+                                       cmocka_unit_test(flat_punches_are_fitted),
                                        cmocka_unit_test(markers_are_fitted),
                                        cmocka_unit_test(surfaces_are_fitted),
                                        cmocka_unit_test(bulk_modulus_cannot_be_told),

@@ -9,6 +9,7 @@
 #include "base/vector.h"
 #include "meshing/fit/quality.h"
 #include "meshing/meshing.h"
+#include "meshing/starter/tissue.h"
 #include "model/format/vtk/vtk_xml_write.h"
 
 /* ---- words -------------------------------------------------------------------------------- */
@@ -152,23 +153,36 @@ static void put_motion(const lar_meshing *m, FILE *f) {
         damping(m), settling(m), duration(m));
 }
 
+/* Beside each number stands whose it is, or that it is a guess. */
 static void put_material(const lar_region_info *region, FILE *f) {
-    fprintf(f, "  # As %s. %s.\n", region->tissue, region->source);
+    const bool guess = lar_tissue_find(region->name)->guess;
+    fprintf(f, "  # As %s. Shear modulus: %s.\n", region->tissue, region->source);
     fputs("  - { name: ", f);
     put(f, region->name, true);
     fprintf(f,
-            ", cells: %" PRId32 ", law: coupled-neo-hookean, density: %g,\n"
-            "      shear_modulus: %g, bulk_modulus: %.3g }\n",
-            region->tag, region->density, region->shear_modulus, region->bulk_modulus);
+            ", cells: %" PRId32 ", density: %g,\n"
+            "      law: coupled-neo-hookean,   # a guess at larger strain\n"
+            "      shear_modulus: %g,%s\n"
+            "      bulk_modulus: %.3g }   # a guess, see above\n",
+            region->tag, region->density, region->shear_modulus,
+            region->held ? "   # a guess, and without effect: it is held"
+            : guess      ? "   # a guess: measure it, lariat fit"
+                         : "",
+            region->bulk_modulus);
 }
 
 static void put_materials(const lar_meshing *m, FILE *f) {
     fputs(
         "# Stiffnesses at small strain, of healthy adults, from the literature: they differ\n"
-        "# between people, ages and methods by a factor of two and more. The bulk modulus is that\n"
-        "# of Poisson's ratio 0.45. Tissue is nearer to 0.5, but the stable time step goes with "
-        "the\n"
-        "# speed of pressure waves: at 0.49 it is less than half as long.\n"
+        "# between people, ages and methods by a factor of two and more. What is marked as a "
+        "guess\n"
+        "# has no source: which law it is, how it stiffens, that it does not relax (there is no\n"
+        "# `viscous`), and some moduli. Measure them: `lariat fit` makes a tissue file of an\n"
+        "# experiment (indentation, aspiration, tension, ...), docs/fit.md; here it is then\n"
+        "#     - { name: NAME, cells: TAG, tissue: NAME.tissue.yaml }\n"
+        "# The bulk modulus is that of Poisson's ratio 0.45. Tissue is nearer to 0.5, but the "
+        "stable\n"
+        "# time step goes with the speed of pressure waves: at 0.49 it is less than half as long.\n"
         "# `cells` is the tag of the elements, the label in the image.\n"
         "materials:\n",
         f);

@@ -7,6 +7,9 @@
  * and 0.49 would halve it. Bone is thousands of times stiffer than what lies around it; it is held
  * where it is, so that its stiffness plays no part.
  *
+ * Only the shear modulus is anybody's figure. The law, how it stiffens, and that nothing relaxes
+ * are ours, and so are moduli marked as guesses; starter scenes say so beside the values.
+ *
  * Largest volumes are ours, with room to spare: a liver of more than ten litres is one in another
  * unit.
  */
@@ -20,58 +23,61 @@
  * cortex" is kidney before it is brain. */
 static const lar_tissue tissue[] = {
     {"vessel", "artery arteri vein vena aorta vessel vascul brachiocephalic", 3.7e3, 0.45, 1060,
-     2e-3, false,
+     2e-3, false, false,
      "Kolipaka et al., J Magn Reson Imaging 35:582 (2012): 3.7 kPa, aorta with the blood in it"},
     {"muscle",
      "muscle muscul gluteus gluteal psoas iliopsoas autochthon quadriceps biceps triceps deltoid "
      "gastrocnemius soleus diaphragm tongue",
-     3.7e3, 0.45, 1050, 30e-3, false,
+     3.7e3, 0.45, 1050, 30e-3, false, false,
      "Bensamoun et al., J Magn Reson Imaging 23:242 (2006): 3.7 kPa, thigh at rest"},
     {"heart", "heart myocard cardiac atri atrium ventricle_left ventricle_right", 6.1e3, 0.45, 1050,
-     3e-3, false,
-     "Castelein et al., J Magn Reson Imaging (2025): shear waves of 2.4 m/s in diastole, 6.1 kPa"},
-    {"kidney", "kidney renal nephr", 4.9e3, 0.45, 1050, 10e-3, false,
+     3e-3, false, false,
+     "Castelein et al., J Magn Reson Imaging (2025): shear waves of 2.4 m/s in diastole of "
+     "healthy people and patients, 6.1 kPa"},
+    {"kidney", "kidney renal nephr", 4.9e3, 0.45, 1050, 10e-3, false, false,
      "Rouviere et al., J Magn Reson Imaging 34:880 (2011): 4.9 kPa at 45 Hz"},
-    {"liver", "liver hepat", 2.1e3, 0.45, 1060, 10e-3, false,
+    {"liver", "liver hepat", 2.1e3, 0.45, 1060, 10e-3, false, false,
      "Venkatesh et al., J Magn Reson Imaging 39:1 (2014): 2.1 kPa at 60 Hz"},
-    {"spleen", "spleen splenic", 3.6e3, 0.45, 1060, 10e-3, false,
+    {"spleen", "spleen splenic", 3.6e3, 0.45, 1060, 10e-3, false, false,
      "Talwalkar et al., Am J Roentgenol 193:122 (2009): 3.6 kPa at 60 Hz"},
-    {"pancreas", "pancrea", 1.1e3, 0.45, 1040, 1e-3, false,
+    {"pancreas", "pancrea", 1.1e3, 0.45, 1040, 1e-3, false, false,
      "Xu et al., J Magn Reson Imaging 52:448 (2020): 1.1 kPa at 40 Hz"},
     {"hollow organ",
      "stomach gastr esophag oesophag duoden bowel intestin colon rectum jejun ileum bladder "
      "urinary_bladder gallbladder gall",
-     3e3, 0.45, 1040, 20e-3, false,
-     "chosen between the organ pressed in place with its content, 0.6 kPa (Lim et al., Surg Endosc "
-     "23:1298, 2009), and its wall stretched alone, hundreds of kPa (Egorov et al., J Biomech "
-     "35:1417, 2002)"},
-    {"prostate", "prostat", 2.8e3, 0.45, 1040, 1e-3, false,
+     3e3, 0.45, 1040, 20e-3, false, true,
+     "a guess: between the organ pressed in place with its content (Lim et al., Surg Endosc "
+     "23:1298, "
+     "2009) and its wall stretched alone, far stiffer (Egorov et al., J Biomech 35:1417, 2002)"},
+    {"prostate", "prostat", 2.8e3, 0.45, 1040, 1e-3, false, false,
      "Kemper et al., Rofo 176:1094 (2004): 2.2 kPa in the middle, 3.3 kPa outside"},
-    {"uterus", "uterus uteri uterin cervix ovar", 2.6e3, 0.45, 1050, 20e-3, false,
+    {"uterus", "uterus uteri uterin cervix ovar", 2.6e3, 0.45, 1050, 20e-3, false, false,
      "Jiang et al., Eur Radiol 24:3025 (2014): 2.6 kPa"},
     {"brain",
      "brain cerebr cerebell cortex hippocamp thalam putamen caudate pallid amygdal "
      "grey_matter gray_matter white_matter spinal_cord brodmann",
-     0.6e3, 0.45, 1040, 3e-3, false,
+     0.6e3, 0.45, 1040, 3e-3, false, false,
      "Budday et al., J Mech Behav Biomed Mater 46:318 (2015): Young's modulus 1.4 (grey) and "
      "1.9 kPa (white), cattle, indentation"},
-    {"lung", "lung pulmon", 1.8e3, 0.45, 260, 15e-3, false,
+    {"lung", "lung pulmon", 1.8e3, 0.45, 260, 15e-3, false, false,
      "Mariappan et al., J Magn Reson Imaging 33:1351 (2011): 1.1 kPa breathed out, 1.8 kPa "
      "breathed in"},
-    {"fat", "fat adipos breast mamma", 1.1e3, 0.45, 950, 100e-3, false,
+    {"fat", "fat adipos breast mamma", 1.1e3, 0.45, 950, 100e-3, false, false,
      "Samani et al., Phys Med Biol 52:1565 (2007): Young's modulus 3.2 kPa, breast, indentation"},
-    {"skin", "skin cutis dermis", 19e3, 0.45, 1090, 20e-3, false,
+    {"skin", "skin cutis dermis", 19e3, 0.45, 1090, 20e-3, false, false,
      "Briot et al., Clin Biomech (2022): Young's modulus 56 kPa, suction"},
-    {"cartilage", "cartilage costal_cart meniscus disc disk", 170e3, 0.45, 1100, 2e-3, false,
+    {"cartilage", "cartilage costal_cart meniscus disc disk", 170e3, 0.45, 1100, 2e-3, false, false,
      "Soltz and Ateshian, J Biomech Eng 122:576 (2000): 0.17 MPa, calf"},
     {"bone",
      "bone vertebra rib skull crani femur femora hip pelvis sacrum humerus scapula clavic sternum "
      "tibia fibula patella ulna radius mandib maxilla spine tooth teeth",
-     3e3, 0.45, 1920, 20e-3, true,
-     "held where it is, so that its stiffness plays no part; the real one, 20 GPa (Rho et al., Med "
+     3e3, 0.45, 1920, 20e-3, true, true,
+     "a guess: it is held where it is, so that its stiffness plays no part; the real one, 20 GPa "
+     "(Rho et al., Med "
      "Eng Phys 20:92, 1998), has steps of nanoseconds"},
-    {"soft tissue", "", 3e3, 0.45, 1050, 0, false,
-     "no tissue is known by this name; most healthy organs lie between 1 and 5 kPa: Mariappan et "
+    {"soft tissue", "", 3e3, 0.45, 1050, 0, false, true,
+     "a guess: no tissue is known by this name; most healthy organs lie between 1 and 5 kPa: "
+     "Mariappan et "
      "al., Clin Anat 23:497 (2010)"}};
 enum { TISSUES = sizeof tissue / sizeof tissue[0] };
 

@@ -1,5 +1,5 @@
 /* Published stiffnesses of tissues, for starter scenes: a table of a few lines, each with its
- * source. */
+ * source or said to be a guess. */
 #ifndef LAR_MESHING_STARTER_TISSUE_H
 #define LAR_MESHING_STARTER_TISSUE_H
 
@@ -13,7 +13,8 @@ typedef struct lar_tissue {
     double density;       /* [kg/m^3] */
     double max; /* [m^3] more than its organs hold in anybody, for doubts about units; 0: unknown */
     bool rigid; /* bone: held where it is, and given a stiffness that real time bears */
-    const char *source; /* who measured it, where, year */
+    bool guess; /* the shear modulus: nobody's figure is for it */
+    const char *source; /* who measured it, where, year; of a guess what it was chosen from */
 } lar_tissue;
 
 /* The tissue that a region's name speaks of ("liver", "kidney_left", "Left lung"); the last row,

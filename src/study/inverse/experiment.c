@@ -162,17 +162,29 @@ static lar_status choose_tool(const reader *r, const lar_yaml *node, lar_inverse
         if (own ? lar_scene_is_word(own, name[i]) : m->tool_count == 1) e->tool = i;
     }
     if (e->tool >= 0 && m->tool[e->tool].shape != LAR_TOOL_SPHERE)
-        return lar_scene_fail(&r->scene, own ? own : node, LAR_ERROR_UNSUPPORTED,
-                              "the tool %s is no sphere; indentation is with a sphere so far",
-                              name[e->tool]);
+        return lar_scene_fail(
+            &r->scene, own ? own : node, LAR_ERROR_UNSUPPORTED,
+            "the tool %s is no sphere; indentation is with a sphere, or with a flat "
+            "punch: the tissue's nodes under it in move, and no tool",
+            name[e->tool]);
     if (e->tool >= 0) return LAR_OK;
     if (own)
         return lar_scene_unknown(&r->scene, own, LAR_ERROR_MODEL, "the tool", "the tools are", name,
                                  m->tool_count);
-    return lar_scene_fail(&r->scene, node, LAR_ERROR_MODEL, "the scene %s has %d tools; %s",
-                          e->scene, m->tool_count,
-                          m->tool_count ? "say which one presses, for example tool: probe"
-                                        : "give it the sphere that presses, just above the tissue");
+    return lar_scene_fail(
+        &r->scene, node, LAR_ERROR_MODEL, "the scene %s has %d tools; %s", e->scene, m->tool_count,
+        m->tool_count ? "say which one presses, for example tool: probe"
+                      : "give it the sphere that presses, just above the tissue, or for a "
+                        "flat punch a move of the nodes under it");
+}
+
+/* What presses: a sphere, a tool of the scene; or a flat punch, which is a support that is moved,
+ * since tissue under it lies at its face from the beginning on. */
+static lar_status choose_indenter(const reader *r, const lar_yaml *node,
+                                  lar_inverse_experiment *e) {
+    const bool punch = e->model->tool_count == 0 && e->model->move_count > 0 &&
+                       !lar_yaml_get(node, "tool") && !lar_yaml_get(node, "direction");
+    return punch ? choose_move(r, node, e) : choose_tool(r, node, e);
 }
 
 /* Tissue that relaxes has its own time; everything else is followed to rest. */
@@ -223,7 +235,7 @@ static lar_status read_experiment(reader *r, const lar_yaml *node) {
         status = lar_scene_fail(s, lar_yaml_get(node, "scene"), own.status, "%s", own.message);
     if (!status) status = choose_time(r, node, e);
     if (!status && e->kind <= LAR_INVERSE_COMPRESSION) status = choose_move(r, node, e);
-    if (!status && e->kind == LAR_INVERSE_INDENTATION) status = choose_tool(r, node, e);
+    if (!status && e->kind == LAR_INVERSE_INDENTATION) status = choose_indenter(r, node, e);
     if (!status && e->kind == LAR_INVERSE_ASPIRATION) status = lar_inverse_tube_read(s, node, e);
     return status ? status : lar_inverse_measured_read(s, node, e);
 }
@@ -236,6 +248,11 @@ static lar_status read_root(reader *r) {
     const lar_yaml *root = s->root, *version, *parameters, *experiments, *entry;
     const char *title = r->scene.path;
     int64_t number;
+    if (lar_yaml_get(root, "lariat-view"))
+        return lar_scene_fail(s, root, LAR_ERROR_UNSUPPORTED,
+                              "this is the file of a view, not of an experiment; it goes with "
+                              "frames: lariat fit --profile FRAMES %s",
+                              r->scene.path);
     lar_status status = lar_scene_keys(s, root, "a fit", keys);
     if (!status) status = lar_scene_need(s, root, "a fit", "lariat-fit", "lariat-fit: 1", &version);
     if (status) return status;

@@ -302,7 +302,7 @@ static lar_status look_at_points(forward *f, double *model) {
 /* Half of the automatic step under a tool: its springs are four times as stiff then. */
 static lar_status choose_step(const forward *f, lar_options *options) {
     lar_model_info info;
-    if (f->e->kind != LAR_INVERSE_INDENTATION || f->model.time_step > 0) return LAR_OK;
+    if (f->e->tool < 0 || f->model.time_step > 0) return LAR_OK;
     lar_status status = lar_model_inspect(&f->model, &info, f->error);
     if (!status) options->time_step = 0.5 * info.time_step;
     return status;
@@ -317,11 +317,11 @@ lar_status lar_inverse_forward(const lar_inverse_problem *problem, int k, const 
     lar_status status = copy_model(&f, problem, value);
     if (!status) status = choose_step(&f, &options);
     if (!status) status = lar_simulation_create(&f.model, &options, &f.simulation, error);
-    if (!status && f.e->kind == LAR_INVERSE_INDENTATION)
+    if (!status && f.e->tool >= 0)
         status = press(&f, model);
     else if (!status && f.e->kind == LAR_INVERSE_ASPIRATION)
         status = suck(&f, model);
-    else if (!status && f.e->kind <= LAR_INVERSE_COMPRESSION)
+    else if (!status && f.e->kind <= LAR_INVERSE_INDENTATION)
         status = pull(&f, model);
     else if (!status)
         status = look_at_points(&f, model);

@@ -10,9 +10,25 @@
 /* ---- columns --------------------------------------------------------------------------------- */
 
 static const char *const column_name[] = {
-    "time", "displacement", "stretch", "depth", "force", "x",        "y",
-    "z",    "to_x",         "to_y",    "to_z",  "r",     "pressure", NULL};
-enum { TIME, DISPLACEMENT, STRETCH, DEPTH, FORCE, X, Y, Z, TO_X, TO_Y, TO_Z, R, PRESSURE, COLUMNS };
+    "time", "displacement", "stretch", "depth", "force",    "x",     "y", "z",
+    "to_x", "to_y",         "to_z",    "r",     "pressure", "error", NULL};
+enum {
+    TIME,
+    DISPLACEMENT,
+    STRETCH,
+    DEPTH,
+    FORCE,
+    X,
+    Y,
+    Z,
+    TO_X,
+    TO_Y,
+    TO_Z,
+    R,
+    PRESSURE,
+    ERROR,
+    COLUMNS
+};
 
 typedef struct source {
     const lar_scene *scene;
@@ -39,7 +55,10 @@ static lar_status find_columns(source *s) {
             status = lar_scene_number(s->scene, scale, "a number, for example 0.001", &s->scale[c]);
         if (status) break;
         s->column[c] = lar_inverse_table_find(&s->table, text);
-        bool elsewhere = c == PRESSURE && s->e->pressure; /* in a table of its own */
+        /* The pressure's own table may have names that this one has not. */
+        bool elsewhere = s->e->pressure && (c == PRESSURE || c == TIME);
+        if (s->column[c] < 0 && elsewhere)
+            s->column[c] = lar_inverse_table_find(&s->table, column_name[c]);
         if (name && s->column[c] < 0 && !elsewhere)
             return lar_scene_fail(s->scene, name, LAR_ERROR_FORMAT, "%s:%d has no column %s",
                                   s->table.path, s->table.header_line, text);
@@ -404,6 +423,30 @@ static lar_status set_noise(const source *s) {
                : LAR_OK;
 }
 
+/* The column `error` says of each number how well it is known, where `noise` does not say it of all
+ * and a row is one number. Its unit is that of what is measured. */
+static lar_status read_errors(source *s) {
+    lar_inverse_experiment *e = s->e;
+    if (s->column[ERROR] < 0 || lar_yaml_get(s->node, "noise") || e->values != e->rows)
+        return LAR_OK;
+    if (!lar_yaml_get(lar_yaml_get(s->node, "scale"), "error"))
+        s->scale[ERROR] = fabs(s->scale[e->kind == LAR_INVERSE_ASPIRATION ? Z
+                                        : e->kind == LAR_INVERSE_SURFACE  ? X
+                                                                          : FORCE]);
+    double weights = 0;
+    lar_status status = take(s, ERROR, &e->error);
+    for (int32_t i = 0; i < e->rows && !status; i++) {
+        if (!(e->error[i] > 0))
+            return lar_fail(s->scene->error, LAR_ERROR_FORMAT,
+                            "%s:%d: the error is %g; it is the standard deviation of what was "
+                            "measured, and more than 0",
+                            s->table.path, s->table.line[i], e->error[i]);
+        weights += 1 / (e->error[i] * e->error[i]);
+    }
+    if (!status) e->noise = sqrt(e->rows / weights);
+    return status;
+}
+
 lar_status lar_inverse_measured_read(const lar_scene *scene, const lar_yaml *node,
                                      lar_inverse_experiment *e) {
     source s = {.scene = scene, .node = node, .e = e};
@@ -419,6 +462,7 @@ lar_status lar_inverse_measured_read(const lar_scene *scene, const lar_yaml *nod
     else if (!status)
         status = read_curve(&s);
     if (!status) status = set_noise(&s);
+    if (!status) status = read_errors(&s);
     e->row_line = s.table.line;
     s.table.line = NULL;
     lar_inverse_table_clear(&s.table);

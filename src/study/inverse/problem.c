@@ -24,6 +24,7 @@ void lar_inverse_problem_clear(lar_inverse_problem *p) {
         free(e->time);
         free(e->along);
         free(e->measured);
+        free(e->error);
     }
     free(p->path);
     free(p->title);

@@ -65,6 +65,7 @@ typedef struct lar_inverse_experiment {
     lar_embedded_surface points; /* markers: bound to elements; surface: places alone */
     double largest;              /* of what is measured, in size: the scale of its errors */
     double noise;        /* standard deviation of a measured number, or a hundredth of `largest` */
+    double *error;       /* [values] of each; NULL: `noise` of all */
     int move, tool;      /* of the model: what is driven; -1: nothing */
     double direction[3]; /* into the tissue, of a tool */
     lar_inverse_aspiration aspiration;

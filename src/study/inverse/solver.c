@@ -58,7 +58,8 @@ static lar_status outcome(const lar_inverse_solver *s, const job *jobs) {
 static void residuals(const lar_inverse_problem *p, const double *model, double *r) {
     for (int k = 0; k < p->experiments; k++) {
         const lar_inverse_experiment *e = &p->experiment[k];
-        for (int32_t i = 0; i < e->values; i++) *r++ = (*model++ - e->measured[i]) / e->noise;
+        for (int32_t i = 0; i < e->values; i++)
+            *r++ = (*model++ - e->measured[i]) / (e->error ? e->error[i] : e->noise);
     }
 }
 
