@@ -157,8 +157,10 @@ static bool installed_folder(char *out, size_t size) {
     static const char here;
     Dl_info module;
     char path[4096];
-    if (!dladdr(&here, &module) || !module.dli_fname || !realpath(module.dli_fname, path))
-        return false;
+    if (!dladdr(&here, &module) || !module.dli_fname) return false;
+    /* A command that the shell found on its PATH goes by its bare name. */
+    const char *file = strchr(module.dli_fname, '/') ? module.dli_fname : "/proc/self/exe";
+    if (!realpath(file, path)) return false;
     cut_last(path);
     for (int i = 0; i < 2; i++) {
         const char *name = cut_last(path);
