@@ -47,7 +47,7 @@ apt-get -q update >/dev/null
 apt-get -q install -y /packages/*.deb >/packages/apt 2>&1 || { tail -n 20 /packages/apt; exit 1; }
 lariat demo-model demo
 lariat run demo/uterus.yaml --time 0.02 --out results | grep '^state hash' | sed 's/.* //' >/packages/hash
-lariat view demo/uterus_live.yaml --seconds 20 --port 8123 >/packages/view 2>&1 &
+lariat view demo/uterus_live.yaml --seconds 600 --port 0 >/packages/view 2>&1 &
 view=$!
 until grep -q '^http' /packages/view; do sleep 0.2; done
 python3 - <<'PYTHON'
@@ -56,7 +56,7 @@ import lariat
 def page(url):
     with urllib.request.urlopen(url) as answer:
         return answer.read()
-shown = page("http://127.0.0.1:8123/")
+shown = page(next(line for line in open("/packages/view") if line.startswith("http")).strip())
 assert b"<script" in shown, shown
 sim = lariat.Simulation(lariat.Model("demo/uterus.yaml"))
 sim.advance(seconds=0.02)
@@ -64,7 +64,8 @@ assert open("/packages/hash").read().strip() == f"{sim.hash():016x}", sim.hash()
 with lariat.Simulation(lariat.Model("demo/uterus_live.yaml")) as live, lariat.Session(live) as session:
     assert page(session.view(open=False).url) == shown
 PYTHON
-wait $view
+kill $view
+wait $view || true
 rm -r demo results
 apt-get -q purge -y lariat lariat-viewer liblariat0 liblariat-dev python3-lariat >/packages/apt 2>&1 ||
     { tail -n 20 /packages/apt; exit 1; }
