@@ -35,7 +35,8 @@ fi | while IFS= read -r -d '' file; do [ ! -e "$file" ] || printf '%s\0' "$file"
     tar -c --null -T - | tar -x -C "$source"
 cp -r web/dist/. "$source/web/dist/" 2>/dev/null || true
 mv "$source/packaging/debian" "$source/debian"
-sed -i "s/@MAINTAINER@/$maintainer/" "$source/debian/control"
+control=$(<"$source/debian/control")
+printf '%s\n' "${control//@MAINTAINER@/"$maintainer"}" >"$source/debian/control"
 date=$(git log -1 --format=%cD 2>/dev/null) || date=$(date -R -r CMakeLists.txt)
 cat >"$source/debian/changelog" <<END
 lariat ($version) unstable; urgency=medium
@@ -52,6 +53,10 @@ END
 export LARIAT_OBJECTS=../objects
 export DEB_BUILD_OPTIONS="parallel=${1:-2} nocheck noautodbgsym ${DEB_BUILD_OPTIONS:-}"
 log=$work/log
+# CMake keeps the flags with which a build folder was made.
+flags=$(cat packaging/debian/rules && dpkg-buildflags)
+[ "$flags" = "$(cat "$work/flags" 2>/dev/null)" ] || rm -rf "$work/objects"
+printf '%s\n' "$flags" >"$work/flags"
 if ! (cd "$source" && dpkg-buildpackage --build=binary --no-sign --no-pre-clean) >"$log" 2>&1; then
     tail -n 40 "$log" >&2
     fail "dpkg-buildpackage failed, see above and $log"

@@ -22,8 +22,9 @@ grep -q '^dynamic = \["version"\]$' "$source/pyproject.toml" || fail "pyproject.
 for tool in dh dh_python3 dpkg-shlibdeps cmake; do
     command -v $tool >/dev/null || { echo "skipped: $tool is missing (tools/setup.sh deb)"; exit 77; }
 done
-[ -e "$build/liblariat.so.0" ] && [ -e "$build/liblariat.a" ] && [ -e "$build/help/man/man1/lariat.1" ] ||
-    fail "the products are not built"
+for product in liblariat.so.0 liblariat.a help/man/man1/lariat.1; do
+    [ -e "$build/$product" ] || fail "the products are not built: no $product"
+done
 for part in web/dist/index.html:the-page build/python/lariat/_lariat.abi3.so:the-Python-module; do
     case $part in
     build/*) file=$build/${part#build/} ;;
@@ -49,7 +50,8 @@ holds() {
     package=$1
     shift
     for file in "$@"; do
-        set -- debian/$package/$file # a pattern
+        # shellcheck disable=SC2086 # a pattern
+        set -- debian/$package/$file
         [ -e "$1" ] || [ -L "$1" ] || fail "$package lacks $file"
     done
 }
@@ -67,7 +69,7 @@ depends() {
     shift
     line=$(sed -n 's/^Depends: //p' "debian/$package/DEBIAN/control")
     for pattern in "$@"; do
-        echo ", $line," | grep -Eq ", $pattern[ ,]" || fail "$package does not depend on $pattern: $line"
+        echo ", $line," | grep -Eq ", ${pattern}[ ,]" || fail "$package does not depend on $pattern: $line"
     done
     grep -qx "Version: $version" "debian/$package/DEBIAN/control" || fail "$package has another version"
 }

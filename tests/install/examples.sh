@@ -52,16 +52,18 @@ beam=$source/examples/beam.yaml
 }
 cat "$scratch/organ.out"
 slab=$(sed -n 's/^slab .*hash //p' "$scratch/organ.out")
-grep -q "^back   hash $slab\$" "$scratch/organ.out" && [ -n "$slab" ] || fail "it did not go back"
+grep -q "^back   hash ${slab:-none}\$" "$scratch/organ.out" || fail "it did not go back"
 grep -Eq '^hand   holds [1-9][0-9]*, lifts by [0-9.]*[1-9]' "$scratch/organ.out" || fail "nothing is lifted"
 grep -q '^steps  100,' "$scratch/organ.out" || fail "the callback is not heard"
 grep -q '^error  1: a stiffness' "$scratch/organ.out" || fail "the library's sentence is not thrown"
 
-"$cmake" -S "$source/tests/install/find_package" -B "$scratch/cmake" -DCMAKE_C_COMPILER="$cc" \
-    -DCMAKE_CXX_COMPILER="$cxx" -DCMAKE_PREFIX_PATH="$scratch/prefix" \
-    -DEMBED_SOURCE="$source/examples/embed.c" -DORGAN_SOURCE="$source/examples/organ.cpp" \
-    >"$scratch/cmake.log" 2>&1 && "$cmake" --build "$scratch/cmake" >>"$scratch/cmake.log" 2>&1 ||
-    { cat "$scratch/cmake.log"; fail "find_package(Lariat) failed"; }
+found() {
+    "$cmake" -S "$source/tests/install/find_package" -B "$scratch/cmake" \
+        -DCMAKE_C_COMPILER="$cc" -DCMAKE_CXX_COMPILER="$cxx" -DCMAKE_PREFIX_PATH="$scratch/prefix" \
+        -DEMBED_SOURCE="$source/examples/embed.c" -DORGAN_SOURCE="$source/examples/organ.cpp" &&
+        "$cmake" --build "$scratch/cmake"
+}
+found >"$scratch/cmake.log" 2>&1 || { cat "$scratch/cmake.log"; fail "find_package(Lariat) failed"; }
 [ "$(env -u LD_LIBRARY_PATH "$scratch/cmake/embed_static" "$beam")" = "$first" ] ||
     fail "Lariat::lariat_static differs"
 "$scratch/cmake/organ" | cmp -s - "$scratch/organ.out" || fail "organ differs with find_package"
