@@ -7,8 +7,9 @@
  * Every class owns one thing of lariat.h, is moved and never copied, and has its calls by their
  * names: lar_simulation_set_gravity is Simulation::set_gravity, and its comment there holds here.
  * What returns a lar_status there throws lariat::Error here, with the library's sentence. Structs
- * are those of lariat.h. `get` hands out what is owned; one that was moved from owns nothing and is
- * good for destroying and assigning only.
+ * are those of lariat.h. `get` hands out what is owned. What was moved from or closed owns nothing,
+ * and its calls do what those of lariat.h do with NULL: they throw, or answer 0; only a snapshot's
+ * `->` needs one that is there.
  *
  * What is made of something else must go first: a Simulation before its Model, a Session before its
  * Simulation, a Server before its Session. Variables of one block, in the order in which they are
@@ -486,6 +487,7 @@ class Snapshot : public detail::Handle<lar_snapshot, lar_snapshot_destroy> {
     explicit Snapshot(const Session &session);
     const lar_snapshot *operator->() const { return get(); }
     Span<Vec3> displacements() const {
+        if (!get()) return {nullptr, 0};
         return {detail::vectors(get()->u), static_cast<std::size_t>(get()->nodes)};
     }
 };

@@ -39,6 +39,7 @@ static void simulate(const lariat::Model &model, const std::string &results) {
     first.advance(50);
     lariat::Simulation simulation = std::move(first);
     expect(!first.get() && simulation.steps() == 50, "moving leaves something behind");
+    expect(thrown([&] { first.advance(1); }) == LAR_ERROR_ARGUMENT, "what was moved from advances");
     other = std::move(simulation); // what `other` had is freed
     expect(other.steps() == 50, "assigning loses the state");
 
@@ -89,6 +90,8 @@ static void play(const lariat::Model &model) {
            "the session is of another simulation");
     expect(session.status().state == LAR_SESSION_PLAYING, "it does not play");
     session.close();
+    session.close(); // of nothing
+    expect(thrown([&] { session.reset(); }) == LAR_ERROR_ARGUMENT, "what was closed is reset");
     simulation.advance(1);
 }
 
