@@ -35,20 +35,27 @@ foreach(pair HWLOC:hwloc METIS:metis NIFTI:nifti2 LIBWEBSOCKETS:websockets UCX:u
 endforeach()
 list(APPEND LARIAT_PRIVATE_LIBRARIES pthread dl m)
 # One object in which names that carry no LAR_API are local, so that a program may have the same ones.
-set(whole ${PROJECT_BINARY_DIR}/lariat_whole.o)
-add_custom_command(OUTPUT ${whole} DEPENDS lariat_core
-  COMMAND ${CMAKE_LINKER} -r -o ${whole} --whole-archive $<TARGET_FILE:lariat_core>
-  COMMAND ${CMAKE_OBJCOPY} --localize-hidden ${whole}
-  COMMENT "The library as one object" VERBATIM)
-set_source_files_properties(${whole} PROPERTIES EXTERNAL_OBJECT ON GENERATED ON)
-add_library(liblariat_static STATIC ${whole})
-set_target_properties(liblariat_static PROPERTIES OUTPUT_NAME lariat EXPORT_NAME lariat_static
-  LINKER_LANGUAGE C ARCHIVE_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR})
-target_include_directories(liblariat_static INTERFACE $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
-target_compile_definitions(liblariat_static INTERFACE LARIAT_STATIC)
-target_link_libraries(liblariat_static INTERFACE ${LARIAT_PRIVATE_LIBRARIES})
+# Not where objects are no machine code yet, or call a sanitizer's.
+set(LARIAT_LIBRARIES liblariat)
+set(LARIAT_PC_FILES lariat)
+if(NOT LARIAT_SANITIZE AND NOT CMAKE_INTERPROCEDURAL_OPTIMIZATION AND NOT CMAKE_C_FLAGS MATCHES "-flto")
+  set(whole ${PROJECT_BINARY_DIR}/lariat_whole.o)
+  add_custom_command(OUTPUT ${whole} DEPENDS lariat_core
+    COMMAND ${CMAKE_LINKER} -r -o ${whole} --whole-archive $<TARGET_FILE:lariat_core>
+    COMMAND ${CMAKE_OBJCOPY} --localize-hidden ${whole}
+    COMMENT "The library as one object" VERBATIM)
+  set_source_files_properties(${whole} PROPERTIES EXTERNAL_OBJECT ON GENERATED ON)
+  add_library(liblariat_static STATIC ${whole})
+  set_target_properties(liblariat_static PROPERTIES OUTPUT_NAME lariat EXPORT_NAME lariat_static
+    LINKER_LANGUAGE C ARCHIVE_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR})
+  target_include_directories(liblariat_static INTERFACE $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  target_compile_definitions(liblariat_static INTERFACE LARIAT_STATIC)
+  target_link_libraries(liblariat_static INTERFACE ${LARIAT_PRIVATE_LIBRARIES})
+  list(APPEND LARIAT_LIBRARIES liblariat_static)
+  list(APPEND LARIAT_PC_FILES lariat-static)
+endif()
 
-install(TARGETS liblariat liblariat_static EXPORT LariatTargets
+install(TARGETS ${LARIAT_LIBRARIES} EXPORT LariatTargets
   LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(FILES include/lariat.h include/lariat.hpp DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 set_target_properties(lariat PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR})
@@ -81,13 +88,13 @@ file(RELATIVE_PATH LARIAT_PC_PREFIX
 string(REGEX REPLACE "/$" "" LARIAT_PC_PREFIX "${LARIAT_PC_PREFIX}")
 list(TRANSFORM LARIAT_PRIVATE_LIBRARIES PREPEND -l)
 list(JOIN LARIAT_PRIVATE_LIBRARIES " " LARIAT_PC_PRIVATE)
-foreach(name lariat lariat-static)
+foreach(name ${LARIAT_PC_FILES})
   configure_file(cmake/${name}.pc.in ${PROJECT_BINARY_DIR}/${name}.pc @ONLY)
   install(FILES ${PROJECT_BINARY_DIR}/${name}.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 endforeach()
 
 # What `make` builds: all that is installed, and the viewer's page, but no tests.
-add_custom_target(products DEPENDS lariat liblariat liblariat_static)
+add_custom_target(products DEPENDS lariat ${LARIAT_LIBRARIES})
 foreach(target lariat_help lariat-mpi-openmpi lariat-mpi-mpich lariat-petsc viewer)
   if(TARGET ${target})
     add_dependencies(products ${target})
