@@ -37,7 +37,7 @@ mkdir "$system/packages"
 xargs -a "$scratch/packages" cp -t "$system/packages"
 cp /etc/resolv.conf "$system/etc/resolv.conf"
 mount -t proc proc "$system/proc" || skip "/proc cannot be mounted here"
-trap 'umount "$system/proc"' EXIT
+trap 'umount "$system/proc" && rm -rf "$system"' EXIT
 
 cat >"$system/packages/use.sh" <<'END'
 set -eu
@@ -49,6 +49,7 @@ lariat demo-model demo
 lariat run demo/uterus.yaml --time 0.02 --out results | grep '^state hash' | sed 's/.* //' >/packages/hash
 lariat view demo/uterus_live.yaml --seconds 600 --port 0 >/packages/view 2>&1 &
 view=$!
+trap 'kill $view 2>/dev/null || true' EXIT
 until grep -q '^http' /packages/view; do sleep 0.2; done
 python3 - <<'PYTHON'
 import urllib.request
@@ -62,10 +63,12 @@ sim = lariat.Simulation(lariat.Model("demo/uterus.yaml"))
 sim.advance(seconds=0.02)
 assert open("/packages/hash").read().strip() == f"{sim.hash():016x}", sim.hash()
 with lariat.Simulation(lariat.Model("demo/uterus_live.yaml")) as live, lariat.Session(live) as session:
-    assert page(session.view(open=False).url) == shown
+    with session.view(open=False) as mine:
+        assert page(mine.url) == shown
 PYTHON
 kill $view
 wait $view || true
+trap - EXIT
 rm -r demo results
 apt-get -q purge -y lariat lariat-viewer liblariat0 liblariat-dev python3-lariat >/packages/apt 2>&1 ||
     { tail -n 20 /packages/apt; exit 1; }
