@@ -3,7 +3,7 @@ JOBS ?= $(shell nproc 2>/dev/null || echo 2)
 PREFIX ?= /usr/local
 FUZZ_SECONDS ?= 60
 
-.PHONY: all setup configure demo check check-long report fuzz install format clean help
+.PHONY: all setup configure demo check check-long report fuzz deb install format clean help
 .NOTPARALLEL:
 
 # What is installed, without the tests, which `make check` builds.
@@ -40,6 +40,12 @@ fuzz:
 	@tools/setup.sh build fuzz
 	@JOBS=$(JOBS) FUZZ_SECONDS=$(FUZZ_SECONDS) tools/fuzz.sh
 
+# Debian packages, into out/deb.
+deb:
+	@tools/setup.sh deb
+	@tools/web.sh --required
+	@tools/deb.sh $(JOBS)
+
 install: all
 	cmake --install build --prefix $(PREFIX)
 
@@ -56,6 +62,7 @@ help:
 	@echo "make check-long  what takes longer, also with the sanitizers: every combination"
 	@echo "make report   measure this machine, and make the thesis's tables and figures again: docs/report/"
 	@echo "make fuzz     fuzz every reader, FUZZ_SECONDS=$(FUZZ_SECONDS) each"
+	@echo "make deb      Debian packages of library, headers, command, viewer and Python module: out/deb/"
 	@echo "make install  library, header and command under PREFIX=$(PREFIX)"
 	@echo "make format   clang-format over all C files"
 	@echo "make clean    remove the build folders and out/"

@@ -1,4 +1,4 @@
-# The installed side: shared library, header, pkg-config file, CMake package, command.
+# The installed side: shared and static library, headers, pkg-config files, CMake package, command.
 #
 # The shared library is made of the same objects as lariat_core. Everything is hidden except what
 # carries LAR_API; tests/install looks at the symbol table. Its target is called liblariat because
@@ -22,9 +22,42 @@ if(NOT LARIAT_SANITIZE)
   target_link_options(liblariat PRIVATE -Wl,--no-undefined -Wl,--as-needed -Wl,--gc-sections)
 endif()
 
-install(TARGETS liblariat EXPORT LariatTargets
-  LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
-install(FILES include/lariat.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+# The same objects as an archive, for programs that shall need no file of ours. What the objects call
+# is named for those who link it; headers of these libraries nobody needs.
+set(LARIAT_PRIVATE_LIBRARIES xml2 yaml z)
+foreach(pair HWLOC:hwloc METIS:metis NIFTI:nifti2 LIBWEBSOCKETS:websockets UCX:ucp UCX:ucs)
+  string(REPLACE ":" ";" pair ${pair})
+  list(GET pair 0 name)
+  list(GET pair 1 library)
+  if(LARIAT_HAVE_${name})
+    list(APPEND LARIAT_PRIVATE_LIBRARIES ${library})
+  endif()
+endforeach()
+list(APPEND LARIAT_PRIVATE_LIBRARIES pthread dl m)
+# One object in which names that carry no LAR_API are local, so that a program may have the same ones.
+# Not where objects are no machine code yet, or call a sanitizer's.
+set(LARIAT_LIBRARIES liblariat)
+set(LARIAT_PC_FILES lariat)
+if(NOT LARIAT_SANITIZE AND NOT CMAKE_INTERPROCEDURAL_OPTIMIZATION AND NOT CMAKE_C_FLAGS MATCHES "-flto")
+  set(whole ${PROJECT_BINARY_DIR}/lariat_whole.o)
+  add_custom_command(OUTPUT ${whole} DEPENDS lariat_core
+    COMMAND ${CMAKE_LINKER} -r -o ${whole} --whole-archive $<TARGET_FILE:lariat_core>
+    COMMAND ${CMAKE_OBJCOPY} --localize-hidden ${whole}
+    COMMENT "The library as one object" VERBATIM)
+  set_source_files_properties(${whole} PROPERTIES EXTERNAL_OBJECT ON GENERATED ON)
+  add_library(liblariat_static STATIC ${whole})
+  set_target_properties(liblariat_static PROPERTIES OUTPUT_NAME lariat EXPORT_NAME lariat_static
+    LINKER_LANGUAGE C ARCHIVE_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR})
+  target_include_directories(liblariat_static INTERFACE $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  target_compile_definitions(liblariat_static INTERFACE LARIAT_STATIC)
+  target_link_libraries(liblariat_static INTERFACE ${LARIAT_PRIVATE_LIBRARIES})
+  list(APPEND LARIAT_LIBRARIES liblariat_static)
+  list(APPEND LARIAT_PC_FILES lariat-static)
+endif()
+
+install(TARGETS ${LARIAT_LIBRARIES} EXPORT LariatTargets
+  LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(FILES include/lariat.h include/lariat.hpp DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 set_target_properties(lariat PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR})
 install(TARGETS lariat RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 
@@ -53,11 +86,15 @@ install(EXPORT LariatTargets NAMESPACE Lariat:: DESTINATION ${package_folder})
 file(RELATIVE_PATH LARIAT_PC_PREFIX
   "/root/${CMAKE_INSTALL_LIBDIR}/pkgconfig" "/root")
 string(REGEX REPLACE "/$" "" LARIAT_PC_PREFIX "${LARIAT_PC_PREFIX}")
-configure_file(cmake/lariat.pc.in ${PROJECT_BINARY_DIR}/lariat.pc @ONLY)
-install(FILES ${PROJECT_BINARY_DIR}/lariat.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+list(TRANSFORM LARIAT_PRIVATE_LIBRARIES PREPEND -l)
+list(JOIN LARIAT_PRIVATE_LIBRARIES " " LARIAT_PC_PRIVATE)
+foreach(name ${LARIAT_PC_FILES})
+  configure_file(cmake/${name}.pc.in ${PROJECT_BINARY_DIR}/${name}.pc @ONLY)
+  install(FILES ${PROJECT_BINARY_DIR}/${name}.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+endforeach()
 
 # What `make` builds: all that is installed, and the viewer's page, but no tests.
-add_custom_target(products DEPENDS lariat liblariat)
+add_custom_target(products DEPENDS lariat ${LARIAT_LIBRARIES})
 foreach(target lariat_help lariat-mpi-openmpi lariat-mpi-mpich lariat-petsc viewer)
   if(TARGET ${target})
     add_dependencies(products ${target})

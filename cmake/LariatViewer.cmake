@@ -14,10 +14,19 @@ if(LARIAT_HAVE_LIBWEBSOCKETS)
 else()
   target_sources(lariat_core PRIVATE server/absent.c server/message.c)
 endif()
+# In a distribution the page is looked for where it is installed only, and the sentences name the
+# package that brings it.
+set(LARIAT_VIEWER_PACKAGE "" CACHE STRING "The package of a distribution that brings the page")
 set(LARIAT_VIEWER_BELOW_PREFIX ${CMAKE_INSTALL_DATADIR}/lariat/viewer)
 set_property(SOURCE server/files.c APPEND PROPERTY COMPILE_DEFINITIONS
-  LAR_VIEWER_FOLDER="${PROJECT_SOURCE_DIR}/web/dist"
   LAR_VIEWER_BELOW_PREFIX="${LARIAT_VIEWER_BELOW_PREFIX}")
+if(LARIAT_VIEWER_PACKAGE)
+  set_property(SOURCE server/files.c study/doctor.c APPEND PROPERTY COMPILE_DEFINITIONS
+    LAR_VIEWER_PACKAGE="${LARIAT_VIEWER_PACKAGE}")
+else()
+  set_property(SOURCE server/files.c APPEND PROPERTY COMPILE_DEFINITIONS
+    LAR_VIEWER_FOLDER="${PROJECT_SOURCE_DIR}/web/dist")
+endif()
 
 if(LARIAT_VIEWER)
   add_custom_target(viewer ALL COMMAND ${PROJECT_SOURCE_DIR}/tools/web.sh VERBATIM

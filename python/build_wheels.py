@@ -70,13 +70,19 @@ def _files(package):
             if name.endswith((".py", ".pyi", ".so", ".typed")):
                 path = os.path.join(at, name)
                 yield "lariat/" + os.path.relpath(path, package), path
+    for name, path in _page():
+        yield "lariat/viewer/" + name, path
+
+
+def _page():
+    """The viewer's page, where `make` or tools/web.sh has built it: npm would fetch from the network."""
     page = os.path.join(SOURCE, "web", "dist")
     if not os.path.exists(os.path.join(page, "index.html")):
         return
     for at, _, names in sorted(os.walk(page)):
         for name in sorted(names):
             path = os.path.join(at, name)
-            yield "lariat/viewer/" + os.path.relpath(path, page), path
+            yield os.path.relpath(path, page), path
 
 
 def _tag():
@@ -122,6 +128,8 @@ def build_sdist(sdist_directory, config_settings=None):
     with tarfile.open(os.path.join(sdist_directory, name + ".tar.gz"), "w:gz") as archive:
         for path in filter(None, listed):
             archive.add(os.path.join(SOURCE, path), f"{name}/{path}", recursive=False)
+        for path, source in _page():
+            archive.add(source, f"{name}/web/dist/{path}", recursive=False)
         with tempfile.NamedTemporaryFile("w", encoding="utf-8") as file:
             file.write(_metadata())
             file.flush()

@@ -2,7 +2,7 @@
 # Brings a Debian machine to where Lariat builds: asks dpkg what is there and installs only what
 # is missing. On a machine that is set up it needs no network, no privilege and no time.
 #
-#   tools/setup.sh [build] [scan] [fit] [web] [python] [check] [fuzz] [report]
+#   tools/setup.sh [build] [scan] [fit] [web] [python] [deb] [check] [fuzz] [report]
 #                                                    default: build scan fit web python
 #
 #   build   what the library and the command need; an error when it cannot be had
@@ -10,6 +10,7 @@
 #   fit     what `lariat fit` finds parameters with, cminpack, and reads frames with, libpng
 #   web     what people look through: libwebsockets for the server, Node.js and npm for the page
 #   python  what the Python module is built with: Python and its headers, and what `pip install .` needs
+#   deb     what Debian packages are made with, as packages: dpkg looks after that
 #   check   what the tests need: cmocka; and what widens them: a second compiler, METIS, hwloc, UCX,
 #           MPI, SDL2, PETSc, the cross compiler and emulator for NEON
 #   fuzz    clang with libFuzzer
@@ -62,6 +63,26 @@ PNG_PACKAGES="
 libpng-dev        m:libpng"
 PETSC_PACKAGES="
 petsc-dev         m:PETSc"
+# packaging/debian/control, but for the page's.
+DEB_PACKAGES="
+build-essential   -
+cmake             -
+debhelper         -
+dh-python         -
+libcminpack-dev   -
+libhwloc-dev      -
+libmetis-dev      -
+libnifti-dev      -
+libsdl2-dev       -
+libwebsockets-dev -
+libxml2-dev       -
+libyaml-dev       -
+ninja-build       -
+pkg-config        -
+python3-dev       -
+zlib1g-dev        -"
+LINTIAN_PACKAGES="
+lintian           c:lintian"
 REPORT_PACKAGES="
 python3           c:python3
 gnuplot-nox       c:gnuplot"
@@ -202,6 +223,11 @@ for group in "$@"; do
         want "$NODE_PACKAGES" "the viewer's page is not built" || true
         ;;
     python) want "$PYTHON_PACKAGES" "import lariat is not built" || true ;;
+    deb)
+        need "$DEB_PACKAGES"
+        need "$NODE_PACKAGES"
+        want "$LINTIAN_PACKAGES" "the packages are not looked through" || true
+        ;;
     check)
         need "$TEST_PACKAGES"
         want_clang "the sanitizers run with gcc instead of clang"
@@ -225,7 +251,7 @@ for group in "$@"; do
         want_clang "the report has no second compiler"
         ;;
     *)
-        say "unknown group '$group'; use build, scan, fit, web, python, check, fuzz or report"
+        say "unknown group '$group'; use build, scan, fit, web, python, deb, check, fuzz or report"
         exit 2
         ;;
     esac

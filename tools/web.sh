@@ -44,5 +44,7 @@ if [ ! -e node_modules/.package-lock.json ] ||
 fi
 npx --no-install vite build --logLevel warn >&2 ||
     give_up "not built, vite failed, see above"
+# Its licence wants to go along with three.js, which is inside the page.
+! cp node_modules/three/LICENSE dist/three-licence.txt 2>/dev/null || chmod 644 dist/three-licence.txt
 # Also when nothing in it has changed.
 touch dist/index.html

@@ -120,13 +120,23 @@ static lar_status read_folder(collector *c, const char *at, int depth) {
 
 /* ---- which folder ---------------------------------------------------------------------------- */
 
-/* The page that stands in for a viewer that was not built. */
+#ifdef LAR_VIEWER_PACKAGE
+#define LAR_VIEWER_FOLDER "" /* only where packages put it */
+#define ABSENT_WHY                                                                                 \
+    "<h1>The engine runs, but its viewer is not installed</h1><p>It is a package of its own: "     \
+    "<code>apt-get install " LAR_VIEWER_PACKAGE "</code>, "
+#else
+#define ABSENT_WHY                                                                                 \
+    "<h1>The engine runs, but its viewer is not built</h1>"                                        \
+    "<p>The viewer is made of the files in <code>web/</code> by npm. With Debian's packages: "     \
+    "<code>apt-get install nodejs npm</code>, then <code>make</code> in Lariat's folder, where "   \
+    "npm reaches its registry, "
+#endif
+
+/* The page that stands in for a viewer that is not there. */
 static const char ABSENT[] =
-    "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><title>Lariat</title>"
-    "<h1>The engine runs, but its viewer is not built</h1>"
-    "<p>The viewer is made of the files in <code>web/</code> by npm. With Debian's packages: "
-    "<code>apt-get install nodejs npm</code>, then <code>make</code> in Lariat's folder, where npm "
-    "reaches its registry, and start <code>lariat view</code> again.</p>"
+    "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><title>Lariat</title>" ABSENT_WHY
+    "and start <code>lariat view</code> again.</p>"
     "<p>Other viewers can connect to this address meanwhile: docs/viewer-protocol.md.</p></html>";
 
 static bool is_folder(const char *path) {
@@ -147,8 +157,10 @@ static bool installed_folder(char *out, size_t size) {
     static const char here;
     Dl_info module;
     char path[4096];
-    if (!dladdr(&here, &module) || !module.dli_fname || !realpath(module.dli_fname, path))
-        return false;
+    if (!dladdr(&here, &module) || !module.dli_fname) return false;
+    /* A command that the shell found on its PATH goes by its bare name. */
+    const char *file = strchr(module.dli_fname, '/') ? module.dli_fname : "/proc/self/exe";
+    if (!realpath(file, path)) return false;
     cut_last(path);
     for (int i = 0; i < 2; i++) {
         const char *name = cut_last(path);
@@ -165,7 +177,8 @@ static lar_status read_default(lar_files *files, lar_error *error) {
     if (installed_folder(path, sizeof path)) return lar_files_read(path, files, error);
     snprintf(path, sizeof path, "%s/index.html", LAR_VIEWER_FOLDER);
     struct stat found;
-    if (stat(path, &found) == 0) return lar_files_read(LAR_VIEWER_FOLDER, files, error);
+    if (*LAR_VIEWER_FOLDER && stat(path, &found) == 0)
+        return lar_files_read(LAR_VIEWER_FOLDER, files, error);
     files->file = lar_calloc(1, sizeof *files->file);
     char *name = lar_strdup("/index.html"), *data = lar_strdup(ABSENT);
     if (!files->file || !name || !data) {

@@ -66,8 +66,12 @@ void lar_features_look(lar_feature feature[LAR_FEATURES]) {
         {"viewer", "lariat view, sessions for the browser and for devices",
          "apt-get install libwebsockets-dev, then make", server},
         {"page", "the page that lariat view shows",
+#ifdef LAR_VIEWER_PACKAGE
+         "apt-get install " LAR_VIEWER_PACKAGE,
+#else
          server ? "apt-get install nodejs npm, then make; npm needs the network"
                 : "apt-get install libwebsockets-dev nodejs npm, then make",
+#endif
          lar_server_has_page() != 0},
         {"gamepad", "game controllers move instruments",
 #ifdef LAR_HAVE_SDL2

@@ -77,6 +77,13 @@ wants libopenmpi-dev
 wants python3-numpy
 wants_no libmpich-dev
 
+# Packages: all that they are built with, as the control file says it.
+asked deb
+sed -n '/^Build-Depends:/,/^$/s/^ \([a-z0-9.+-]*\).*/\1/p' "$source/packaging/debian/control" |
+    sed 's/^debhelper-compat$/debhelper/' >"$scratch/depends"
+[ -s "$scratch/depends" ] || fail "the packages are built with nothing"
+while read -r package; do wants "$package"; done <"$scratch/depends"
+
 # Without the right to install: one sentence with the command, and an error where it is needed.
 make_command id 'echo 1000'
 if PATH="$scratch/bin" bash "$source/tools/setup.sh" 2>"$scratch/err" </dev/null; then

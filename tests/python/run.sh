@@ -41,6 +41,9 @@ pip)
         echo "skipped: this is no git checkout"
         exit 77
     }
+    # And the page, where it is built: wheels bring it along.
+    page=$source/web/dist
+    [ ! -e "$page/index.html" ] || { mkdir -p "$scratch/copy/web/dist" && cp -r "$page/." "$scratch/copy/web/dist/"; }
     # Compiled without optimisation, in half the time: the code is that of the release build.
     LARIAT_CMAKE_ARGS="-DCMAKE_C_FLAGS_RELEASE=-O0" \
         "$scratch/venv/bin/python" -m pip install --no-index --disable-pip-version-check \
@@ -49,6 +52,20 @@ pip)
     for test in model misuse envs; do
         PYTHONPATH="$here" "$scratch/venv/bin/python" -X faulthandler "$here/test_$test.py" || exit 1
     done
+    if [ -e "$page/index.html" ]; then
+        "$scratch/venv/bin/python" - "$page/index.html" "$source/examples/beam.yaml" <<'END' || exit 1
+import sys, urllib.request
+import lariat
+with lariat.Simulation(lariat.Model(sys.argv[2])) as sim, lariat.Session(sim) as session:
+    try:
+        view = session.view(open=False)
+    except lariat.UnsupportedError:
+        sys.exit(0)  # built without libwebsockets
+    assert lariat._viewer_folder and "site-packages" in lariat._viewer_folder, lariat._viewer_folder
+    with urllib.request.urlopen(view.url) as answer, open(sys.argv[1], "rb") as page:
+        assert answer.read() == page.read(), "another page than the wheel's"
+END
+    fi
     "$scratch/venv/bin/python" -m pip uninstall -y lariat >>"$scratch/log" 2>&1
     left=$(find "$scratch/venv" -name '*lariat*')
     [ -z "$left" ] || { echo "left behind: $left"; exit 1; }
