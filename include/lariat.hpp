@@ -282,6 +282,10 @@ class Simulation : public detail::Handle<lar_simulation, lar_simulation_destroy>
     explicit Simulation(const Model &model, const lar_options &options = lariat::options()) {
         owned_.reset(detail::ask<lar_simulation *>(lar_simulation_create, model.get(), &options));
     }
+    /* Another one in the same state, without compiling the model again. */
+    Simulation clone() const {
+        return Simulation(detail::ask<lar_simulation *>(lar_simulation_clone, get()));
+    }
     lar_simulation_info inspect() const {
         lar_simulation_info info;
         lar_simulation_inspect(get(), &info);
@@ -445,6 +449,7 @@ class Simulation : public detail::Handle<lar_simulation, lar_simulation_destroy>
     }
 
   private:
+    explicit Simulation(lar_simulation *owned) { owned_.reset(owned); }
     std::size_t nodes() const {
         return static_cast<std::size_t>(lar_model_node_count(inspect().model));
     }

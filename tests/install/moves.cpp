@@ -56,6 +56,12 @@ static void simulate(const lariat::Model &model, const std::string &results) {
     expect(through && calls == 7 && other.steps() == 57,
            "an exception does not come out of a callback");
 
+    lariat::Simulation clone = other.clone();
+    clone.advance(1);
+    expect(clone.steps() == 58 && other.steps() == 57, "a clone is not its own");
+    other.advance(1);
+    expect(clone.hash() == other.hash(), "a clone goes another way");
+
     other.set_gravity({0, 0, -1});
     expect(other.gravity()[2] == -1, "gravity was not set");
     other.set_gravity(nullptr);
