@@ -1,13 +1,14 @@
 #!/bin/sh
 # The tests of the Python module, with an interpreter that can load it.
 #
-#   run.sh NAME SOURCE BUILD SCRATCH WHY      WHY: why there is nothing to test; "" when there is
+#   run.sh NAME SOURCE BUILD SCRATCH [WHY]    WHY: why there is nothing to test; "" when there is
 #
-# NAME is that of test_NAME.py; `docs` runs the blocks of docs/python.md and docs/environments.md, `pip` installs a copy of the
-# checkout into an empty virtual environment, without network, and tests what is there then; `asan` builds
-# the module once more with the sanitizers for addresses and undefined behaviour, on the same library.
+# NAME is that of test_NAME.py; `docs` runs the blocks of docs/python.md and docs/environments.md, `pip`
+# installs a copy of the checkout into an empty virtual environment, without network, and tests what is
+# there then; `asan` builds the module once more with the sanitizers for addresses and undefined
+# behaviour, on the same library. (CMake leaves an empty WHY out of what it hands on.)
 set -eu
-name=$1 source=$2 build=$3 scratch=$4 why=$5
+name=$1 source=$2 build=$3 scratch=$4 why=${5-}
 here=$source/tests/python
 [ -z "$why" ] || { echo "skipped: $why"; exit 77; }
 
