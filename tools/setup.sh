@@ -73,6 +73,7 @@ libcminpack-dev   -
 libhwloc-dev      -
 libmetis-dev      -
 libnifti-dev      -
+libpng-dev        -
 libsdl2-dev       -
 libwebsockets-dev -
 libxml2-dev       -
