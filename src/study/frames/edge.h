@@ -1,11 +1,16 @@
 /* The edge of the tissue at one place, to a small part of a pixel, and how well it is known.
  *
- *     light                  All pixels of a strip, 9 wide or less where points are closer, and
- * some 20 high, are
- *       |-----.   background  taken as they are, without interpolation: light on either side that
- * may |      \              lean, and between them a step that is blurred by a normal curve,
+ *     light
+ *       |-----.   background
+ *       |      \
  *       |tissue '-----
- *       +-----------> y       I = a0 + a1 y + b x + (c0 + c1 y) Phi((y - y0 - s x - q x^2) / sigma)
+ *       +-----------> y
+ *
+ * All pixels of a strip, 9 wide or less where points are closer, and some 20 high, are taken as
+ * they are, without interpolation: light on either side that may lean, and between them a step
+ * that is blurred by a normal curve,
+ *
+ *     I = a0 + a1 y + b x + (c0 + c1 y) Phi((y - y0 - s x - q x^2) / sigma)
  *
  * Least squares of these nine by Levenberg and Marquardt, with weights that leave out what lies far
  * off (Tukey's biweight: specks, glints). y0 is the height; its variance is that of the squares,
