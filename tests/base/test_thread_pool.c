@@ -27,15 +27,15 @@ static void workers_take_short_turns_and_the_caller_only_meanwhile(void **state)
     (void)state;
     lar_thread_pool *pool;
     lar_error error;
-    seen seen[WORKERS] = {0};
+    seen worker[WORKERS] = {0};
     uint64_t before = lar_thread_shorten_slice();
     lar_thread_restore_slice(before);
     if (!before) print_message("this system gives no thread slices of its own, or short ones\n");
     if (lar_thread_pool_create(WORKERS, false, 0, &pool, &error)) fail_msg("%s", error.message);
-    for (int i = 0; i < JOBS; i++) lar_thread_pool_run(pool, look, seen);
+    for (int i = 0; i < JOBS; i++) lar_thread_pool_run(pool, look, worker);
     for (int i = 0; i < WORKERS; i++) {
-        assert_int_equal(seen[i].times, JOBS);
-        assert_true(seen[i].longer == 0);
+        assert_int_equal(worker[i].times, JOBS);
+        assert_true(worker[i].longer == 0);
     }
     lar_thread_pool_destroy(pool);
     uint64_t after = lar_thread_shorten_slice();
