@@ -46,7 +46,7 @@ static lar_model *fibrous_tool_model(const brick *b) {
 
 /* ---- the same bits -------------------------------------------------------------------------- */
 
-static same_bits body = {fibrous_tool_model, PATH, {0x69eb4a885b97b185, 0x5255899b32ec3a63}};
+static same_bits body = {fibrous_tool_model, PATH, {0x8d5b4f3b93d38e75, 0xafbf4e75de8e62a6}};
 
 /* The same turned elements in rows and boxes, and loose. */
 static uint64_t styled(const lar_model *model, lar_layout_style style) {
