@@ -44,16 +44,6 @@ static lar_status copy_nodes(python_member_call *call, python_member *member, in
     return LAR_OK;
 }
 
-static void positions_of(const lar_simulation *simulation, double (*out)[3]) {
-    lar_simulation_info info;
-    lar_simulation_inspect(simulation, &info);
-    const double(*rest)[3] = lar_model_positions(info.model);
-    int32_t count = lar_model_node_count(info.model);
-    lar_simulation_displacements(simulation, out);
-    for (int32_t i = 0; i < count; i++)
-        for (int k = 0; k < 3; k++) out[i][k] += rest[i][k];
-}
-
 static PyObject *nodes(PyObject *me, PyObject *args, PyObject *keywords, const char *name,
                        void nodes_of(const lar_simulation *, double (*)[3])) {
     out_array array = {.nodes_of = nodes_of};
@@ -65,7 +55,7 @@ static PyObject *nodes(PyObject *me, PyObject *args, PyObject *keywords, const c
 }
 
 static PyObject *positions(PyObject *me, PyObject *args, PyObject *keywords) {
-    return nodes(me, args, keywords, "positions", positions_of);
+    return nodes(me, args, keywords, "positions", python_positions);
 }
 static PyObject *displacements(PyObject *me, PyObject *args, PyObject *keywords) {
     return nodes(me, args, keywords, "displacements", lar_simulation_displacements);

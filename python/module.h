@@ -221,6 +221,9 @@ void python_simulation_give(python_simulation *self);
 /* The index of a tool: a number or a name. */
 bool python_simulation_tool(lar_simulation *simulation, PyObject *source, int32_t *index);
 
+/* Where the nodes are now [m], [nodes][3]; needs no interpreter. */
+void python_positions(const lar_simulation *simulation, double (*out)[3]);
+
 /* Rows of the class that stand in other files; each table ends with a row of NULL. */
 extern PyMethodDef python_state_methods[], python_change_methods[], python_tool_methods[];
 extern PyGetSetDef python_change_properties[], python_tool_properties[];

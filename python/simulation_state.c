@@ -5,7 +5,7 @@
 
 typedef void fill(const lar_simulation *simulation, double (*out)[3]);
 
-static void fill_positions(const lar_simulation *simulation, double (*out)[3]) {
+void python_positions(const lar_simulation *simulation, double (*out)[3]) {
     lar_simulation_info info;
     lar_simulation_inspect(simulation, &info);
     const double(*rest)[3] = lar_model_positions(info.model);
@@ -32,7 +32,7 @@ static PyObject *nodes_of(PyObject *me, PyObject *args, PyObject *keywords, cons
 }
 
 static PyObject *positions(PyObject *me, PyObject *args, PyObject *keywords) {
-    return nodes_of(me, args, keywords, "positions", "|O:positions", fill_positions);
+    return nodes_of(me, args, keywords, "positions", "|O:positions", python_positions);
 }
 static PyObject *displacements(PyObject *me, PyObject *args, PyObject *keywords) {
     return nodes_of(me, args, keywords, "displacements", "|O:displacements",

@@ -249,13 +249,13 @@ static bool follow(const lar_tool *tool, const lar_tool_limits *limits, lar_tool
     return true;
 }
 
-/* What becomes of how hard tools are, by one of them: the greatest wish of all is granted. */
-typedef enum hardness_wish { FADES, YIELDS, STAYS, HARDENS } hardness_wish;
+/* What becomes of how hard tools are, by one of them; of several the last in this list counts. */
+typedef enum hardness_change { FADES, YIELDS, STAYS, HARDENS } hardness_change;
 
 /* Tissue that is deep in a tool, although the tool presses no harder than it may, makes tools
  * harder. One that presses too hard gives way instead, and presses softer until it does not; but
  * not where its middle line is soon no longer outside. */
-static hardness_wish wish_of(double depth, double load) {
+static hardness_change change_for(double depth, double load) {
     static const double SOFT = 0.3, HARD = 0.15, DANGER = 0.65; /* radii */
     static const double HEAVY = 3;                              /* limits */
     if (depth > DANGER) return HARDENS;
@@ -268,19 +268,19 @@ static hardness_wish wish_of(double depth, double load) {
 static double harden(const lar_tool_list *list, const lar_tools *tools, double hardness,
                      double fading, double seconds, double unit) {
     static const double RISE = 1e-3; /* [s] */
-    double change = 1 + seconds / RISE;
-    hardness_wish wish = FADES;
+    double factor = 1 + seconds / RISE;
+    hardness_change change = FADES;
     for (int32_t i = 0; i < tools->count; i++) {
         const lar_tool_felt *felt = &tools->follower[i].felt;
         double load, depth = felt->depth / list->tool[i].radius;
         if (!(depth > 0)) continue;
         mean_load mean = mean_of(felt, &list->limits[i], (jaws_state){0}, 0, unit, &load);
-        hardness_wish own = wish_of(depth, lar_length(mean.force) / list->limits[i].force);
-        if (own > wish) wish = own;
+        hardness_change own = change_for(depth, lar_length(mean.force) / list->limits[i].force);
+        if (own > change) change = own;
     }
-    if (wish == HARDENS) return fmin(change * hardness, LAR_HARDNESS_MAX);
-    if (wish == YIELDS) return fmax(1, hardness / change);
-    return wish == FADES ? fmax(1, fading * hardness) : hardness;
+    if (change == HARDENS) return fmin(factor * hardness, LAR_HARDNESS_MAX);
+    if (change == YIELDS) return fmax(1, hardness / factor);
+    return change == FADES ? fmax(1, fading * hardness) : hardness;
 }
 
 bool lar_tools_divide(const lar_tool_list *list, lar_tools *tools, uint64_t step, double seconds,

@@ -10,6 +10,14 @@
 
 enum { TWIN_TEXT = 4096, TWIN_ROWS = 400 };
 
+/* Of a group of tests: without cminpack nothing can be fitted. */
+TEST_UNUSED static int twin_needs_cminpack(void **state) {
+    (void)state;
+    if (lar_inverse_available()) return 0;
+    print_message("skipped: built without cminpack\n");
+    exit(77);
+}
+
 /* A file below the build folder. */
 TEST_UNUSED static const char *twin_path(const char *name) {
     static char path[8][512];

@@ -441,13 +441,6 @@ static void student_is_as_in_tables(void **state) {
     assert_below(fabs(lar_student_95(1000) - 1.9623), 1e-3);
 }
 
-static int need_cminpack(void **state) {
-    (void)state;
-    if (lar_inverse_available()) return 0;
-    print_message("skipped: built without cminpack\n");
-    exit(77);
-}
-
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(student_is_as_in_tables),
                                        cmocka_unit_test(tension_is_fitted),
@@ -463,5 +456,5 @@ int main(void) {
                                        cmocka_unit_test(a_wrong_law_is_pointed_out),
                                        cmocka_unit_test(experiments_share_parameters),
                                        cmocka_unit_test(tissues_go_into_scenes)};
-    return cmocka_run_group_tests(tests, need_cminpack, NULL);
+    return cmocka_run_group_tests(tests, twin_needs_cminpack, NULL);
 }

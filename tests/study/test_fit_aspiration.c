@@ -273,16 +273,9 @@ static void profiles_are_read(void **state) {
     lar_inverse_problem_clear(&problem);
 }
 
-static int need_cminpack(void **state) {
-    (void)state;
-    if (lar_inverse_available()) return 0;
-    print_message("skipped: built without cminpack\n");
-    exit(77);
-}
-
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(profiles_are_read), cmocka_unit_test(aspiration_is_fitted),
         cmocka_unit_test(creep_is_fitted), cmocka_unit_test(intervals_cover_the_truth)};
-    return cmocka_run_group_tests(tests, need_cminpack, NULL);
+    return cmocka_run_group_tests(tests, twin_needs_cminpack, NULL);
 }

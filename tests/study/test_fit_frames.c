@@ -136,14 +136,7 @@ static void frames_lead_to_the_tissue(void **state) {
     lar_inverse_result_clear(&r);
 }
 
-static int need_cminpack(void **state) {
-    (void)state;
-    if (lar_inverse_available()) return 0;
-    print_message("skipped: built without cminpack\n");
-    exit(77);
-}
-
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(frames_lead_to_the_tissue)};
-    return cmocka_run_group_tests(tests, need_cminpack, NULL);
+    return cmocka_run_group_tests(tests, twin_needs_cminpack, NULL);
 }
