@@ -198,8 +198,9 @@ test('a distance is measured between two places, now and at rest, and follows th
 
 test('energies and times are plotted, and asked for only while they are seen', async (t) => {
     const own = await mock();
-    t.after(() => own.close());
-    const v = await openPage(browser, own.url);
+    const sharp = await openBrowser({ deviceScaleFactor: 1 }); // lines of a plot are a point wide
+    t.after(() => Promise.all([own.close(), sharp.close()]));
+    const v = await openPage(sharp, own.url);
     await v.page.waitForTimeout(500);
     assert.equal(own.state.energies, 0);
     own.state.late = 3;
