@@ -20,7 +20,7 @@ const PULL = 14, HOLD = 3, LEAVE = 20; // pictures
 
 mkdirSync(FOLDER, { recursive: true });
 const engine = await view(demo().scene, '--port', '0', '--pace', '0.2');
-const browser = await openBrowser({ viewport: SIZE });
+const browser = await openBrowser({ viewport: SIZE, deviceScaleFactor: 1 });
 const { page } = await openPage(browser, engine.url);
 let number = 0;
 const shot = async () => {

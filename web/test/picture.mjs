@@ -9,7 +9,7 @@ import { demo, view } from './engine.mjs';
 mkdirSync(OUT, { recursive: true });
 const model = demo();
 const engine = await view(model.scene, '--port', '0', '--save-folder', model.saved);
-const browser = await openBrowser({ viewport: { width: 1600, height: 1000 } });
+const browser = await openBrowser({ viewport: { width: 1600, height: 1000 }, deviceScaleFactor: 1 });
 const { page, get } = await openPage(browser, `${engine.url}#quality=fine`);
 // A look around, so that the hints are done with.
 await page.mouse.move(300, 300);
