@@ -348,6 +348,33 @@ LAR_API lar_status lar_meshing_create(const char *const *paths, int32_t count,
                                       lar_error *error);
 LAR_API void lar_meshing_destroy(lar_meshing *meshing);
 
+/* A label image (lar_image_open, lar_image_create). */
+typedef struct lar_image lar_image;
+
+/* A closed surface in memory. */
+typedef struct lar_surface_arrays {
+    const char *name;             /* of its region; NULL or "": "surface" */
+    int32_t vertices, triangles;  /* counts */
+    const double (*vertex)[3];    /* [vertices], in metres times options.scale */
+    const int32_t (*triangle)[3]; /* [triangles] vertices, counter-clockwise seen from outside */
+} lar_surface_arrays;
+
+/* As lar_meshing_create, without files: what it makes is the same. An image knows its labels'
+ * names, so options.names is refused; surfaces are copied. */
+LAR_API lar_status lar_meshing_of_image(const lar_image *image, const lar_meshing_options *options,
+                                        lar_meshing **meshing, lar_error *error);
+LAR_API lar_status lar_meshing_of_surfaces(const lar_surface_arrays *surface, int32_t count,
+                                           const lar_meshing_options *options,
+                                           lar_meshing **meshing, lar_error *error);
+
+/* What was made: the mesh in metres, and the true surface (the embedded one of a file). Either may
+ * be NULL. The arrays live as long as the meshing. */
+LAR_API void lar_meshing_arrays(const lar_meshing *meshing, lar_mesh_arrays *mesh,
+                                lar_surface_arrays *surface);
+/* The starter scene as a text for lar_model_from_arrays with that mesh; lives as long as the
+ * meshing. */
+LAR_API lar_status lar_meshing_scene(lar_meshing *meshing, const char **scene, lar_error *error);
+
 typedef struct lar_meshing_info {
     const char *title; /* strings live as long as the meshing */
     const char *name;  /* of its files: the title, "_" for what is no letter, digit, "-" or "." */
@@ -388,10 +415,8 @@ LAR_API lar_status lar_meshing_region(const lar_meshing *meshing, int32_t index,
 LAR_API lar_status lar_meshing_write(lar_meshing *meshing, const char *folder, const char **scene,
                                      lar_error *error);
 
-/* A label image as lar_meshing_create reads it: a number for every voxel, 0 for nothing. Never
- * changes; any thread may look at it. */
-typedef struct lar_image lar_image;
-
+/* A label image is a number for every voxel, 0 for nothing. It never changes; any thread may look
+ * at it. */
 typedef struct lar_image_info {
     int32_t size[3];       /* voxels along i, j, k */
     int32_t names;         /* labels that the file gives names to */
@@ -402,6 +427,10 @@ typedef struct lar_image_info {
 
 /* Reads .nii .nii.gz .nrrd .nhdr; the caller destroys it. */
 LAR_API lar_status lar_image_open(const char *path, lar_image **image, lar_error *error);
+/* One of memory, copied. from->names of its labels have names: name[i] is that of label named[i];
+ * both may be NULL where that is 0. */
+LAR_API lar_status lar_image_create(const lar_image_info *from, const char *const *name,
+                                    const int32_t *named, lar_image **image, lar_error *error);
 LAR_API void lar_image_destroy(lar_image *image);
 LAR_API void lar_image_inspect(const lar_image *image, lar_image_info *info);
 /* Name `index` of the count, which lives as long as the image, and its label (may be NULL); NULL

@@ -235,6 +235,26 @@ inline void grid_take(const lar_grid_choice &choice, lar_options &options) {
 
 /* ---- meshing ------------------------------------------------------------------------------- */
 
+class Image : public detail::Handle<lar_image, lar_image_destroy> {
+  public:
+    explicit Image(const std::string &path) {
+        owned_.reset(detail::ask<lar_image *>(lar_image_open, path.c_str()));
+    }
+    /* Of memory: from.names of its labels have names. */
+    explicit Image(const lar_image_info &from, const char *const *name = nullptr,
+                   const std::int32_t *named = nullptr) {
+        owned_.reset(detail::ask<lar_image *>(lar_image_create, &from, name, named));
+    }
+    lar_image_info inspect() const {
+        lar_image_info info;
+        lar_image_inspect(get(), &info);
+        return info;
+    }
+    const char *name(std::int32_t index, std::int32_t *label = nullptr) const {
+        return lar_image_name(get(), index, label);
+    }
+};
+
 class Meshing : public detail::Handle<lar_meshing, lar_meshing_destroy> {
   public:
     explicit Meshing(const std::vector<std::string> &paths,
@@ -244,6 +264,15 @@ class Meshing : public detail::Handle<lar_meshing, lar_meshing_destroy> {
         owned_.reset(detail::ask<lar_meshing *>(lar_meshing_create, path.data(),
                                                 static_cast<std::int32_t>(path.size()), &options));
     }
+    explicit Meshing(const Image &image, const lar_meshing_options &options = meshing_options()) {
+        owned_.reset(detail::ask<lar_meshing *>(lar_meshing_of_image, image.get(), &options));
+    }
+    explicit Meshing(const std::vector<lar_surface_arrays> &surfaces,
+                     const lar_meshing_options &options = meshing_options()) {
+        owned_.reset(detail::ask<lar_meshing *>(lar_meshing_of_surfaces, surfaces.data(),
+                                                static_cast<std::int32_t>(surfaces.size()),
+                                                &options));
+    }
     lar_meshing_info inspect() const {
         lar_meshing_info info;
         lar_meshing_inspect(get(), &info);
@@ -252,24 +281,21 @@ class Meshing : public detail::Handle<lar_meshing, lar_meshing_destroy> {
     lar_region_info region(std::int32_t index) const {
         return detail::ask<lar_region_info>(lar_meshing_region, get(), index);
     }
+    /* Both live as long as the meshing. */
+    lar_mesh_arrays mesh() const {
+        lar_mesh_arrays mesh;
+        lar_meshing_arrays(get(), &mesh, nullptr);
+        return mesh;
+    }
+    lar_surface_arrays surface() const {
+        lar_surface_arrays surface;
+        lar_meshing_arrays(get(), nullptr, &surface);
+        return surface;
+    }
+    std::string scene() const { return detail::ask<const char *>(lar_meshing_scene, get()); }
     /* The path of the scene. */
     std::string write(const std::string &folder) {
         return detail::ask<const char *>(lar_meshing_write, get(), folder.c_str());
-    }
-};
-
-class Image : public detail::Handle<lar_image, lar_image_destroy> {
-  public:
-    explicit Image(const std::string &path) {
-        owned_.reset(detail::ask<lar_image *>(lar_image_open, path.c_str()));
-    }
-    lar_image_info inspect() const {
-        lar_image_info info;
-        lar_image_inspect(get(), &info);
-        return info;
-    }
-    const char *name(std::int32_t index, std::int32_t *label = nullptr) const {
-        return lar_image_name(get(), index, label);
     }
 };
 

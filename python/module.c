@@ -83,6 +83,33 @@ static PyMethodDef functions[] = {
      "write_demo(folder)\n--\n\nWrites the demonstration organ into a folder: uterus.vtu and its "
      "scenes uterus.yaml (pulled by a force) and uterus_live.yaml (to take hold of). Returns the "
      "folder."},
+    {"mesh", (PyCFunction)(void (*)(void))python_mesh, METH_VARARGS | METH_KEYWORDS,
+     "mesh(source, triangles=None, *, affine=None, label=None, names=None, elements=0, size=0.0,\n"
+     "     scale=0.0, fuse=False, principal=False, voxel=False, fix=None, title=None,\n"
+     "     progress=None)\n--\n\n"
+     "Hexahedra that lie on the true boundary of a body, and a scene that runs: a Meshing.\n\n"
+     "source     a path: label image (.nii .nii.gz .nrrd .nhdr), surface (.stl .obj .vtk .vtp) or "
+     "mesh\n"
+     "           (.msh .vtu .vtk .inp .feb); or a list of paths of surfaces, one region each;\n"
+     "           an array of integers [i, j, k], 0 for nothing, with `affine`;\n"
+     "           vertices, float64 [v, 3], with `triangles`;\n"
+     "           a dict of name: (vertices, triangles), one region each, the later one goes first\n"
+     "triangles  int32 [t, 3] vertices, counter-clockwise from outside; the surface is closed\n"
+     "affine     float64 [4, 4] or [3, 4]: voxel (i, j, k, 1) to the world times 1 / scale, +x "
+     "right,\n"
+     "           +y front, +z head\n"
+     "label      a name or a number of the image, or a list of them, each a region; None: all\n"
+     "names      dict of label: name for an array; the path of a list LABEL,NAME for a file\n"
+     "elements   about so many (5000), or\n"
+     "size       edge of an element [m]\n"
+     "scale      metres per unit of vertices, of `affine`, of a file of surfaces or solids (1)\n"
+     "fuse       all labels become one region\n"
+     "principal  elements along the body's principal axes\n"
+     "voxel      cubes on a grid; without elements and size the image's own voxels\n"
+     "fix        where it is held: left, right, back, front, bottom, top, cut, none\n"
+     "title      and the name of its files\n"
+     "progress   called with a stage and the part of it that is done, 0..1; False stops\n\n"
+     "Works on all cores and lets other threads run; Ctrl-C ends it at the next stage or round."},
     {"checkpoint_info", checkpoint_info, METH_O,
      "checkpoint_info(path)\n--\n\ndict of a checkpoint: element, nodes, elements, tools, spares, "
      "time_step [s], step. A simulation that shall take it up needs the same."},
@@ -103,8 +130,9 @@ PyMODINIT_FUNC PyInit__lariat(void) {
     PyObject *module = PyModule_Create(&definition);
     if (!module) return NULL;
     bool ok = python_errors_add(module) && python_array_add(module) && python_model_add(module) &&
-              python_saved_add(module) && python_simulation_add(module) &&
-              python_batch_add(module) && python_session_add(module) && python_view_add(module) &&
+              python_meshing_add(module) && python_saved_add(module) &&
+              python_simulation_add(module) && python_batch_add(module) &&
+              python_session_add(module) && python_view_add(module) &&
               pthread_atfork(NULL, NULL, after_fork) == 0 &&
               PyModule_AddStringConstant(module, "__version__", lar_version()) == 0;
     if (!ok) Py_CLEAR(module);

@@ -6,6 +6,7 @@
  *     simulation.c    class Simulation: life, advance    simulation_state.c   arrays, states
  *     change.c        gravity, stiffness, forces         tools.c     tools and their contacts
  *     session.c       class Session: life, clock         session_state.c   states, snapshots
+ *     mesh.c          lariat.mesh                    meshing.c   class Meshing
  *     saved.c         class Saved: a state in memory     view.c      class View: the browser
  *     batch.c         class Batch: its life, advance     batch_state.c    arrays, tools, resets
  *     pool.c          its threads                        module.c    the module itself
@@ -88,6 +89,7 @@ extern PyTypeObject *python_model_type, *python_simulation_type, *python_saved_t
 bool python_errors_add(PyObject *module);
 bool python_array_add(PyObject *module);
 bool python_model_add(PyObject *module);
+bool python_meshing_add(PyObject *module);
 bool python_saved_add(PyObject *module);
 bool python_simulation_add(PyObject *module);
 bool python_batch_add(PyObject *module);
@@ -210,6 +212,13 @@ bool python_integers(PyObject *source, const char *name, int columns, python_row
 void python_rows_free(python_rows *rows);
 /* Likewise float64 [members][rows][columns], of exactly this shape. */
 bool python_block(PyObject *source, const char *name, const Py_ssize_t shape[3], python_rows *out);
+
+typedef struct python_meshing {
+    PyObject_HEAD lar_meshing *meshing;
+} python_meshing;
+PyObject *python_meshing_wrap(lar_meshing *meshing); /* takes it over, also on failure */
+/* lariat.mesh */
+PyObject *python_mesh(PyObject *module, PyObject *args, PyObject *keywords);
 
 /* ---- simulations ---------------------------------------------------------------------------- */
 

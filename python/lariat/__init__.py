@@ -7,7 +7,7 @@
         sim.advance(seconds=0.1)
         print(sim.time, sim.energies(), f"{sim.hash():016x}")
 
-Model: what is simulated, constant. Simulation: the state that moves. Saved: a state in memory.
+mesh: from scans and surfaces to a Meshing. Model: what is simulated, constant. Simulation: the state that moves. Saved: a state in memory.
 Batch: many simulations, advanced on all cores; lariat.envs: environments of Gymnasium's interface.
 Session: a simulation in real time, with tools, devices and the viewer. SI units; vectors are x, y,
 z; nodes and elements count from 0. Arrays are memoryviews, which numpy.asarray takes without a copy;
@@ -23,6 +23,7 @@ from ._lariat import (
     Error,
     FileError,
     FormatError,
+    Meshing,
     Model,
     ModelError,
     OutOfMemoryError,
@@ -36,13 +37,14 @@ from ._lariat import (
     View,
     __version__,
     checkpoint_info,
+    mesh,
     write_demo,
 )
 
 __all__ = [
-    "ArgumentError", "Batch", "Error", "FileError", "FormatError", "Model", "ModelError",
+    "ArgumentError", "Batch", "Error", "FileError", "FormatError", "Meshing", "Model", "ModelError",
     "OutOfMemoryError", "PeerError", "Saved", "Session", "Simulation", "StateError", "UnstableError",
-    "UnsupportedError", "View", "__version__", "checkpoint_info", "write_demo",
+    "UnsupportedError", "View", "__version__", "checkpoint_info", "mesh", "write_demo",
 ]
 
 # Wheels bring the viewer's page along; elsewhere the library knows where it was installed.

@@ -29,18 +29,22 @@ void lar_meshing_destroy(lar_meshing *meshing) {
     free(meshing->stem);
     free(meshing->from);
     free(meshing->scene);
+    free(meshing->text);
+    free(meshing->set);
     free(meshing);
 }
 
 /* ---- what is asked for -------------------------------------------------------------------- */
 
-/* One meshing under way. */
+/* One meshing under way, of files, of an image or of surfaces. */
 typedef struct work {
-    const char *const *path;
+    const char *const *path; /* of what is given: how messages call it */
     int32_t count;
+    const lar_surface_arrays *given; /* [count]; NULL: none */
+    const lar_image *image;          /* given, or `read`; NULL: none yet */
     lar_meshing_options options;
     lar_meshing *meshing;
-    lar_image image;
+    lar_image read;
     lar_voxel_grid voxel_grid;
     lar_cleaning cleaning;
     lar_unfitted_mesh unfitted;
@@ -52,7 +56,8 @@ static lar_status refuse(const work *w, const char *format, const char *text) {
 }
 
 static lar_status check_paths(work *w) {
-    for (int32_t i = 0; i < w->count; i++) {
+    w->meshing->image = w->image != NULL;
+    for (int32_t i = 0; i < w->count && !w->image && !w->given; i++) {
         const char *path = w->path[i];
         if (!path || !*path)
             return refuse(w, "%s", "the name of a file to mesh is empty; give one");
@@ -78,6 +83,11 @@ static lar_status check_image_options(const work *w) {
     const lar_meshing_options *o = &w->options;
     if (w->meshing->image && o->scale > 0 && o->scale != 1)
         return refuse(w, "%.400s: an image says how large it is; a scale is for surfaces only",
+                      w->path[0]);
+    if (w->image && o->names)
+        return refuse(w,
+                      "%.400s: an image in memory brings the names of its labels along; a file "
+                      "of names is for one of a file",
                       w->path[0]);
     if (w->meshing->image) return LAR_OK;
     if (o->label_count > 0)
@@ -132,8 +142,13 @@ static char *name_of_file(const char *path) {
     const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
     const char *ending = lar_image_ending(name);
     size_t length = strlen(name);
-    size_t left_out = ending ? strlen(ending) : strlen(lar_path_extension(name)) + 1;
+    size_t left_out = ending ? strlen(ending) : strlen(lar_path_extension(name));
+    left_out += !ending && left_out > 0; /* the dot */
     return lar_strndup(name, left_out < length ? length - left_out : length);
+}
+
+static char *name_of(const work *w, int32_t i) {
+    return w->given ? lar_strdup(w->path[i]) : name_of_file(w->path[i]);
 }
 
 /* As a file's name that needs no quotes anywhere. */
@@ -154,7 +169,7 @@ static char *joined_names(const work *w) {
     for (int32_t i = 0; i < w->count; i++) length += strlen(w->path[i]) + 2;
     char *all = lar_calloc(length, 1);
     for (int32_t i = 0; all && i < w->count; i++) {
-        const char *slash = strrchr(w->path[i], '/');
+        const char *slash = w->given ? NULL : strrchr(w->path[i], '/');
         if (i > 0) strcat(all, ", ");
         strcat(all, slash ? slash + 1 : w->path[i]);
     }
@@ -166,7 +181,7 @@ static lar_status name_meshing(work *w) {
     const lar_boundary *boundary = &m->boundary;
     const char *given = w->options.title;
     if (!given && boundary->region_count == 1) given = boundary->region[1].name;
-    m->title = given && *given ? lar_strdup(given) : name_of_file(w->path[0]);
+    m->title = given && *given ? lar_strdup(given) : name_of(w, 0);
     m->stem = m->title ? stem_of(m->title) : NULL;
     m->from = joined_names(w);
     if (!m->title || !m->stem || !m->from) return lar_fail_memory(w->error, 256, "a title");
@@ -181,11 +196,14 @@ static lar_status boundary_of_image(work *w) {
     const lar_meshing_options *o = &w->options;
     const lar_label_choice choice = {o->label_count, o->labels, o->fuse != 0};
     lar_status status = tell(w, "reading", 0);
-    if (!status) status = lar_image_read(w->path[0], &w->image, w->error);
-    if (!status && o->names) status = lar_image_read_names(o->names, &w->image, w->error);
+    if (!status && !w->image) {
+        status = lar_image_read(w->path[0], &w->read, w->error);
+        w->image = &w->read;
+    }
+    if (!status && o->names) status = lar_image_read_names(o->names, &w->read, w->error);
     if (!status) status = tell(w, "finding the boundary", 0);
     if (!status)
-        status = lar_boundary_from_image(&w->image, &choice, &w->meshing->boundary, w->error);
+        status = lar_boundary_from_image(w->image, &choice, &w->meshing->boundary, w->error);
     return status;
 }
 
@@ -197,8 +215,10 @@ static lar_status boundary_of_surfaces(work *w) {
         surface && name ? LAR_OK : lar_fail_memory(w->error, sizeof *surface, "surfaces");
     for (int32_t i = 0; !status && i < w->count; i++) {
         status = tell(w, "reading", (double)i / w->count);
-        if (!status) status = lar_triangles_read(w->path[i], scale, &surface[i], w->error);
-        if (!status && !(name[i] = name_of_file(w->path[i])))
+        if (!status)
+            status = w->given ? lar_meshing_take_surface(&w->given[i], scale, &surface[i], w->error)
+                              : lar_triangles_read(w->path[i], scale, &surface[i], w->error);
+        if (!status && !(name[i] = name_of(w, i)))
             status = lar_fail_memory(w->error, strlen(w->path[i]), "a name");
     }
     if (!status) status = tell(w, "checking surfaces", 0);
@@ -251,7 +271,7 @@ static lar_status fill_voxel_grid(work *w) {
                           "the image's own voxels lie along the image's axes, not the "
                           "body's; give a size or a number of elements with principal "
                           "axes");
-        return lar_voxel_grid_from_image(&w->image, boundary, &w->voxel_grid, w->error);
+        return lar_voxel_grid_from_image(w->image, boundary, &w->voxel_grid, w->error);
     }
     if (o->size > 0) return lar_voxel_grid_fill(boundary, o->size, &w->voxel_grid, w->error);
     lar_status status =
@@ -279,7 +299,7 @@ static lar_status make_mesh(work *w) {
     const lar_fit_options fit = {.progress = fit_progress, .context = w};
     lar_status status = tell(w, "laying the grid", 0);
     if (!status) status = fill_voxel_grid(w);
-    lar_image_clear(&w->image);
+    lar_image_clear(&w->read);
     if (!status) status = tell(w, "cleaning", 0);
     if (!status) status = lar_voxel_grid_clean(&w->voxel_grid, &w->cleaning, w->error);
     if (!status)
@@ -383,7 +403,30 @@ static lar_status describe(work *w) {
         status = both.status[i];
         if (status) *w->error = both.error[i];
     }
-    return status ? status : check_volume(w);
+    if (!status) status = check_volume(w);
+    return status ? status : lar_meshing_list_sets(m, w->error);
+}
+
+/* Makes it of what the work names. */
+static lar_status create(work *w, const lar_meshing_options *options, lar_meshing **meshing,
+                         lar_error *error) {
+    lar_error own;
+    w->error = error ? error : &own;
+    if (options) w->options = *options;
+    w->meshing = lar_calloc(1, sizeof *w->meshing);
+    if (!w->meshing) return lar_fail_memory(error, sizeof *w->meshing, "a meshing");
+    lar_status status = check_options(w);
+    if (!status) status = make_boundary(w);
+    if (!status) status = make_mesh(w);
+    if (!status) status = describe(w);
+    lar_image_clear(&w->read);
+    lar_voxel_grid_clear(&w->voxel_grid);
+    lar_unfitted_clear(&w->unfitted);
+    if (status)
+        lar_meshing_destroy(w->meshing);
+    else
+        *meshing = w->meshing;
+    return status;
 }
 
 lar_status lar_meshing_create(const char *const *paths, int32_t count,
@@ -393,23 +436,33 @@ lar_status lar_meshing_create(const char *const *paths, int32_t count,
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "lar_meshing_create needs at least one file and a place for the meshing; "
                         "neither may be NULL");
-    lar_error own;
-    work w = {.path = paths, .count = count, .error = error ? error : &own};
-    if (options) w.options = *options;
-    w.meshing = lar_calloc(1, sizeof *w.meshing);
-    if (!w.meshing) return lar_fail_memory(error, sizeof *w.meshing, "a meshing");
-    lar_status status = check_options(&w);
-    if (!status) status = make_boundary(&w);
-    if (!status) status = make_mesh(&w);
-    if (!status) status = describe(&w);
-    lar_image_clear(&w.image);
-    lar_voxel_grid_clear(&w.voxel_grid);
-    lar_unfitted_clear(&w.unfitted);
-    if (status)
-        lar_meshing_destroy(w.meshing);
-    else
-        *meshing = w.meshing;
-    return status;
+    work w = {.path = paths, .count = count};
+    return create(&w, options, meshing, error);
+}
+
+lar_status lar_meshing_of_image(const lar_image *image, const lar_meshing_options *options,
+                                lar_meshing **meshing, lar_error *error) {
+    if (!image || !meshing)
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "lar_meshing_of_image needs an image and a place for the meshing");
+    const char *const name = image->source;
+    work w = {.path = &name, .count = 1, .image = image};
+    return create(&w, options, meshing, error);
+}
+
+lar_status lar_meshing_of_surfaces(const lar_surface_arrays *surface, int32_t count,
+                                   const lar_meshing_options *options, lar_meshing **meshing,
+                                   lar_error *error) {
+    const char *name[LAR_REGIONS_MAX];
+    if (!surface || !meshing || count < 1 || count > LAR_REGIONS_MAX)
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "lar_meshing_of_surfaces needs 1 to %d surfaces and a place for the "
+                        "meshing",
+                        (int)LAR_REGIONS_MAX);
+    for (int32_t i = 0; i < count; i++)
+        name[i] = surface[i].name && *surface[i].name ? surface[i].name : "surface";
+    work w = {.path = name, .count = count, .given = surface};
+    return create(&w, options, meshing, error);
 }
 
 void lar_meshing_inspect(const lar_meshing *meshing, lar_meshing_info *info) {

@@ -1,6 +1,7 @@
 /* A meshing between its making and its files.
  *
  *     meshing.c     reads, meshes, measures
+ *     given.c       what comes from the caller's memory, and what goes there
  *       |
  *       +--> starter/support.c         node sets: what holds it, where it is pulled
  *       +--> starter/extra_supports.c  what carries its weight besides
@@ -42,7 +43,9 @@ struct lar_meshing {
     lar_support support;
     lar_region_info *region; /* [info.regions] */
     lar_meshing_info info;
-    char *scene; /* path, once written */
+    char *scene;        /* path, once written */
+    char *text;         /* of the scene for memory, once asked for */
+    lar_array_set *set; /* [mesh.set_count] the mesh's sets as the public header has them */
 };
 
 /* Whether the rule is one, or NULL. */
@@ -54,6 +57,16 @@ lar_status lar_support_choose(lar_meshing *meshing, const char *rule, lar_error 
 
 /* Writes the scene, whole or not at all; it names the mesh's and the surface's files. */
 lar_status lar_starter_write(const lar_meshing *meshing, const char *path, lar_error *error);
+
+/* The same as a text that names no files. The caller frees it. */
+lar_status lar_starter_text(const lar_meshing *meshing, char **text, lar_error *error);
+
+/* A surface of the caller's memory, copied, as lar_triangles_read gives one of a file. */
+lar_status lar_meshing_take_surface(const lar_surface_arrays *given, double scale,
+                                    lar_triangles *surface, lar_error *error);
+
+/* meshing->set, once the mesh has all its sets. */
+lar_status lar_meshing_list_sets(lar_meshing *meshing, lar_error *error);
 
 /* Jacobians, edges, volume of a mesh and, with a surface (may be NULL), how far apart they are.
  * true_volume is left alone. */

@@ -301,13 +301,139 @@ static void small_regions_follow_the_body(void **state) {
     lar_meshing_destroy(meshing);
 }
 
+/* ---- without files ----------------------------------------------------------------------------
+ */
+
+static void same_mesh(const lar_meshing *left, const lar_meshing *right) {
+    lar_mesh_arrays a, b;
+    lar_surface_arrays s, t;
+    lar_meshing_arrays(left, &a, &s);
+    lar_meshing_arrays(right, &b, &t);
+    assert_int_equal(a.nodes, b.nodes);
+    assert_int_equal(a.elements, b.elements);
+    assert_memory_equal(a.position, b.position, (size_t)a.nodes * sizeof *a.position);
+    assert_memory_equal(a.element, b.element, (size_t)a.elements * sizeof *a.element);
+    assert_int_equal(a.sets, b.sets);
+    for (int32_t i = 0; i < a.sets; i++) {
+        assert_string_equal(a.set[i].name, b.set[i].name);
+        assert_string_equal(a.set[i].kind, b.set[i].kind);
+        assert_int_equal(a.set[i].count, b.set[i].count);
+    }
+    assert_int_equal(s.triangles, t.triangles);
+    assert_memory_equal(s.vertex, t.vertex, (size_t)s.vertices * sizeof *s.vertex);
+}
+
+static void images_in_memory_become_what_their_files_do(void **state) {
+    (void)state;
+    static const char *const names[] = {"liver"};
+    const int32_t named[] = {1};
+    lar_meshing_options options = lar_meshing_options_default();
+    options.elements = 400;
+    lar_meshing *of_file = made(ELLIPSOID, &options), *of_memory = NULL;
+    lar_image *image = NULL, *copy = NULL;
+    lar_image_info info;
+    assert_int_equal(lar_image_open(ELLIPSOID, &image, &error), LAR_OK);
+    lar_image_inspect(image, &info);
+    info.names = 1;
+    assert_int_equal(lar_image_create(&info, names, named, &copy, &error), LAR_OK);
+    lar_image_destroy(image);
+    assert_string_equal(lar_image_name(copy, 0, NULL), "liver");
+    assert_int_equal(lar_meshing_of_image(copy, &options, &of_memory, &error), LAR_OK);
+    same_mesh(of_file, of_memory);
+    lar_image_destroy(copy);
+
+    /* And the model, which is that of the files. */
+    const char *scene = NULL, *path = NULL;
+    lar_mesh_arrays mesh;
+    lar_model *model[2] = {NULL, NULL};
+    uint64_t hash[2];
+    lar_meshing_arrays(of_memory, &mesh, NULL);
+    assert_int_equal(lar_meshing_scene(of_memory, &scene, &error), LAR_OK);
+    if (lar_model_from_arrays(&mesh, scene, &model[0], &error)) fail_msg("%s", error.message);
+    assert_int_equal(lar_meshing_write(of_file, LAR_TEST_BUILD "/meshing_of_memory", &path, &error),
+                     LAR_OK);
+    if (lar_model_open(path, &model[1], &error)) fail_msg("%s", error.message);
+    for (int i = 0; i < 2; i++) {
+        lar_simulation *simulation = NULL;
+        assert_int_equal(lar_simulation_create(model[i], NULL, &simulation, &error), LAR_OK);
+        assert_int_equal(lar_simulation_advance(simulation, 50, &error), LAR_OK);
+        hash[i] = lar_simulation_hash(simulation);
+        lar_simulation_destroy(simulation);
+        lar_model_destroy(model[i]);
+    }
+    assert_true(hash[0] == hash[1]);
+    lar_meshing_destroy(of_file);
+    lar_meshing_destroy(of_memory);
+}
+
+static void surfaces_in_memory_become_what_their_files_do(void **state) {
+    (void)state;
+    lar_triangles read;
+    lar_meshing_options options = lar_meshing_options_default();
+    options.elements = 400;
+    options.title = "torus";
+    if (lar_triangles_read(TORUS, 1, &read, &error)) fail_msg("%s", error.message);
+    const lar_surface_arrays surface = {"meshing_torus", read.vertex_count, read.triangle_count,
+                                        (const double(*)[3])read.vertex,
+                                        (const int32_t(*)[3])read.corner};
+    lar_meshing *of_memory = NULL, *of_file = made(TORUS, &options);
+    assert_int_equal(lar_meshing_of_surfaces(&surface, 1, &options, &of_memory, &error), LAR_OK);
+    same_mesh(of_file, of_memory);
+    lar_meshing_destroy(of_file);
+    lar_meshing_destroy(of_memory);
+    lar_triangles_clear(&read);
+}
+
+static void what_is_none_in_memory_is_refused(void **state) {
+    (void)state;
+    static const int32_t triangle[4][3] = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 4}};
+    static const double vertex[4][3] = {{0}, {1}, {0, 1}, {0, 0, 1}};
+    const uint16_t label[8] = {1};
+    lar_surface_arrays surface = {NULL, 4, 4, vertex, triangle};
+    lar_image_info info = {.size = {2, 2, 2}, .label = label};
+    lar_meshing *meshing = NULL;
+    lar_image *image = NULL;
+    const char *scene = NULL;
+    assert_int_equal(lar_meshing_of_surfaces(&surface, 1, NULL, &meshing, &error),
+                     LAR_ERROR_ARGUMENT);
+    assert_non_null(strstr(error.message, "triangle 3 has the vertex 4"));
+    surface.triangles = 3;
+    assert_int_equal(lar_meshing_of_surfaces(&surface, 1, NULL, &meshing, &error),
+                     LAR_ERROR_ARGUMENT);
+    assert_int_equal(lar_meshing_of_surfaces(NULL, 1, NULL, &meshing, &error), LAR_ERROR_ARGUMENT);
+    assert_int_equal(lar_meshing_of_surfaces(&surface, 0, NULL, &meshing, &error),
+                     LAR_ERROR_ARGUMENT);
+    assert_int_equal(lar_meshing_of_image(NULL, NULL, &meshing, &error), LAR_ERROR_ARGUMENT);
+    assert_int_equal(lar_meshing_scene(NULL, &scene, &error), LAR_ERROR_ARGUMENT);
+    lar_meshing_arrays(NULL, NULL, &surface);
+    assert_int_equal(surface.triangles, 0);
+    assert_int_equal(lar_image_create(&info, NULL, NULL, &image, &error), LAR_ERROR_FORMAT);
+    for (int a = 0; a < 3; a++) info.to_world[a][a] = 0.001;
+    info.names = 1;
+    assert_int_equal(lar_image_create(&info, NULL, NULL, &image, &error), LAR_ERROR_ARGUMENT);
+    info.size[1] = 100000;
+    assert_int_equal(lar_image_create(&info, NULL, NULL, &image, &error), LAR_ERROR_ARGUMENT);
+    assert_null(meshing);
+    assert_null(image);
+    info = (lar_image_info){.size = {2, 2, 2}, .label = label};
+    for (int a = 0; a < 3; a++) info.to_world[a][a] = 0.001;
+    assert_int_equal(lar_image_create(&info, NULL, NULL, &image, &error), LAR_OK);
+    const lar_meshing_options options = {.names = "names.csv"};
+    assert_int_equal(lar_meshing_of_image(image, &options, &meshing, &error), LAR_ERROR_ARGUMENT);
+    lar_image_destroy(image);
+}
+
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(an_image_becomes_a_mesh),
-                                       cmocka_unit_test(regions_may_be_chosen_and_fused),
-                                       cmocka_unit_test(surfaces_become_meshes),
-                                       cmocka_unit_test(cubes_stay_cubes),
-                                       cmocka_unit_test(what_makes_no_sense_is_refused),
-                                       cmocka_unit_test(small_regions_follow_the_body),
-                                       cmocka_unit_test(it_can_be_stopped)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(an_image_becomes_a_mesh),
+        cmocka_unit_test(regions_may_be_chosen_and_fused),
+        cmocka_unit_test(surfaces_become_meshes),
+        cmocka_unit_test(cubes_stay_cubes),
+        cmocka_unit_test(what_makes_no_sense_is_refused),
+        cmocka_unit_test(small_regions_follow_the_body),
+        cmocka_unit_test(it_can_be_stopped),
+        cmocka_unit_test(images_in_memory_become_what_their_files_do),
+        cmocka_unit_test(surfaces_in_memory_become_what_their_files_do),
+        cmocka_unit_test(what_is_none_in_memory_is_refused)};
     return cmocka_run_group_tests(tests, write_files, NULL);
 }

@@ -50,7 +50,7 @@ pip)
         "$scratch/venv/bin/python" -m pip install --no-index --disable-pip-version-check \
         "$scratch/copy" >"$scratch/log" 2>&1 || { cat "$scratch/log"; exit 1; }
     rm -rf "$scratch/copy"
-    for test in model misuse envs; do
+    for test in model meshing misuse envs; do
         PYTHONPATH="$here" "$scratch/venv/bin/python" -X faulthandler "$here/test_$test.py" || exit 1
     done
     if [ -e "$page/index.html" ]; then
@@ -81,7 +81,7 @@ asan)
         -fPIC -D_GNU_SOURCE -DPy_LIMITED_API=0x030b0000 -I"$include" -I"$source/include" \
         "$source"/python/*.c -o "$scratch/python/lariat/_lariat.abi3.so" -L"$build" -llariat \
         -Wl,-rpath,"$build"
-    for test in model simulation batch envs session misuse; do
+    for test in model meshing simulation batch envs session misuse; do
         env LD_PRELOAD="$runtime $undefined" ASAN_OPTIONS=detect_leaks=0 PYTHONMALLOC=malloc \
             LARIAT_TEST_SANITIZED=1 PYTHONPATH="$scratch/python:$here" \
             "$python" "$here/test_$test.py" || exit 1

@@ -79,6 +79,70 @@ lar_status lar_image_open(const char *path, lar_image **out, lar_error *error) {
     return status;
 }
 
+/* Names from the caller, through the same sieve as those of files. */
+static lar_status take_names(const lar_image_info *from, const char *const *name,
+                             const int32_t *named, lar_image *image, lar_error *error) {
+    if (from->names <= 0) return LAR_OK;
+    lar_image_entry *entry = lar_calloc((size_t)from->names, sizeof *entry);
+    lar_status status = LAR_OK;
+    if (!entry) return lar_fail_memory(error, (size_t)from->names * sizeof *entry, "names");
+    for (int32_t n = 0; n < from->names && !status; n++) {
+        if (!name || !named || !name[n] || !*name[n] || named[n] < 0 ||
+            named[n] > LAR_IMAGE_LABEL_MAX)
+            status = lar_fail(error, LAR_ERROR_ARGUMENT,
+                              "name %d of the image (from 0) is empty or NULL, or its label is not "
+                              "between 0 and %d",
+                              (int)n, LAR_IMAGE_LABEL_MAX);
+        else
+            entry[n] = (lar_image_entry){named[n], (size_t)n + 1, {name[n], strlen(name[n])}};
+    }
+    if (!status) status = lar_image_add_names(image, entry, (size_t)from->names, error);
+    free(entry);
+    return status;
+}
+
+static lar_status check_size(const lar_image_info *from, lar_error *error) {
+    int64_t voxels = 1;
+    for (int a = 0; a < 3; a++) {
+        if (from->size[a] < 1 || from->size[a] > LAR_IMAGE_SIDE_MAX ||
+            (voxels *= from->size[a]) > LAR_IMAGE_VOXELS_MAX)
+            return lar_fail(
+                error, LAR_ERROR_ARGUMENT,
+                "an image of %d x %d x %d voxels: 1 to %d along each axis and %d in all "
+                "can be; crop it",
+                (int)from->size[0], (int)from->size[1], (int)from->size[2], LAR_IMAGE_SIDE_MAX,
+                LAR_IMAGE_VOXELS_MAX);
+    }
+    return LAR_OK;
+}
+
+lar_status lar_image_create(const lar_image_info *from, const char *const *name,
+                            const int32_t *named, lar_image **out, lar_error *error) {
+    if (!from || !from->label || !out)
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "lar_image_create needs sizes and labels and a place for the image");
+    lar_status status = check_size(from, error);
+    if (status) return status;
+    const size_t voxels = (size_t)from->size[0] * (size_t)from->size[1] * (size_t)from->size[2];
+    lar_image *image = lar_calloc(1, sizeof *image);
+    if (!image) return lar_fail_memory(error, sizeof *image, "a label image");
+    memcpy(image->size, from->size, sizeof image->size);
+    memcpy(image->to_world, from->to_world, sizeof image->to_world);
+    image->source = lar_strdup("image");
+    image->label = lar_calloc(voxels, sizeof *image->label);
+    if (!image->source || !image->label)
+        status = lar_fail_memory(error, voxels * sizeof *image->label, "a label image");
+    else
+        memcpy(image->label, from->label, voxels * sizeof *image->label);
+    if (!status) status = lar_image_check_world(image, error);
+    if (!status) status = take_names(from, name, named, image, error);
+    if (status)
+        lar_image_destroy(image);
+    else
+        *out = image;
+    return status;
+}
+
 void lar_image_destroy(lar_image *image) {
     if (image) lar_image_clear(image);
     free(image);

@@ -102,7 +102,14 @@ static double squeezed_step(const lar_meshing *m) {
     return min / 2;
 }
 
-static void put_head(const lar_meshing *m, FILE *f) {
+static void put_files(const lar_meshing *m, FILE *f) {
+    fprintf(f,
+            "\nmesh: \"%s.vtu\"\n"
+            "surface: \"%s_surface.vtp\"   # the true surface, embedded in the mesh\n",
+            m->stem, m->stem);
+}
+
+static void put_head(const lar_meshing *m, bool files, FILE *f) {
     const lar_meshing_info *info = &m->info;
     fputs("# ", f);
     put(f, m->title, false);
@@ -111,24 +118,29 @@ static void put_head(const lar_meshing *m, FILE *f) {
     fprintf(f,
             ".\n"
             "# %" PRId32 " hexahedra %s, about %.3g mm wide.\n"
-            "#\n"
-            "#     lariat info %s.yaml                  sizes, quality, speed\n"
-            "#     lariat view %s.yaml                  take hold of it\n"
-            "#     lariat run %s.yaml --out results     pull at it, for ParaView\n"
-            "#\n"
-            "# A first scene to change as you need it: docs/formats.md has every key.\n"
-            "# All numbers are in SI units: metres, kilograms, seconds, newtons, pascals.\n",
+            "#\n",
             info->elements, m->fitted ? "on the true boundary" : "on a grid, as cubes",
-            1e3 * info->size, m->stem, m->stem, m->stem);
+            1e3 * info->size);
+    if (files)
+        fprintf(f,
+                "#     lariat info %s.yaml                  sizes, quality, speed\n"
+                "#     lariat view %s.yaml                  take hold of it\n"
+                "#     lariat run %s.yaml --out results     pull at it, for ParaView\n"
+                "#\n",
+                m->stem, m->stem, m->stem);
+    fputs("# A first scene to change as you need it: docs/formats.md has every key.\n"
+          "# All numbers are in SI units: metres, kilograms, seconds, newtons, pascals.\n",
+          f);
     fputs(m->image ? "# x points to the patient's right, y to the front, z to the head.\n"
-                   : "# Axes are those of the file.\n",
+          : files  ? "# Axes are those of the file.\n"
+                   : "# Axes are those of the arrays.\n",
           f);
     fputs("lariat: 1\ntitle: ", f);
     put(f, m->title, true);
-    fprintf(f,
-            "\nmesh: \"%s.vtu\"\n"
-            "surface: \"%s_surface.vtp\"   # the true surface, embedded in the mesh\n",
-            m->stem, m->stem);
+    if (files)
+        put_files(m, f);
+    else
+        fputs("\nmesh: given\n", f);
     fputs(m->image
               ? "view: [0.15, 1, 0.35]   # looked at from the patient's front, the head is up\n\n"
               : "\n",
@@ -322,21 +334,34 @@ static void put_end(const lar_meshing *m, FILE *f) {
         fputs("    - { set: support, sum: reaction }        # force of the support\n", f);
 }
 
-static void put_scene(const lar_meshing *m, FILE *f) {
-    put_head(m, f);
+static void put_scene(const lar_meshing *m, bool files, FILE *f) {
+    locale_t before = uselocale(lar_text_locale());
+    put_head(m, files, f);
     put_motion(m, f);
     put_materials(m, f);
     put_fix(m, f);
     put_load(m, f);
     put_tools(m, f);
     put_end(m, f);
+    uselocale(before);
 }
 
 lar_status lar_starter_write(const lar_meshing *meshing, const char *path, lar_error *error) {
     lar_part_file out;
     lar_status status = lar_part_open(&out, path, error);
-    locale_t before = uselocale(lar_text_locale());
-    if (!status) put_scene(meshing, out.file);
-    uselocale(before);
+    if (!status) put_scene(meshing, true, out.file);
     return lar_part_close(&out, status);
+}
+
+lar_status lar_starter_text(const lar_meshing *meshing, char **text, lar_error *error) {
+    char *made = NULL;
+    size_t size = 0;
+    FILE *file = open_memstream(&made, &size);
+    if (file) put_scene(meshing, false, file);
+    if (!file || fclose(file) != 0) {
+        free(made);
+        return lar_fail_memory(error, size + 1, "a scene");
+    }
+    *text = made;
+    return LAR_OK;
 }

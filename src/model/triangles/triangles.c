@@ -170,18 +170,16 @@ static lar_status scale_vertices(const char *path, double scale, lar_triangles *
     return LAR_OK;
 }
 
-static lar_status parse_and_join(const char *path, const lar_bytes *bytes,
-                                 const surface_format *format, double scale, lar_triangles *read,
-                                 lar_error *error) {
-    lar_status status = format->parse(path, bytes, read, error);
-    if (!status) status = scale_vertices(path, scale, read, error);
-    if (!status) status = lar_triangles_join(read, error);
-    if (!status && read->triangle_count == 0)
+lar_status lar_triangles_settle(lar_triangles *triangles, const char *name, double scale,
+                                lar_error *error) {
+    lar_status status = scale_vertices(name, scale, triangles, error);
+    if (!status) status = lar_triangles_join(triangles, error);
+    if (!status && triangles->triangle_count == 0)
         status =
             lar_fail(error, LAR_ERROR_FORMAT,
-                     "%s: has no triangle with an area, so it is no surface; check the file", path);
-    if (!status && !(read->source = lar_strdup(path)))
-        status = lar_fail_memory(error, strlen(path) + 1, path);
+                     "%s: has no triangle with an area, so it is no surface; check the file", name);
+    if (!status && !(triangles->source = lar_strdup(name)))
+        status = lar_fail_memory(error, strlen(name) + 1, name);
     return status;
 }
 
@@ -202,7 +200,8 @@ lar_status lar_triangles_read(const char *path, double scale, lar_triangles *tri
     lar_status status = lar_bytes_read(path, &bytes, error);
     if (status) return status;
     lar_triangles read = {0};
-    status = parse_and_join(path, &bytes, format, scale, &read, error);
+    status = format->parse(path, &bytes, &read, error);
+    if (!status) status = lar_triangles_settle(&read, path, scale, error);
     lar_bytes_free(&bytes);
     if (status)
         lar_triangles_clear(&read);

@@ -33,6 +33,11 @@ void lar_triangles_clear(lar_triangles *triangles);
 lar_status lar_triangles_read(const char *path, double scale, lar_triangles *triangles,
                               lar_error *error);
 
+/* What makes a surface of vertices and triangles that come from anywhere: places in metres, equal
+ * ones joined, a name for messages. LAR_ERROR_FORMAT where nothing with an area is left. */
+lar_status lar_triangles_settle(lar_triangles *triangles, const char *name, double scale,
+                                lar_error *error);
+
 /* True when the path's extension is one of a surface. */
 bool lar_triangles_named(const char *path);
 
