@@ -8,6 +8,7 @@
  *           scene_material.c  materials
  *           scene_tissue.c    a material in a file of its own
  *           scene_fibre.c     fibres of materials
+ *           scene_fibre_rule.c   along what they run
  *           scene_active.c    what is active of them, and when
  *           scene_motion.c    fix, move, load, initial, curves
  *           scene_contact.c   contact
@@ -164,7 +165,7 @@ typedef lar_status lar_scene_material_reader(const lar_scene *scene, const lar_y
 lar_status lar_scene_read_tissue(lar_scene *scene, const lar_yaml *entry,
                                  lar_scene_material_reader *read, lar_material *material);
 /* The fibres of a material; and, when all elements have their materials, the directions of those of
- * one (scene_fibre.c). */
+ * one (scene_fibre_rule.c). */
 lar_status lar_scene_read_fibres(const lar_scene *scene, const lar_yaml *node,
                                  lar_material *material);
 lar_status lar_scene_lay_fibres(lar_scene *scene, const lar_yaml *node, int material);
