@@ -29,6 +29,7 @@ void lar_meshing_destroy(lar_meshing *meshing) {
     free(meshing->stem);
     free(meshing->from);
     free(meshing->scene);
+    free(meshing->fibres);
     free(meshing);
 }
 
@@ -383,7 +384,11 @@ static lar_status describe(work *w) {
         status = both.status[i];
         if (status) *w->error = both.error[i];
     }
-    return status ? status : check_volume(w);
+    if (!status) status = check_volume(w);
+    if (status || !w->options.fibres) return status;
+    m->fibres = lar_strdup(w->options.fibres);
+    return m->fibres ? lar_starter_lay_fibres(m, w->error)
+                     : lar_fail_memory(w->error, strlen(w->options.fibres), "a rule for fibres");
 }
 
 lar_status lar_meshing_create(const char *const *paths, int32_t count,

@@ -17,6 +17,7 @@
  * 53, 2006; Bayer, Blake, Plank and Trayanova, Annals of Biomedical Engineering 40, 2012).
  */
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -421,5 +422,61 @@ lar_status lar_scene_lay_fibres(lar_scene *scene, const lar_yaml *node, int mate
     if (!status) status = lay(&r, direction->first, mesh->fibre);
     free(r.element);
     free(r.held);
+    return status;
+}
+
+/* ---- without a scene ------------------------------------------------------------------------ */
+
+static lar_status lay_all(lar_scene *scene, const int32_t *material, int materials) {
+    lar_model *model = scene->model;
+    lar_status status = LAR_OK;
+    if (!lar_yaml_get(scene->root, "direction") || scene->root->count != 1)
+        return lar_scene_fail(scene, scene->root, LAR_ERROR_FORMAT,
+                              "this is no rule; give one as in a scene, for example axis: [0, 0, "
+                              "1]");
+    size_t size = (size_t)model->mesh.element_count * sizeof *material;
+    model->element_material = lar_calloc((size_t)model->mesh.element_count, sizeof *material);
+    if (!model->element_material) return lar_scene_no_memory(scene, size);
+    memcpy(model->element_material, material, size);
+    for (int m = 0; m < materials && !status; m++)
+        status = lar_scene_lay_fibres(scene, scene->root, m);
+    for (int32_t e = 0; e < model->mesh.element_count && !status; e++)
+        if (material[e] >= 0 && lar_length(model->mesh.fibre[e]) == 0)
+            status = lar_scene_fail(scene, scene->root, LAR_ERROR_MODEL,
+                                    "the rule gives element %lld no direction; move its line out "
+                                    "of the elements' centres",
+                                    (long long)model->mesh.element_id[e]);
+    return status;
+}
+
+lar_status lar_scene_fibres_by_rule(const char *words, const int32_t *material, int materials,
+                                    lar_mesh *mesh, lar_error *error) {
+    static const char pattern[] = "{direction: %s%s%s}\n"; /* as in a scene: no comment ends it */
+    const bool braced = *words == '{';
+    size_t room = strlen(words) + sizeof pattern;
+    lar_bytes text = {lar_calloc(room, 1), 0};
+    lar_yaml_tree tree = {0};
+    lar_error unused; /* the parts may rely on an error to write to */
+    lar_scene scene = {
+        .path = "fibres", .model = lar_model_create(), .error = error ? error : &unused};
+    lar_status status = LAR_OK;
+    if (!text.data || !scene.model) status = lar_fail_memory(error, room, "a rule for fibres");
+    if (!status) {
+        text.size = (size_t)snprintf((char *)text.data, room, pattern, braced ? "" : "{", words,
+                                     braced ? "" : "}");
+        status = lar_yaml_parse(scene.path, &text, &tree, error);
+    }
+    if (!status) {
+        scene.root = tree.root;
+        scene.model->mesh = *mesh; /* lent */
+        scene.size = lar_scene_size(mesh);
+        status = lay_all(&scene, material, materials);
+        *mesh = scene.model->mesh;
+        scene.model->mesh = (lar_mesh){0};
+    }
+    lar_scene_sets_clear(&scene);
+    lar_yaml_clear(&tree);
+    lar_bytes_free(&text);
+    lar_model_destroy(scene.model);
     return status;
 }
