@@ -1,10 +1,12 @@
 /* The key `fibres` of a material; of its directions see scene_fibre_rule.c. */
 #include "model/scene/scene.h"
 
+#include <string.h>
+
 /* Their parameters, in the order of lar_fibre.parameter. */
 static const char *const *const law_names = lar_fibre_law_name + LAR_FIBRE_EXP_POW;
-static const char *const parameter_names[][LAR_FIBRE_PARAMETERS] = {{"ksi", "alpha", "beta", NULL},
-                                                                    {"c3", "c4", "c5", "lam_max"}};
+static const char *const parameter_names[LAR_FIBRE_LAWS - LAR_FIBRE_EXP_POW][LAR_FIBRE_PARAMETERS] =
+    {{"ksi", "alpha", "beta", NULL}, {"c3", "c4", "c5", "lam_max"}, {"E", "lam0", "beta", NULL}};
 enum { LAWS = LAR_FIBRE_LAWS - LAR_FIBRE_EXP_POW };
 
 static lar_status read_law(const lar_scene *scene, const lar_yaml *node, lar_fibre *fibre) {
@@ -25,34 +27,45 @@ static lar_status read_part(const lar_scene *scene, const lar_yaml *node, bool *
                              "the parts are", names, 2);
 }
 
+/* Which parameter of the law has that name; -1: none. */
+static int parameter_of(lar_fibre_law law, const char *name) {
+    for (int k = 0; law != LAR_FIBRE_NONE && k < LAR_FIBRE_PARAMETERS; k++) {
+        const char *own = parameter_names[law - LAR_FIBRE_EXP_POW][k];
+        if (own && strcmp(own, name) == 0) return k;
+    }
+    return -1;
+}
+
 /* Every parameter of the law, and none of another. */
 static lar_status read_parameters(const lar_scene *scene, const lar_yaml *node, lar_fibre *fibre) {
     lar_status status = LAR_OK;
-    for (int law = 0; law < LAWS && !status; law++)
-        for (int k = 0; k < LAR_FIBRE_PARAMETERS && !status; k++) {
-            const char *name = parameter_names[law][k];
-            const lar_yaml *value = name ? lar_yaml_get(node, name) : NULL;
-            bool own = (int)fibre->law == LAR_FIBRE_EXP_POW + law;
-            if (own && name && !value)
-                return lar_scene_fail(scene, node, LAR_ERROR_FORMAT,
-                                      "fibres of the law %s need %s; add it", law_names[law], name);
-            if (!own && value)
-                return lar_scene_fail(scene, value, LAR_ERROR_FORMAT,
-                                      "%s is no parameter of the law %s; remove it", name,
-                                      fibre->law ? lar_fibre_law_name[fibre->law] : "none");
-            if (!value) continue;
-            const char *what = lar_fibre_scales(fibre->law, k)
-                                   ? LAR_IN_PASCAL
-                                   : "a number without a unit, for example 2";
-            status = lar_scene_not_negative(scene, value, what, &fibre->parameter[k]);
-        }
+    for (int i = 0; i < LAWS * LAR_FIBRE_PARAMETERS && !status; i++) {
+        int law = LAR_FIBRE_EXP_POW + i / LAR_FIBRE_PARAMETERS;
+        const char *name = parameter_names[law - LAR_FIBRE_EXP_POW][i % LAR_FIBRE_PARAMETERS];
+        const lar_yaml *value = name ? lar_yaml_get(node, name) : NULL;
+        int k = name ? parameter_of(fibre->law, name) : -1;
+        if (k >= 0 && !value && (int)fibre->law == law)
+            return lar_scene_fail(scene, node, LAR_ERROR_FORMAT,
+                                  "fibres of the law %s need %s; add it", lar_fibre_law_name[law],
+                                  name);
+        if (!value) continue;
+        if (k < 0)
+            return lar_scene_fail(scene, value, LAR_ERROR_FORMAT,
+                                  "%s is no parameter of the law %s; remove it", name,
+                                  fibre->law ? lar_fibre_law_name[fibre->law] : "none");
+        const char *what = lar_fibre_scales(fibre->law, k)
+                               ? LAR_IN_PASCAL
+                               : "a number without a unit, for example 2";
+        status = lar_scene_not_negative(scene, value, what, &fibre->parameter[k]);
+    }
     return status;
 }
 
 lar_status lar_scene_read_fibres(const lar_scene *scene, const lar_yaml *node,
                                  lar_material *material) {
-    static const char *const keys[] = {"law",  "part", "direction", "active", "ksi",     "alpha",
-                                       "beta", "c3",   "c4",        "c5",     "lam_max", NULL};
+    static const char *const keys[] = {"law",     "part", "direction", "active", "ksi",
+                                       "alpha",   "beta", "c3",        "c4",     "c5",
+                                       "lam_max", "E",    "lam0",      NULL};
     static const char what[] = "fibres";
     const lar_yaml *law = NULL, *part = NULL, *direction = NULL;
     lar_fibre *fibre = &material->fibre;
