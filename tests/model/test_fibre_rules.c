@@ -275,6 +275,17 @@ static void every_material_has_its_own_potential(void **state) {
         BELOW(fabs(a[0] - (e < 4)) + fabs(a[1]) + fabs(a[2] - (e >= 4)), 1e-9);
     }
     lar_model_destroy(model);
+    /* What touches a material is an end of it, by its tag or by the name of its elements. */
+    static const char *const ends[2] = {"{tag: 2}", "upper"};
+    for (int i = 0; i < 2; i++) {
+        char text[1000];
+        snprintf(text, sizeof text,
+                 SCENE("brick.vtu", "path: {from: bottom, to: %s}") MORE("2", "axis: [0, 1, 0]"),
+                 ends[i]);
+        model = scene(text);
+        for (int32_t e = 0; e < 4; e++) BELOW(fabs(lar_model_fibre(model, e)[2] - 1), 1e-9);
+        lar_model_destroy(model);
+    }
     model = scene(BRICK MORE("all", "axis: [0, 1, 0]"));
     for (int32_t e = 0; e < model->mesh.element_count; e++)
         assert_true(lar_model_fibre(model, e)[1] == 1);
@@ -309,7 +320,10 @@ static void scenes_say_what_is_wrong(void **state) {
         {SCENE("pipe.vtu", "path: {}"), "path needs the key \"from\""},
         {SCENE("pipe.vtu", "path: {from: low, to: high, by: 3}"), "by"},
         {SCENE("pipe.vtu", "path: {from: lower, to: high}"), "the set \"lower\" is unknown"},
-        {SCENE("pipe.vtu", "path: {from: [], to: high}"), "this selects no boundary face at all"},
+        {SCENE("pipe.vtu", "path: {from: [], to: high}"), "this selects no node at all"},
+        {SCENE("pipe.vtu",
+               "path: {from: {box: [[0.024, 0.001, 0.01], [0.026, 0.01, 0.02]]}, to: high}"),
+         "from: none of this is a face of an element of this material"},
         {SCENE("pipe.vtu", "path: {from: 3, to: high}"), "a number alone says too little"},
         {SCENE("pipe.vtu", "path: {from: .nan, to: high}"), "unknown"},
         {SCENE("pipe.vtu", "path: {from: low, to: low}"), "belongs to both ends"},
@@ -351,7 +365,7 @@ static void scenes_say_what_is_wrong(void **state) {
         {SCENE("pipe.vtu", "wall: {outer: outside, axis: [0, 0, 1], " TURN "}"),
          "the set \"outside\" is unknown"},
         {SCENE("brick.vtu", "path: {from: bottom, to: lid}") MORE("2", "axis: [1, 0, 0]"),
-         "to: none of these faces touches an element of this material"},
+         "to: none of this is a face of an element of this material"},
     };
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
         lar_model *model = NULL;

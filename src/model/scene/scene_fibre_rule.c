@@ -22,6 +22,7 @@
 #include <string.h>
 
 #include "base/vector.h"
+#include "model/mesh/faces.h"
 #include "model/mesh/potential.h"
 #include "model/scene/scene.h"
 #include "model/triangles/tree.h"
@@ -97,28 +98,72 @@ static void turn_around(const lar_mesh *mesh, const circle *around, double size,
 
 /* ---- between two sets of faces -------------------------------------------------------------- */
 
-/* The nodes of a key's faces that belong to the material: FREE before, `as` afterwards. */
+/* Marks the nodes of faces of the material, towards nothing or towards another one, of which all
+ * four are in `chosen`. */
+static lar_status mark_ends(const rule *r, const uint8_t *chosen, uint8_t *mark) {
+    const lar_model *model = r->scene->model;
+    const int32_t own = model->element_material[r->element[0]];
+    lar_face_table table = {0};
+    lar_status status = lar_face_table_build(&model->mesh, &table, r->scene->error);
+    for (size_t first = 0, end; first < table.count && !status; first = end) {
+        int faces = 0;
+        for (end = first; end < table.count; end++) {
+            if (!lar_face_key_same(&table.key[first], &table.key[end])) break;
+            faces += model->element_material[table.key[end].face / 6] == own;
+        }
+        const int32_t *node = table.key[first].node;
+        bool all = faces == 1;
+        for (int k = 0; k < 4 && all; k++) all = chosen[node[k]];
+        for (int k = 0; k < 4 && all; k++) mark[node[k]] = 1;
+    }
+    free(table.key);
+    return status;
+}
+
+/* The nodes of an end. Those of a set count as they are, whatever it holds; a selector of places
+ * takes faces of the material. */
+static lar_status choose(const rule *r, const lar_yaml *faces, uint8_t *mark) {
+    int32_t *node, count;
+    int64_t ignored;
+    if (lar_scene_is_integer(faces, &ignored))
+        return lar_scene_fail(r->scene, faces, LAR_ERROR_FORMAT,
+                              "%.8s: a number alone says too little here; write {tag: N} for the "
+                              "faces towards tagged elements, or quotes around the name of a set",
+                              faces->key->text);
+    lar_status status = lar_scene_select(r->scene, faces, LAR_SET_NODES, false, &node, &count);
+    if (status) return status;
+    size_t nodes = (size_t)r->scene->model->mesh.node_count;
+    uint8_t *chosen = faces->kind == LAR_YAML_SCALAR ? mark : lar_calloc(nodes, 1);
+    if (!chosen) status = lar_scene_no_memory(r->scene, nodes);
+    for (int32_t n = 0; n < count && !status; n++) chosen[node[n]] = 1;
+    if (!status && chosen != mark) status = mark_ends(r, chosen, mark);
+    if (chosen != mark) free(chosen);
+    free(node);
+    return status;
+}
+
+/* The nodes of an end that belong to the material: FREE before, `as` afterwards. */
 static lar_status hold(const rule *r, const lar_yaml *faces, const uint8_t *own, int as) {
     const lar_mesh *mesh = &r->scene->model->mesh;
-    int32_t *face, count, held = 0;
-    lar_status status = lar_scene_select(r->scene, faces, LAR_SET_FACES, false, &face, &count);
-    if (status) return status;
-    for (int32_t f = 0; f < 4 * count && !status; f++) {
-        int32_t node = mesh->element[face[f / 4] / 6][lar_face_node[face[f / 4] % 6][f % 4]];
-        if (!own[node]) continue;
-        if (r->held[node] && r->held[node] != as)
+    uint8_t *mark = lar_calloc((size_t)mesh->node_count, 1);
+    int32_t held = 0;
+    if (!mark) return lar_scene_no_memory(r->scene, (size_t)mesh->node_count);
+    lar_status status = choose(r, faces, mark);
+    for (int32_t n = 0; n < mesh->node_count && !status; n++) {
+        if (!mark[n] || !own[n]) continue;
+        if (r->held[n])
             status = lar_scene_fail(r->scene, faces, LAR_ERROR_MODEL,
                                     "%.8s: node %lld belongs to both ends, so that there is no way "
                                     "between them; leave out the faces around it at one end",
-                                    faces->key->text, (long long)mesh->node_id[node]);
-        r->held[node] = (uint8_t)as;
+                                    faces->key->text, (long long)mesh->node_id[n]);
+        r->held[n] = (uint8_t)as;
         held++;
     }
-    free(face);
+    free(mark);
     if (!status && held == 0)
         status = lar_scene_fail(r->scene, faces, LAR_ERROR_MODEL,
-                                "%.8s: none of these faces touches an element of this material; "
-                                "name faces of its own",
+                                "%.8s: none of this is a face of an element of this material; "
+                                "choose faces of its own, or what touches it",
                                 faces->key->text);
     return status;
 }
