@@ -334,8 +334,9 @@ typedef struct lar_meshing_options {
                           it, else "back", and extra supports that bear its weight */
     lar_meshing_progress *progress; /* may be NULL */
     void *context;
-    const char *fibres; /* along what fibres run in all but bones, by a rule as scenes have it, for
-                           example "axis: [0, 0, 1]"; NULL: there are none */
+    const char *fibres; /* along what fibres run, by a rule as scenes have it, for example "axis:
+                           [0, 0, 1]"; NULL: there are none */
+    const char *fibre_region; /* the name of the region that has them; NULL: all but bones */
 } lar_meshing_options;
 
 LAR_API lar_meshing_options lar_meshing_options_default(void);

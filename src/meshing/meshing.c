@@ -362,6 +362,15 @@ static void judge(void *context, int32_t first, int32_t end) {
                                  : measure(w, &both->error[i]);
 }
 
+static lar_status lay_fibres(work *w) {
+    lar_meshing *m = w->meshing;
+    m->fibres = lar_strdup(w->options.fibres);
+    if (!m->fibres)
+        return lar_fail_memory(w->error, strlen(w->options.fibres), "a rule for fibres");
+    m->fibre_region = w->options.fibre_region;
+    return lar_starter_lay_fibres(m, w->error);
+}
+
 static lar_status describe(work *w) {
     lar_meshing *m = w->meshing;
     const lar_cleaning *did = &w->cleaning;
@@ -385,10 +394,7 @@ static lar_status describe(work *w) {
         if (status) *w->error = both.error[i];
     }
     if (!status) status = check_volume(w);
-    if (status || !w->options.fibres) return status;
-    m->fibres = lar_strdup(w->options.fibres);
-    return m->fibres ? lar_starter_lay_fibres(m, w->error)
-                     : lar_fail_memory(w->error, strlen(w->options.fibres), "a rule for fibres");
+    return status || !w->options.fibres ? status : lay_fibres(w);
 }
 
 lar_status lar_meshing_create(const char *const *paths, int32_t count,

@@ -41,8 +41,9 @@ struct lar_meshing {
     lar_mesh mesh;
     lar_triangles outer; /* the true surface that is seen from outside */
     lar_support support;
-    char *fibres;            /* the rule of mesh.fibre; NULL: there are none */
-    lar_region_info *region; /* [info.regions] */
+    char *fibres;             /* the rule of mesh.fibre; NULL: there are none */
+    const char *fibre_region; /* that has them; NULL: all but bones */
+    lar_region_info *region;  /* [info.regions] */
     lar_meshing_info info;
     char *scene; /* path, once written */
 };
@@ -53,6 +54,9 @@ lar_status lar_support_check(const char *rule, lar_error *error);
 /* Adds the node sets "support", "pads" (extra supports) and "handle" to the mesh. `rule` as
  * lar_meshing_options.fix. The regions' information must be there. */
 lar_status lar_support_choose(lar_meshing *meshing, const char *rule, lar_error *error);
+
+/* Whether the meshing has fibres in a region. */
+bool lar_starter_fibrous(const lar_meshing *meshing, const lar_region_info *region);
 
 /* Lays mesh.fibre by meshing->fibres; sets and the regions' information must be there. */
 lar_status lar_starter_lay_fibres(lar_meshing *meshing, lar_error *error);

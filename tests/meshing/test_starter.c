@@ -437,16 +437,27 @@ static void fibres_run_by_a_rule(void **state) {
         lar_mesh_clear(&mesh);
         lar_model_destroy(model);
     }
+    /* One region of two. */
+    const lar_meshing_options one = {
+        .title = "fibres", .fibre_region = "left", .fibres = "axis: [0, 2, 0]"};
+    lar_model *named = model_of(CUT, one, &info);
+    assert_true(!lar_fibre_here(&named->material[0].fibre));
+    assert_true(lar_fibre_here(&named->material[1].fibre));
+    for (int32_t e = 0; e < named->mesh.element_count; e++)
+        assert_true(lar_model_fibre(named, e)[1] == (named->mesh.element_tag[e] == 2 ? 1 : 0));
+    lar_model_destroy(named);
     static const char *const wrong[][2] = {
         {"axis: [0, 0, 0]", "fibres:1:20: axis: this vector has no direction"},
         {"path: {from: support, to: away}", "the set \"away\" is unknown"},
         {"axis: [0, 0, 1]} # {", "this is not YAML"},
         {"mesh", "the key \"mesh\" is unknown"},
+        {"axis: [1, 0, 0]", "fibres are asked for in \"right\", but the regions are starter_torus"},
         {"", "direction: expected mesh, {axis: [x, y, z]}"}};
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
         const char *path = TORUS;
         lar_meshing *meshing = NULL;
-        const lar_meshing_options options = {.elements = 200, .fibres = wrong[i][0]};
+        lar_meshing_options options = {.elements = 200, .fibres = wrong[i][0]};
+        if (strcmp(wrong[i][0], "axis: [1, 0, 0]") == 0) options.fibre_region = "right";
         assert_int_not_equal(lar_meshing_create(&path, 1, &options, &meshing, &error), LAR_OK);
         if (!strstr(error.message, wrong[i][1]))
             fail_msg("\"%s\" lacks \"%s\"", error.message, wrong[i][1]);

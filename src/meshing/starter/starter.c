@@ -167,7 +167,8 @@ static void put_fibres(const lar_meshing *m, const lar_region_info *region, FILE
 
 /* Beside each number stands whose it is, or that it is a guess. */
 static void put_material(const lar_meshing *m, const lar_region_info *region, FILE *f) {
-    const bool guess = lar_tissue_find(region->name)->guess, fibres = m->fibres && !region->held;
+    const bool guess = lar_tissue_find(region->name)->guess,
+               fibres = lar_starter_fibrous(m, region);
     fprintf(f, "  # As %s. Shear modulus: %s.\n", region->tissue, region->source);
     fputs("  - { name: ", f);
     put(f, region->name, true);
