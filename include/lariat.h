@@ -384,10 +384,10 @@ LAR_API void lar_meshing_inspect(const lar_meshing *meshing, lar_meshing_info *i
 LAR_API lar_status lar_meshing_region(const lar_meshing *meshing, int32_t index,
                                       lar_region_info *info, lar_error *error);
 
-/* Writes FOLDER/NAME.vtu (tags, named sets, fibres), NAME_surface.vtp (the true surface, embedded in it)
- * and NAME.yaml, a scene that runs; NAME is that of lar_meshing_info. The folder is made when it is
- * missing; files that are there are replaced, each whole. *scene (may be NULL): the scene's path,
- * freed with the meshing. */
+/* Writes FOLDER/NAME.vtu (tags, named sets, fibres), NAME_surface.vtp (the true surface, embedded
+ * in it) and NAME.yaml, a scene that runs; NAME is that of lar_meshing_info. The folder is made
+ * when it is missing; files that are there are replaced, each whole. *scene (may be NULL): the
+ * scene's path, freed with the meshing. */
 LAR_API lar_status lar_meshing_write(lar_meshing *meshing, const char *folder, const char **scene,
                                      lar_error *error);
 
