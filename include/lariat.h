@@ -334,6 +334,9 @@ typedef struct lar_meshing_options {
                           it, else "back", and extra supports that bear its weight */
     lar_meshing_progress *progress; /* may be NULL */
     void *context;
+    const char *fibres; /* along what fibres run, by a rule as scenes have it, for example "axis:
+                           [0, 0, 1]"; NULL: there are none */
+    const char *fibre_region; /* the name of the region that has them; NULL: all but bones */
 } lar_meshing_options;
 
 LAR_API lar_meshing_options lar_meshing_options_default(void);
@@ -408,10 +411,10 @@ LAR_API void lar_meshing_inspect(const lar_meshing *meshing, lar_meshing_info *i
 LAR_API lar_status lar_meshing_region(const lar_meshing *meshing, int32_t index,
                                       lar_region_info *info, lar_error *error);
 
-/* Writes FOLDER/NAME.vtu (tags, named sets), NAME_surface.vtp (the true surface, embedded in it)
- * and NAME.yaml, a scene that runs; NAME is that of lar_meshing_info. The folder is made when it is
- * missing; files that are there are replaced, each whole. *scene (may be NULL): the scene's path,
- * freed with the meshing. */
+/* Writes FOLDER/NAME.vtu (tags, named sets, fibres), NAME_surface.vtp (the true surface, embedded
+ * in it) and NAME.yaml, a scene that runs; NAME is that of lar_meshing_info. The folder is made
+ * when it is missing; files that are there are replaced, each whole. *scene (may be NULL): the
+ * scene's path, freed with the meshing. */
 LAR_API lar_status lar_meshing_write(lar_meshing *meshing, const char *folder, const char **scene,
                                      lar_error *error);
 

@@ -382,17 +382,18 @@ static bool take_source(request *r) {
 }
 
 static bool parse(PyObject *args, PyObject *keywords, request *r) {
-    static char *names[] = {"source",   "triangles", "affine", "label",    "names",
-                            "elements", "size",      "scale",  "fuse",     "principal",
-                            "voxel",    "fix",       "title",  "progress", NULL};
+    static char *names[] = {"source", "triangles", "affine", "label",     "names", "elements",
+                            "size",   "scale",     "fuse",   "principal", "voxel", "fix",
+                            "title",  "progress",  "fibres", "fibres_in", NULL};
     lar_meshing_options *o = &r->options;
     int elements = 0;
     r->triangles = r->affine = r->label = r->names = r->progress = Py_None;
     r->kept = PyList_New(0);
-    if (!r->kept || !PyArg_ParseTupleAndKeywords(
-                        args, keywords, "O|O$OOOiddpppzzO:mesh", names, &r->source, &r->triangles,
-                        &r->affine, &r->label, &r->names, &elements, &o->size, &o->scale, &o->fuse,
-                        &o->principal, &o->voxel, &o->fix, &o->title, &r->progress))
+    if (!r->kept ||
+        !PyArg_ParseTupleAndKeywords(
+            args, keywords, "O|O$OOOiddpppzzOzz:mesh", names, &r->source, &r->triangles, &r->affine,
+            &r->label, &r->names, &elements, &o->size, &o->scale, &o->fuse, &o->principal,
+            &o->voxel, &o->fix, &o->title, &r->progress, &o->fibres, &o->fibre_region))
         return false;
     o->elements = elements;
     if (r->progress != Py_None && !PyCallable_Check(r->progress))

@@ -50,6 +50,12 @@ static PyObject *get_tags(PyObject *me, void *unused) {
     return python_array_of(me, m.tag, 'i', m.elements, 0);
 }
 
+static PyObject *get_fibres(PyObject *me, void *unused) {
+    (void)unused;
+    const lar_mesh_arrays m = mesh_of(me);
+    return m.fibre ? python_array_of(me, m.fibre, 'd', m.elements, 3) : Py_NewRef(Py_None);
+}
+
 static PyObject *get_sets(PyObject *me, void *unused) {
     (void)unused;
     const lar_mesh_arrays m = mesh_of(me);
@@ -129,9 +135,10 @@ static PyObject *meshing_model(PyObject *me, PyObject *args, PyObject *keywords)
     scene = scene == Py_None ? get_scene(me, NULL) : Py_NewRef(scene);
     PyObject *positional =
         scene ? Py_BuildValue("(NNO)", get_nodes(me, NULL), get_hexahedra(me, NULL), scene) : NULL;
-    PyObject *named = positional ? Py_BuildValue("{s:N,s:N}", "tags", get_tags(me, NULL), "sets",
-                                                 get_sets(me, NULL))
-                                 : NULL;
+    PyObject *named = positional
+                          ? Py_BuildValue("{s:N,s:N,s:N}", "tags", get_tags(me, NULL), "sets",
+                                          get_sets(me, NULL), "fibres", get_fibres(me, NULL))
+                          : NULL;
     PyObject *maker =
         named ? PyObject_GetAttrString((PyObject *)python_model_type, "from_arrays") : NULL;
     PyObject *model = maker ? PyObject_Call(maker, positional, named) : NULL;
@@ -167,6 +174,10 @@ static PyGetSetDef meshing_properties[] = {
     {"tags", get_tags, NULL,
      "memoryview, int32 [elements], read only: the region's tag: the label in the image, or 1, 2, "
      "... for surfaces. No copy.",
+     NULL},
+    {"fibres", get_fibres, NULL,
+     "memoryview, float64 [elements, 3], read only: along what fibres run, 0 0 0 where there are "
+     "none; None without `fibres`. No copy.",
      NULL},
     {"sets", get_sets, NULL,
      "dict of name: (kind, int32 [k]): as Model.from_arrays takes them; \"support\", \"handle\", "

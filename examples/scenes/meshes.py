@@ -5,7 +5,7 @@ from math import cos, pi, radians, sin
 
 class Mesh:
     def __init__(self):
-        self.nodes, self.elements = [], []
+        self.nodes, self.elements, self.sets = [], [], {}
 
     def grid(self, counts, place, name, closed=False):
         """A block of counts[0] x [1] x [2] hexahedra; place(u, v, w), each 0..1, is a point.
@@ -38,6 +38,10 @@ class Mesh:
                     out.write(f"*ELEMENT, TYPE=C3D8, ELSET={name}\n")
                 last = name
                 out.write(", ".join(map(str, [number] + nodes)) + "\n")
+            for name, nodes in self.sets.items():
+                out.write(f"*NSET, NSET={name}\n")
+                for first in range(0, len(nodes), 16):
+                    out.write(", ".join(map(str, nodes[first:first + 16])) + "\n")
 
 
 def turned(point, axis, angle):
@@ -89,6 +93,8 @@ def cup():
                 -depth * sin(down))
     mesh = Mesh()
     mesh.grid((12, 2, 6), place, "wall", closed=True)
+    for name, layer in (("inside", 0), ("outside", 2)):
+        mesh.sets[name] = [1 + i + 12 * (layer + 3 * k) for k in range(7) for i in range(12)]
     mesh.write("cup.inp", "A cup with a thick wall")
 
 

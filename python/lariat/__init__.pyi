@@ -45,6 +45,8 @@ def mesh(
     fix: Union[str, None] = None,
     title: Union[str, None] = None,
     progress: Union[Callable[[str, float], object], None] = None,
+    fibres: Union[str, None] = None,
+    fibres_in: Union[str, None] = None,
 ) -> Meshing: ...
 
 class Meshing:
@@ -54,6 +56,8 @@ class Meshing:
     def hexahedra(self) -> memoryview: ...
     @property
     def tags(self) -> memoryview: ...
+    @property
+    def fibres(self) -> Union[memoryview, None]: ...
     @property
     def sets(self) -> dict[str, tuple[str, memoryview]]: ...
     @property

@@ -17,7 +17,7 @@ typedef struct mesh_settings {
     const char *input[INPUTS_MAX];
     int32_t inputs;
     cli_texts labels;
-    const char *names, *title, *out;
+    const char *names, *title, *out, *fibres, *fibres_in;
     int64_t elements; /* 0: not given */
     double size, scale;
     int fix; /* index into fix_names; 0: not given */
@@ -233,6 +233,8 @@ static lar_status make(void *context, int32_t elements, lar_meshing **meshing, l
     options.voxel = s->voxel;
     options.title = s->title;
     options.fix = s->fix > 0 ? fix_names[s->fix] : NULL;
+    options.fibres = s->fibres;
+    options.fibre_region = s->fibres_in;
     options.progress = show_progress;
     options.context = &m->progress;
     lar_status status = lar_meshing_create(s->input, s->inputs, &options, meshing, error);
@@ -274,6 +276,10 @@ static int check_settings(const mesh_settings *s) {
     if (s->size > 0 && s->elements > 0)
         return cli_complain(&cli_mesh, CLI_USAGE,
                             "--elements and --size both say how fine the mesh is; give one");
+    if (s->fibres_in && !s->fibres)
+        return cli_complain(&cli_mesh, CLI_USAGE,
+                            "--fibres-in names a region, but no fibres are asked for; add --fibres "
+                            "RULE");
     if (s->real_time && (s->size > 0 || s->elements > 0))
         return cli_complain(&cli_mesh, CLI_USAGE,
                             "--real-time finds out how fine the mesh can be; leave --%s out",
@@ -313,6 +319,12 @@ static int mesh_main(int argc, char **argv) {
             "image cuts it off), none;\nwithout: cut where there is one, else back, and on\npads "
             "where its weight asks for them",
             &s.fix, fix_names),
+        CLI_TEXT("--fibres", "RULE",
+                 "along what fibres run, as `direction` of a scene says it,\nfor example \"axis: "
+                 "[0, 0, 1]\"",
+                 &s.fibres),
+        CLI_TEXT("--fibres-in", "NAME", "the region that has them; without: all but bones",
+                 &s.fibres_in),
         CLI_TEXT("--title", "TEXT", "title, and the name of the files", &s.title),
         CLI_TEXT("--out", "DIR", "folder for the files; without: called as the title", &s.out),
         CLI_FLAG("--force", "replace files that are there", &s.force),

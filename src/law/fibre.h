@@ -6,12 +6,17 @@
  *                  alpha = 0: ksi / beta (I - 1)^beta
  *     exp-linear   l dW/dl = c3 (exp(c4 (l - 1)) - 1),                        1 < l <= lam_max
  *                          = ... at lam_max + c5 (l - lam_max)                beyond
+ *     pow-linear   dW/dl = 2 ksi l (I - 1)^(beta - 1),                        1 < l <= lam0
+ *                        = ... at lam0 + its slope there (l - lam0)           beyond
+ *                  ksi = E / (4 (beta - 1) lam0^3) (lam0^2 - 1)^(2 - beta)
  *     active       W = along / 2 (I - 1) + across / 2 (I1 - 2 - I), times the activation
  *
  * l = |F a| is the stretch along the fibres, or its isochoric part J^(-1/3) |F a|. exp-pow is
  * FEBio's "fiber-exp-pow" (Maas and others 2012; Holzapfel, Gasser and Ogden 2000 for beta = 2),
  * exp-linear that of Weiss, Maker and Govindjee (1996, eqs. 7.1 to 7.3) in FEBio's "trans iso
- * Mooney-Rivlin". An active stress is T/J F a (x) F a, FEBio's "prescribed active contraction".
+ * Mooney-Rivlin", pow-linear FEBio's "fiber-pow-linear": E is d2W/dl2 in the straight part, less 2
+ * ksi (lam0^2 - 1)^(beta - 1), times lam0. An active stress is T/J F a (x) F a, FEBio's "prescribed
+ * active contraction".
  *
  * The stress for a lane is in fibre_stress.h. Directions belong to elements (lar_mesh.fibre).
  */
@@ -24,6 +29,7 @@ typedef enum lar_fibre_law {
     LAR_FIBRE_NONE,
     LAR_FIBRE_EXP_POW,    /* ksi [Pa], alpha, beta */
     LAR_FIBRE_EXP_LINEAR, /* c3 [Pa], c4, c5 [Pa], lam_max */
+    LAR_FIBRE_POW_LINEAR, /* E [Pa], lam0, beta */
     LAR_FIBRE_LAWS
 } lar_fibre_law;
 
@@ -69,6 +75,7 @@ static inline bool lar_fibre_scales(lar_fibre_law law, int k) {
 static inline double lar_fibre_modulus(const lar_fibre *fibre) {
     const double *p = fibre->parameter;
     if (fibre->law == LAR_FIBRE_EXP_LINEAR) return p[0] * p[1];
+    if (fibre->law == LAR_FIBRE_POW_LINEAR) return p[2] <= 2 ? p[0] / (p[1] * p[1] * p[1]) : 0;
     return fibre->law == LAR_FIBRE_EXP_POW && p[2] <= 2 ? 4 * p[0] : 0;
 }
 

@@ -61,11 +61,30 @@ LAR_INLINE lar_fibre_answer lar_fibre_exp_linear(lar_lane stretch, const lar_lan
                               .slope = lar_lane_max(steep, p[2] * lar_lane_is_above(beyond))};
 }
 
+/* With x = I - 1 and x0 = lam0^2 - 1, ksi x^(beta - 1) = k x (x / x0)^(beta - 2), k = E / (4 (beta
+ * - 1) lam0^3), at the end of the toe at most; behind it dW/dl goes on with `steep`, its slope. */
+LAR_INLINE lar_fibre_answer lar_fibre_pow_linear(lar_lane square, const lar_lane *p) {
+    lar_lane one = lar_lane_set(1), zero = lar_lane_set(0), tiny = lar_lane_set(LAR_LANE_TINY);
+    lar_lane stretch = lar_lane_sqrt(square), end = lar_lane_max(p[1], one);
+    lar_lane x0 = lar_lane_max(end * end - one, tiny);
+    lar_lane x = -lar_lane_max(-lar_lane_max(square - one, zero), -x0);
+    lar_lane toe = -lar_lane_max(-stretch, -end), beyond = lar_lane_max(stretch - end, zero);
+    lar_lane log_x = lar_lane_log(lar_lane_max(x / x0, tiny));
+    lar_lane power = lar_lane_exp((p[2] - lar_lane_set(2)) * log_x);
+    lar_lane straight = p[0] / (lar_lane_set(2) * end * end * end) * power;
+    lar_lane bent = straight * x / (p[2] - one);
+    lar_lane steep = lar_lane_fma(lar_lane_set(2) * toe * toe, straight, bent);
+    lar_lane pull = lar_lane_fma(toe, bent, beyond * steep);
+    return (lar_fibre_answer){.tension = stretch * pull,
+                              .slope = lar_lane_fma(stretch, steep, pull)};
+}
+
 /* `square`: l^2. */
 LAR_INLINE lar_fibre_answer lar_fibre_tension(lar_fibre_law law, lar_lane square,
                                               const lar_lane *p) {
     if (law == LAR_FIBRE_EXP_POW) return lar_fibre_exp_pow(square, p);
     if (law == LAR_FIBRE_EXP_LINEAR) return lar_fibre_exp_linear(lar_lane_sqrt(square), p);
+    if (law == LAR_FIBRE_POW_LINEAR) return lar_fibre_pow_linear(square, p);
     return (lar_fibre_answer){lar_lane_set(0), lar_lane_set(0)};
 }
 

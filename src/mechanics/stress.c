@@ -108,6 +108,16 @@ static double exp_pow_energy(const double *p, double square) {
     return p[1] > 0 ? p[0] * lar_lane_expm1(p[1] * power) / (p[1] * p[2]) : p[0] * power / p[2];
 }
 
+/* Up to the end of the toe its power law's, from there on that of a force that grows evenly. */
+static double pow_linear_energy(const double *p, double square) {
+    double end = p[1] * p[1] - 1, x = fmin(square - 1, end), beyond = sqrt(square) - p[1];
+    if (!(x > 0)) return 0;
+    double k = p[0] / (4 * (p[2] - 1) * p[1] * p[1] * p[1]);
+    double first = k * x * lar_lane_exp((p[2] - 2) * lar_lane_log(x / end)), toe = first * x / p[2];
+    if (!(beyond > 0)) return toe;
+    return toe + 2 * first * p[1] * beyond + (first + 0.5 * p[0] / p[1]) * beyond * beyond;
+}
+
 static double fibre_energy(const lar_material *material, const double direction[3],
                            const double F[3][3]) {
     const lar_fibre *fibre = &material->fibre;
@@ -115,6 +125,7 @@ static double fibre_energy(const lar_material *material, const double direction[
     double length = lar_fibre_push(&F[0][0], direction, g);
     double square = lar_fibre_square(lar_fibre_kind(fibre), length, J);
     if (fibre->law == LAR_FIBRE_EXP_POW) return exp_pow_energy(fibre->parameter, square);
+    if (fibre->law == LAR_FIBRE_POW_LINEAR) return pow_linear_energy(fibre->parameter, square);
     return exp_linear_energy(fibre->parameter, sqrt(square));
 }
 

@@ -56,7 +56,8 @@ void lar_meshing_arrays(const lar_meshing *m, lar_mesh_arrays *mesh, lar_surface
                                   .position = m->mesh.position,
                                   .element = m->mesh.element,
                                   .tag = m->mesh.element_tag,
-                                  .set = m->set};
+                                  .set = m->set,
+                                  .fibre = (const double(*)[3])m->mesh.fibre};
     if (m && surface)
         *surface = (lar_surface_arrays){m->title, m->outer.vertex_count, m->outer.triangle_count,
                                         m->outer.vertex, m->outer.corner};

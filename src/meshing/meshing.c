@@ -31,6 +31,7 @@ void lar_meshing_destroy(lar_meshing *meshing) {
     free(meshing->scene);
     free(meshing->text);
     free(meshing->set);
+    free(meshing->fibres);
     free(meshing);
 }
 
@@ -381,6 +382,15 @@ static void judge(void *context, int32_t first, int32_t end) {
                                  : measure(w, &both->error[i]);
 }
 
+static lar_status lay_fibres(work *w) {
+    lar_meshing *m = w->meshing;
+    m->fibres = lar_strdup(w->options.fibres);
+    if (!m->fibres)
+        return lar_fail_memory(w->error, strlen(w->options.fibres), "a rule for fibres");
+    m->fibre_region = w->options.fibre_region;
+    return lar_starter_lay_fibres(m, w->error);
+}
+
 static lar_status describe(work *w) {
     lar_meshing *m = w->meshing;
     const lar_cleaning *did = &w->cleaning;
@@ -404,6 +414,7 @@ static lar_status describe(work *w) {
         if (status) *w->error = both.error[i];
     }
     if (!status) status = check_volume(w);
+    if (!status && w->options.fibres) status = lay_fibres(w);
     return status ? status : lar_meshing_list_sets(m, w->error);
 }
 

@@ -6,6 +6,7 @@
  *       +--> starter/support.c         node sets: what holds it, where it is pulled
  *       +--> starter/extra_supports.c  what carries its weight besides
  *       +--> starter/sag.c             how far it moves under its weight, and how slowly
+ *       +--> starter/fibres.c          along what its fibres run
  *       +--> quality.c                 deviation, volumes, quality of elements
  *       '--> write.c                   all files, the scene by starter/starter.c
  */
@@ -41,7 +42,9 @@ struct lar_meshing {
     lar_mesh mesh;
     lar_triangles outer; /* the true surface that is seen from outside */
     lar_support support;
-    lar_region_info *region; /* [info.regions] */
+    char *fibres;             /* the rule of mesh.fibre; NULL: there are none */
+    const char *fibre_region; /* that has them; NULL: all but bones */
+    lar_region_info *region;  /* [info.regions] */
     lar_meshing_info info;
     char *scene;        /* path, once written */
     char *text;         /* of the scene for memory, once asked for */
@@ -54,6 +57,12 @@ lar_status lar_support_check(const char *rule, lar_error *error);
 /* Adds the node sets "support", "pads" (extra supports) and "handle" to the mesh. `rule` as
  * lar_meshing_options.fix. The regions' information must be there. */
 lar_status lar_support_choose(lar_meshing *meshing, const char *rule, lar_error *error);
+
+/* Whether the meshing has fibres in a region. */
+bool lar_starter_fibrous(const lar_meshing *meshing, const lar_region_info *region);
+
+/* Lays mesh.fibre by meshing->fibres; sets and the regions' information must be there. */
+lar_status lar_starter_lay_fibres(lar_meshing *meshing, lar_error *error);
 
 /* Writes the scene, whole or not at all; it names the mesh's and the surface's files. */
 lar_status lar_starter_write(const lar_meshing *meshing, const char *path, lar_error *error);

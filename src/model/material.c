@@ -2,7 +2,7 @@
 
 #include <math.h>
 
-const char *const lar_fibre_law_name[LAR_FIBRE_LAWS] = {"", "exp-pow", "exp-linear"};
+const char *const lar_fibre_law_name[LAR_FIBRE_LAWS] = {"", "exp-pow", "exp-linear", "pow-linear"};
 
 double lar_material_shear(const lar_material *material) {
     double shear = lar_law_table[material->law].shear(material->parameter);
@@ -129,6 +129,11 @@ static lar_status check_fibres(const lar_material *material, const char *where, 
         if (!(p[2] >= 0 && p[2] <= STIFF * stiff))
             wrong = "c5, in pascal, must not be negative, nor a million times the law's moduli";
         if (!(p[3] >= 1 && p[3] <= POWER)) wrong = "lam_max must be between 1 and 20";
+    } else if (f->law == LAR_FIBRE_POW_LINEAR) {
+        if (!(p[0] >= 0 && p[0] <= STIFF * stiff))
+            wrong = "E, in pascal, must not be negative, nor a million times the law's moduli";
+        if (!(p[1] > 1 && p[1] <= POWER)) wrong = "lam0 must be above 1, and at most 20";
+        if (!(p[2] >= 2 && p[2] <= POWER)) wrong = "beta must be between 2 and 20";
     }
     if (!(f->along >= 0 && f->across >= 0 && f->along + f->across <= STIFF * stiff))
         wrong = "the active stress must not be negative, nor a million times the law's moduli";

@@ -42,6 +42,13 @@ refused 'flat cut' good.nrrd --label 3 --fix cut --elements 100
 refused 'for surfaces only' good.nrrd --label 3 --scale 0.001
 refused 'principal' good.nrrd --label 3 --voxel --principal
 refused 'names.csv' good.nrrd --label 3 --names names.csv
+refused 'this vector has no direction' good.nrrd --label 3 --elements 20 --fibres 'axis: [0, 0, 0]'
+refused 'the set "away" is unknown' good.nrrd --label 3 --elements 20 \
+    --fibres 'path: {from: support, to: away}'
+refused 'fibres are asked for in "left"' good.nrrd --label 3 --elements 20 --fibres 'axis: [0, 0, 1]' \
+    --fibres-in left
+expect 2 "$LARIAT" mesh good.nrrd --fibres-in left
+complains 'add --fibres RULE'
 expect 2 "$LARIAT" mesh good.nrrd --size 0.004 --elements 100
 complains 'give one'
 expect 2 "$LARIAT" mesh good.nrrd --fix sideways

@@ -17,6 +17,9 @@ static const lar_fibre FIBRES[] = {
      .parameter = {80, 12, 2000, 1.15},
      .isochoric = true,
      .along = 700},
+    {.law = LAR_FIBRE_POW_LINEAR, .parameter = {900, 1.12, 2.6}},
+    {.law = LAR_FIBRE_POW_LINEAR, .parameter = {1500, 1.08, 2}, .isochoric = true},
+    {.law = LAR_FIBRE_POW_LINEAR, .parameter = {700, 1.01, 4}, .along = 200},
 };
 enum { FAMILIES = sizeof FIBRES / sizeof *FIBRES, STATES = 100 };
 
@@ -126,9 +129,39 @@ static void pulled_along_and_across(void **state) {
             if (f->law == LAR_FIBRE_EXP_LINEAR && L > 1)
                 wanted = L < p[3] ? p[0] * expm1(p[1] * (L - 1))
                                   : p[2] * L + p[0] * expm1(p[1] * (p[3] - 1)) - p[2] * p[3];
+            if (f->law == LAR_FIBRE_POW_LINEAR && L > 1) { /* E, lam0, beta of FEBio's manual */
+                double I0 = p[1] * p[1], xi, B;
+                xi = p[0] / (4 * (p[2] - 1)) * pow(I0, -1.5) * pow(I0 - 1, 2 - p[2]);
+                B = xi * pow(I0 - 1, p[2] - 1) + p[0] / (2 * p[1]);
+                wanted =
+                    L < p[1] ? 2 * L * L * xi * pow(L * L - 1, p[2] - 1) : 2 * B * L * L - p[0] * L;
+            }
             wanted += f->along * L * L - f->across / L;
             assert_below(fabs(found - wanted), 1e-12 * (fabs(wanted) + 1000));
         }
+}
+
+/* Where the straight part of a law begins, stress and modulus go on; and the answer of fibres says
+ * the slope of their tension on both sides. */
+static void toes_end_smoothly(void **state) {
+    (void)state;
+    for (int family = 0; family < FAMILIES; family++) {
+        const lar_fibre *f = &FIBRES[family];
+        if (f->law != LAR_FIBRE_POW_LINEAR) continue;
+        double p[4], end = f->parameter[1], h = 1e-7;
+        memcpy(p, f->parameter, sizeof p);
+        for (double l = 1.001; l < 1.4; l += 0.007) {
+            double low = (l - h) * (l - h), high = (l + h) * (l + h);
+            lar_fibre_answer now = lar_fibre_tension(f->law, l * l, p);
+            double rise = lar_fibre_tension(f->law, high, p).tension -
+                          lar_fibre_tension(f->law, low, p).tension;
+            assert_below(fabs(rise / (2 * h) - now.slope), 1e-5 * now.slope + 1e-3);
+        }
+        lar_fibre_answer before = lar_fibre_tension(f->law, (end - 1e-9) * (end - 1e-9), p);
+        lar_fibre_answer after = lar_fibre_tension(f->law, (end + 1e-9) * (end + 1e-9), p);
+        assert_below(fabs(after.tension - before.tension), 1e-8 * after.slope);
+        assert_below(fabs(after.slope / before.slope - 1), 1e-5);
+    }
 }
 
 /* The second derivative of the fibres' energy, times a direction. */
@@ -179,7 +212,8 @@ static void the_bound_of_stiffness_holds(void **state) {
             random_unit(&seed, a);
             random_deformation(&seed, 0.25, F);
             int kind = lar_fibre_kind(&material.fibre);
-            double J = lar_lane_cofactor((const double *)F, cof), length = lar_fibre_push((const double *)F, a, g);
+            double J = lar_lane_cofactor((const double *)F, cof),
+                   length = lar_fibre_push((const double *)F, a, g);
             double square = lar_fibre_square(kind, length, J);
             memcpy(p, material.fibre.parameter, sizeof p);
             lar_fibre_answer now = lar_fibre_tension(material.fibre.law, square, p);
@@ -244,9 +278,10 @@ static void frequency_counts_fibres(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(stress_is_energy_slope),       cmocka_unit_test(turned_with_the_body),
-        cmocka_unit_test(pressed_fibres_do_nothing),    cmocka_unit_test(pulled_along_and_across),
-        cmocka_unit_test(the_bound_of_stiffness_holds), cmocka_unit_test(frequency_counts_fibres),
+        cmocka_unit_test(stress_is_energy_slope),    cmocka_unit_test(turned_with_the_body),
+        cmocka_unit_test(pressed_fibres_do_nothing), cmocka_unit_test(pulled_along_and_across),
+        cmocka_unit_test(toes_end_smoothly),         cmocka_unit_test(the_bound_of_stiffness_holds),
+        cmocka_unit_test(frequency_counts_fibres),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -7,6 +7,7 @@
 
 #include "image_file.h"
 #include "lariat.h"
+#include "model/format/mesh_io.h"
 #include "model/model.h"
 #include "shapes.h"
 
@@ -408,6 +409,61 @@ static void a_folder_that_cannot_be_is_told(void **state) {
     lar_meshing_destroy(meshing);
 }
 
+/* A rule for fibres: the scene has it, a mesh read alone has what it gives, bones have none. With
+ * braces around it or without, on one line or on several. */
+static void fibres_run_by_a_rule(void **state) {
+    (void)state;
+    static const char *const rules[] = {"wall: {axis: [1, 2, 3],\n\tangle: {inner: 30, outer: 90}}",
+                                        "{around: {point: [0.001, 0, 0], axis: [0, 1, 0]}}"};
+    lar_meshing_info info;
+    for (int r = 0; r < 2; r++) {
+        lar_mesh mesh = {0};
+        lar_model *model =
+            model_of(BALLS, (lar_meshing_options){.title = "fibres", .fibres = rules[r]}, &info);
+        if (lar_mesh_read(FOLDER "/fibres.vtu", 1, &mesh, &error)) fail_msg("%s", error.message);
+        int soft = 0;
+        for (int32_t e = 0; e < mesh.element_count; e++) {
+            const double *found = lar_model_fibre(model, e), *a = mesh.fibre[e];
+            double length = hypot(hypot(a[0], a[1]), a[2]);
+            bool bone = mesh.element_tag[e] == 2;
+            if (bone) assert_true(length == 0 && !lar_fibre_here(&model->material[1].fibre));
+            if (bone) continue;
+            soft++;
+            for (int i = 0; i < 3; i++) assert_below(fabs(a[i] / length - found[i]), 1e-12);
+        }
+        assert_true(soft > 100 && soft < mesh.element_count);
+        assert_true(model->material[0].fibre.parameter[0] ==
+                    0.75 * lar_material_shear(model->material));
+        lar_mesh_clear(&mesh);
+        lar_model_destroy(model);
+    }
+    /* One region of two. */
+    const lar_meshing_options one = {
+        .title = "fibres", .fibre_region = "left", .fibres = "axis: [0, 2, 0]"};
+    lar_model *named = model_of(CUT, one, &info);
+    assert_true(!lar_fibre_here(&named->material[0].fibre));
+    assert_true(lar_fibre_here(&named->material[1].fibre));
+    for (int32_t e = 0; e < named->mesh.element_count; e++)
+        assert_true(lar_model_fibre(named, e)[1] == (named->mesh.element_tag[e] == 2 ? 1 : 0));
+    lar_model_destroy(named);
+    static const char *const wrong[][2] = {
+        {"axis: [0, 0, 0]", "fibres:1:20: axis: this vector has no direction"},
+        {"path: {from: support, to: away}", "the set \"away\" is unknown"},
+        {"axis: [0, 0, 1]} # {", "this is not YAML"},
+        {"mesh", "the key \"mesh\" is unknown"},
+        {"axis: [1, 0, 0]", "fibres are asked for in \"right\", but the regions are starter_torus"},
+        {"", "direction: expected mesh, {axis: [x, y, z]}"}};
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+        const char *path = TORUS;
+        lar_meshing *meshing = NULL;
+        lar_meshing_options options = {.elements = 200, .fibres = wrong[i][0]};
+        if (strcmp(wrong[i][0], "axis: [1, 0, 0]") == 0) options.fibre_region = "right";
+        assert_int_not_equal(lar_meshing_create(&path, 1, &options, &meshing, &error), LAR_OK);
+        if (!strstr(error.message, wrong[i][1]))
+            fail_msg("\"%s\" lacks \"%s\"", error.message, wrong[i][1]);
+    }
+}
+
 /* The same bytes where a comma is the decimal point. Where no such locale is installed the test
  * still holds. */
 static void numbers_have_a_point_everywhere(void **state) {
@@ -430,6 +486,7 @@ static void numbers_have_a_point_everywhere(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(a_scene_of_two_regions_runs),
+                                       cmocka_unit_test(fibres_run_by_a_rule),
                                        cmocka_unit_test(instruments_wait_beside_coarse_meshes_too),
                                        cmocka_unit_test(a_pull_grows_and_lets_go),
                                        cmocka_unit_test(a_pull_is_alike_on_every_mesh),

@@ -50,6 +50,12 @@ static void scenes_say_laws_and_directions(void **state) {
     model = scene(SCENE(LINEAR "direction: {around: {point: [0.01, 0.01, 0], axis: [0, 0, 2]}}"));
     f = &model->material[0].fibre;
     assert_true(f->law == LAR_FIBRE_EXP_LINEAR && !f->isochoric && f->parameter[3] == 1.2);
+    lar_model_destroy(model);
+    model = scene(SCENE("law: pow-linear, part: whole, E: 2e3, lam0: 1.05, beta: 2.5, direction: "
+                        "{around: {point: [0.01, 0.01, 0], axis: [0, 0, 2]}}"));
+    f = &model->material[0].fibre;
+    assert_true(f->law == LAR_FIBRE_POW_LINEAR && !f->isochoric && f->parameter[0] == 2e3);
+    assert_true(f->parameter[1] == 1.05 && f->parameter[2] == 2.5);
     const double s = sqrt(0.5); /* element 0 lies at -x -y of the axis */
     near(lar_model_fibre(model, 0), s, -s, 0);
     lar_model_destroy(model);
@@ -109,6 +115,27 @@ static void scenes_say_what_is_wrong(void **state) {
         {SCENE("law: exp-pow, part: deviator, direction: mesh"), "the parts are: isochoric, whole"},
         {SCENE("law: exp-pow, part: whole, ksi: 1, alpha: 0, direction: mesh"),
          "need beta; add it"},
+        {SCENE("law: pow-linear, part: whole, E: 1, lam0: 1.1, direction: mesh"),
+         "fibres of the law pow-linear need beta; add it"},
+        {SCENE("law: pow-linear, part: whole, E: 1, beta: 2, direction: mesh"), "need lam0"},
+        {SCENE("law: pow-linear, part: whole, lam0: 1.1, beta: 2, direction: mesh"), "need E"},
+        {SCENE("law: pow-linear, part: whole, E: 1, lam0: 1.1, beta: 2, alpha: 1, direction: mesh"),
+         "alpha is no parameter of the law pow-linear"},
+        {SCENE(POW "lam0: 1.1, direction: mesh"), "lam0 is no parameter of the law exp-pow"},
+        {SCENE(LINEAR "beta: 2, direction: mesh"), "beta is no parameter of the law exp-linear"},
+        {SCENE("law: pow-linear, part: whole, E: -1, lam0: 1.1, beta: 2, direction: mesh"),
+         "E is -1"},
+        {SCENE("law: pow-linear, part: whole, E: .nan, lam0: 1.1, beta: 2, direction: mesh"),
+         "not a finite number"},
+        {SCENE("law: pow-linear, part: whole, E: 1e3, lam0: 1, beta: 2, direction: {axis: [1, 0, "
+               "0]}"),
+         "lam0 must be above 1, and at most 20"},
+        {SCENE("law: pow-linear, part: whole, E: 1e3, lam0: 1.1, beta: 1.9, direction: {axis: [1, "
+               "0, 0]}"),
+         "beta must be between 2 and 20"},
+        {SCENE("law: pow-linear, part: whole, E: 1e14, lam0: 1.1, beta: 2, direction: {axis: [1, "
+               "0, 0]}"),
+         "E, in pascal, must not be negative, nor a million"},
         {SCENE(POW "c3: 1, direction: mesh"), "c3 is no parameter of the law exp-pow"},
         {SCENE("active: {}, direction: mesh"), "give \"along\" or \"across\" the fibres"},
         {SCENE("active: {along: -1}, direction: mesh"), "along is -1"},
@@ -228,6 +255,11 @@ static void meshes_bring_directions(void **state) {
 #define EXP   "<ksi>300</ksi><alpha>1.5</alpha><beta>2.5</beta>"
 #define ALONG "<fiber type=\"vector\">0,3,4</fiber>"
 
+#define MOONEY "<solid type=\"Mooney-Rivlin\"><c1>500</c1><c2>0</c2></solid>"
+#define FIBER(part)                                                                                \
+    "<solid type=\"fiber-pow-linear" part "\"><E>700</E><lam0>1.03</lam0><beta>2.5</beta>" ALONG   \
+    "</solid>"
+
 static lar_status read_deck(const char *text, lar_model **model, lar_error *error) {
     lar_bytes bytes = {(unsigned char *)lar_strdup(text), strlen(text)};
     lar_status status = lar_feb_parse("deck.feb", &bytes, model, error);
@@ -261,6 +293,16 @@ static void decks_say_laws_and_directions(void **state) {
     const double s = sqrt(1.0 / 3);
     near(lar_model_fibre(model, 0), s, s, s);
     lar_model_destroy(model);
+
+    for (int uncoupled = 0; uncoupled < 2; uncoupled++) {
+        model = deck(
+            uncoupled ? DECK("uncoupled solid mixture", "<k>1e5</k>" MOONEY FIBER("-uncoupled"), "")
+                      : DECK("solid mixture", SOLID FIBER(""), ""));
+        f = &model->material[0].fibre;
+        assert_true(f->law == LAR_FIBRE_POW_LINEAR && f->isochoric == (uncoupled == 1));
+        assert_true(f->parameter[0] == 700 && f->parameter[1] == 1.03 && f->parameter[2] == 2.5);
+        lar_model_destroy(model);
+    }
 
     model = deck(DECK("trans iso Mooney-Rivlin",
                       ISO "<fiber type=\"angles\"><theta>90</theta><phi>45</phi></fiber>", ""));

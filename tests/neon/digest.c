@@ -173,8 +173,15 @@ static bool shake(const lar_kernels *kernels, lar_law law, const lar_fibre *fibr
 
 static int print_digest(const lar_kernels *kernels, lar_law law, const lar_fibre *fibre,
                         const form *as) {
-    static const char *const fibres[] = {"",          "+active",     "+active",     "+exp-pow",
-                                         "+exp-pow~", "+exp-linear", "+exp-linear~"};
+    static const char *const fibres[] = {"",
+                                         "+active",
+                                         "+active",
+                                         "+exp-pow",
+                                         "+exp-pow~",
+                                         "+exp-linear",
+                                         "+exp-linear~",
+                                         "+pow-linear",
+                                         "+pow-linear~"};
     const char *with = fibres[lar_fibre_kind(fibre)];
     static const char *const body[] = {"crooked", "box0", "box1", "box2"};
     static const char *const shape[] = {"general", "box"};
@@ -197,6 +204,8 @@ int main(void) {
             {.law = LAR_FIBRE_EXP_POW, .parameter = {2e3, 1, 2}, .isochoric = true},
             {.law = LAR_FIBRE_EXP_LINEAR, .parameter = {300, 9, 5e3, 1.1}, .across = 200},
             {.law = LAR_FIBRE_EXP_LINEAR, .parameter = {300, 9, 5e3, 1.1}, .isochoric = true},
+            {.law = LAR_FIBRE_POW_LINEAR, .parameter = {4e3, 1.05, 3}},
+            {.law = LAR_FIBRE_POW_LINEAR, .parameter = {3e3, 1.1, 2}, .isochoric = true},
             {.along = 400}};
     int failures = 0;
     for (lar_isa isa = LAR_ISA_C; isa <= LAR_ISA_AVX512; isa++) {

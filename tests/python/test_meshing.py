@@ -187,6 +187,21 @@ class Surfaces(unittest.TestCase):
         self.assertLess(0, meshing.model(scene).info["fixed_nodes"])
         self.assertIn("Meshing", repr(meshing))
 
+    def test_fibres_by_a_rule(self):
+        surface = ball_surface()
+        self.assertIsNone(lariat.mesh(*surface, elements=200).fibres)
+        meshing = lariat.mesh(*surface, elements=200, title="muscle", fibres="axis: [0, 0, 2]",
+                              fibres_in="muscle")
+        self.assertEqual(meshing.fibres.shape, (len(meshing.tags), 3))
+        self.assertGreater(abs(meshing.fibres[0, 2]), 0)
+        self.assertEqual(meshing.fibres[0, 0], 0)
+        with tempfile.TemporaryDirectory() as folder:
+            self.assertEqual(moved(meshing.model()), moved(lariat.Model(meshing.write(folder))))
+        with self.assertRaisesRegex(ValueError, "bone"):
+            lariat.mesh(*surface, elements=200, fibres="axis: [0, 0, 2]", fibres_in="bone")
+        with self.assertRaises(ValueError):
+            lariat.mesh(*surface, elements=200, fibres="sideways")
+
     def test_arrays_outlive_the_meshing(self):
         nodes = lariat.mesh(*ball_surface(), elements=200).nodes
         self.assertTrue(nodes.readonly)

@@ -165,9 +165,22 @@ static void put_motion(const lar_meshing *m, FILE *f) {
         damping(m), settling(m), duration(m));
 }
 
+/* 4 ksi more along the fibres than E = 3 G of what is incompressible. */
+static void put_fibres(const lar_meshing *m, const lar_region_info *region, FILE *f) {
+    const bool braced = *m->fibres == '{';
+    fprintf(
+        f,
+        "      # The mesh shows them as cell array \"fibre\", a run as its own model has them.\n"
+        "      fibres: { law: exp-pow, part: isochoric,\n"
+        "        ksi: %g, alpha: 1, beta: 2,   # a guess: twice as stiff along as across\n"
+        "        direction: %s%s%s } }\n",
+        0.75 * region->shear_modulus, braced ? "" : "{ ", m->fibres, braced ? "" : " }");
+}
+
 /* Beside each number stands whose it is, or that it is a guess. */
-static void put_material(const lar_region_info *region, FILE *f) {
-    const bool guess = lar_tissue_find(region->name)->guess;
+static void put_material(const lar_meshing *m, const lar_region_info *region, FILE *f) {
+    const bool guess = lar_tissue_find(region->name)->guess,
+               fibres = lar_starter_fibrous(m, region);
     fprintf(f, "  # As %s. Shear modulus: %s.\n", region->tissue, region->source);
     fputs("  - { name: ", f);
     put(f, region->name, true);
@@ -175,12 +188,13 @@ static void put_material(const lar_region_info *region, FILE *f) {
             ", cells: %" PRId32 ", density: %g,\n"
             "      law: coupled-neo-hookean,   # a guess at larger strain\n"
             "      shear_modulus: %g,%s\n"
-            "      bulk_modulus: %.3g }   # a guess, see above\n",
+            "      bulk_modulus: %.3g%s   # a guess, see above\n",
             region->tag, region->density, region->shear_modulus,
             region->held ? "   # a guess, and without effect: it is held"
             : guess      ? "   # a guess: measure it, lariat fit"
                          : "",
-            region->bulk_modulus);
+            region->bulk_modulus, fibres ? "," : " }");
+    if (fibres) put_fibres(m, region, f);
 }
 
 static void put_materials(const lar_meshing *m, FILE *f) {
@@ -199,7 +213,7 @@ static void put_materials(const lar_meshing *m, FILE *f) {
         "materials:\n",
         f);
     for (int32_t r = 0; r < m->info.regions; r++)
-        if (m->region[r].elements > 0) put_material(&m->region[r], f);
+        if (m->region[r].elements > 0) put_material(m, &m->region[r], f);
     fputc('\n', f);
 }
 

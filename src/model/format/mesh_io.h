@@ -54,7 +54,8 @@ typedef struct lar_vtu_frame {
 
 /* Writes a .vtu (appended raw, zlib): to PATH.part first, then renamed, so that a full disk or a
  * kill leaves no half file under the final name. The mesh's element tags go along as the integer
- * cell array "tag", its named sets as field arrays that lar_vtu_parse reads back. */
+ * cell array "tag", what its fibres run along as "fibre", its named sets as field arrays that
+ * lar_vtu_parse reads back. */
 lar_status lar_vtu_write(const char *path, const lar_vtu_frame *frame, lar_error *error);
 
 /* Writes a .pvd collection of `count` frames: file names relative to it, and times. */

@@ -8,6 +8,7 @@
  *           scene_material.c  materials
  *           scene_tissue.c    a material in a file of its own
  *           scene_fibre.c     fibres of materials
+ *           scene_fibre_rule.c   along what they run
  *           scene_active.c    what is active of them, and when
  *           scene_motion.c    fix, move, load, initial, curves
  *           scene_contact.c   contact
@@ -37,6 +38,12 @@ lar_status lar_scene_parse_with(const char *path, const lar_bytes *bytes,
 /* The same of a mesh from memory: the scene names no file. */
 lar_status lar_scene_parse_given(const char *path, const lar_bytes *bytes,
                                  const lar_mesh_arrays *given, lar_model **model, lar_error *error);
+
+/* The directions of a mesh by a rule as scenes have it, with braces around or without. material:
+ * [elements] 0 to `materials` - 1, as each of which the rule is followed by itself; -1: it has no
+ * fibres. Messages begin with "fibres:LINE:COLUMN: ". */
+lar_status lar_scene_fibres_by_rule(const char *words, const int32_t *material, int materials,
+                                    lar_mesh *mesh, lar_error *error);
 
 typedef struct lar_scene {
     const char *path;
@@ -118,6 +125,8 @@ bool lar_scene_is_word(const lar_yaml *node, const char *word);
 /* The key `mesh`; of a mesh that was given it is not there, or says so. */
 lar_status lar_scene_check_mesh(const lar_scene *scene, const lar_yaml **mesh);
 lar_status lar_scene_read_meshes(lar_scene *scene, const lar_yaml *node, double scale);
+/* The diagonal of the mesh's bounding box [m]. */
+double lar_scene_size(const lar_mesh *mesh);
 
 /* ---- scene_sets.c -------------------------------------------------------------------------- */
 
@@ -164,7 +173,7 @@ typedef lar_status lar_scene_material_reader(const lar_scene *scene, const lar_y
 lar_status lar_scene_read_tissue(lar_scene *scene, const lar_yaml *entry,
                                  lar_scene_material_reader *read, lar_material *material);
 /* The fibres of a material; and, when all elements have their materials, the directions of those of
- * one (scene_fibre.c). */
+ * one (scene_fibre_rule.c). */
 lar_status lar_scene_read_fibres(const lar_scene *scene, const lar_yaml *node,
                                  lar_material *material);
 lar_status lar_scene_lay_fibres(lar_scene *scene, const lar_yaml *node, int material);

@@ -163,7 +163,7 @@ static lar_status read_one(lar_scene *scene, const lar_yaml *node, double scale,
     return status;
 }
 
-static double diagonal(const lar_mesh *mesh) {
+double lar_scene_size(const lar_mesh *mesh) {
     double edge[3];
     for (int i = 0; i < 3; i++) {
         double low = mesh->position[0][i], high = low;
@@ -195,7 +195,7 @@ lar_status lar_scene_read_meshes(lar_scene *scene, const lar_yaml *node, double 
     lar_mesh *mesh = &scene->model->mesh;
     if (scene->given) {
         lar_status taken = lar_mesh_from_arrays(scene->given, scale, mesh, scene->error);
-        if (!taken) scene->size = diagonal(mesh);
+        if (!taken) scene->size = lar_scene_size(mesh);
         return taken;
     }
     bool list = node->kind == LAR_YAML_LIST;
@@ -214,6 +214,6 @@ lar_status lar_scene_read_meshes(lar_scene *scene, const lar_yaml *node, double 
         if (!status) status = append_mesh(scene, entry, &more);
         lar_mesh_clear(&more);
     }
-    if (!status) scene->size = diagonal(mesh);
+    if (!status) scene->size = lar_scene_size(mesh);
     return status;
 }

@@ -26,6 +26,8 @@ static const struct fibre_type {
     {"fiber-exp-pow-uncoupled", LAR_FIBRE_EXP_POW, true, {"ksi", "alpha", "beta"}},
     {"uncoupled fiber-exp-pow", LAR_FIBRE_EXP_POW, true, {"ksi", "alpha", "beta"}},
     {"fiber-exp-linear", LAR_FIBRE_EXP_LINEAR, false, {"c3", "c4", "c5", "lambda"}},
+    {"fiber-pow-linear", LAR_FIBRE_POW_LINEAR, false, {"E", "lam0", "beta"}},
+    {"fiber-pow-linear-uncoupled", LAR_FIBRE_POW_LINEAR, true, {"E", "lam0", "beta"}},
     {"uncoupled fiber-exp-linear", LAR_FIBRE_EXP_LINEAR, true, {"c3", "c4", "c5", "lambda"}},
 };
 enum { FIBRE_TYPES = sizeof fibre_types / sizeof *fibre_types };
@@ -145,8 +147,9 @@ lar_status lar_feb_read_activation(lar_feb *feb) {
 }
 
 /* What would change the answer and is not read. */
-static lar_status refuse_children(lar_feb *feb, const xmlNode *node, const char *const *names) {
-    for (int i = 0; names[i]; i++) {
+static lar_status refuse_children(lar_feb *feb, const xmlNode *node, const char *const *names,
+                                  int count) {
+    for (int i = 0; i < count; i++) {
         const xmlNode *child = lar_feb_child(node, names[i]);
         if (child)
             return lar_feb_fail(feb, child, LAR_ERROR_UNSUPPORTED,
@@ -173,18 +176,21 @@ static lar_status read_numbers(lar_feb *feb, const xmlNode *node, const struct f
 
 lar_status lar_feb_read_fibre(lar_feb *feb, const xmlNode *node, const char *type,
                               lar_fibre *fibre) {
-    static const char *const refused[] = {"theta", "phi", "lam0", "mu", NULL};
+    static const char *const refused[] = {"theta", "phi", "mu", "lam0"};
+    const struct fibre_type *own = find_type(type);
+    /* Of a power law that goes on straight, lam0 is where it does; of others fibres begin there. */
+    const bool straight = own->law == LAR_FIBRE_POW_LINEAR;
     static const char *const known[] = {
-        "density", "k",  "pressure_model", "ksi",   "alpha",    "beta", "c3",
-        "c4",      "c5", "lambda",         "fiber", "mat_axis", NULL};
-    lar_status status = refuse_children(feb, node, refused);
-    if (!status) status = read_numbers(feb, node, find_type(type), fibre);
+        "density", "k",      "pressure_model", "ksi",      "alpha", "beta", "c3", "c4",
+        "c5",      "lambda", "fiber",          "mat_axis", "E",     "lam0", NULL};
+    lar_status status = refuse_children(feb, node, refused, straight ? 3 : 4);
+    if (!status) status = read_numbers(feb, node, own, fibre);
     return status ? status : lar_feb_notice_others(feb, node, known);
 }
 
 lar_status lar_feb_read_trans_iso(lar_feb *feb, const xmlNode *node, lar_fibre *fibre) {
-    static const char *const refused[] = {"active_contraction", NULL};
-    lar_status status = refuse_children(feb, node, refused);
+    static const char *const refused[] = {"active_contraction"};
+    lar_status status = refuse_children(feb, node, refused, 1);
     return status ? status : read_numbers(feb, node, &trans_iso, fibre);
 }
 

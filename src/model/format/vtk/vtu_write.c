@@ -69,6 +69,10 @@ static lar_status collect_frame(lar_vtk_writer *w, const lar_vtu_frame *frame) {
             lar_vtk_writer_add(w, lar_strdup("tag"),
                                lar_vtk_array(cell_data, "Int32", 1, (size_t)mesh->element_count,
                                              sizeof *mesh->element_tag, mesh->element_tag));
+    if (!status && mesh->fibre) {
+        const lar_vtu_array fibre = {"fibre", 3, &mesh->fibre[0][0]};
+        status = collect_results(w, cell_data, &fibre, 1, mesh->element_count);
+    }
     if (!status)
         status = collect_results(w, cell_data, frame->cell_array, frame->cell_array_count,
                                  mesh->element_count);
