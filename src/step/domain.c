@@ -10,6 +10,7 @@
 #include "mechanics/hex8_guard.h"
 #include "step/activation.h"
 #include "step/beside.h"
+#include "step/mass_scaling.h"
 #include "step/viscous_history.h"
 
 static lar_status choose_step(lar_domain *domain, const lar_options *options, lar_error *error) {
@@ -20,6 +21,7 @@ static lar_status choose_step(lar_domain *domain, const lar_options *options, la
         return lar_fail_memory(error, elements * sizeof *domain->rate, "the elements");
     lar_step_bound bound;
     lar_status status = lar_step_bound_find(model, domain->kind, domain->rate, &bound, error);
+    if (!status) status = lar_mass_scaling_check(model, domain->rate, &bound, error);
     if (status) return status;
     domain->stable_step = bound.step;
     domain->stable_worst = bound.worst;

@@ -52,6 +52,7 @@ static lar_status inspect_step(const lar_model *model, lar_model_info *info, lar
     lar_step_bound bound;
     if (!rate) return lar_fail_memory(error, bytes, "the elements");
     lar_status status = lar_step_bound_find(model, LAR_ELEMENT_HEX8, rate, &bound, error);
+    if (!status) status = lar_mass_scaling_check(model, rate, &bound, error);
     info->stable_step = bound.step;
     info->stable_worst = bound.worst;
     if (!status)

@@ -53,6 +53,7 @@ static double step_for(const lar_model *model, const lar_element_rate *rate, dou
 
 lar_status lar_mass_scaling_check(const lar_model *model, const lar_element_rate *rate,
                                   const lar_step_bound *bound, lar_error *error) {
+    static const double ROUNDED = 0.994; /* three digits of it are never too much */
     lar_mass_scaling told;
     if (!(bound->step > bound->without)) return LAR_OK;
     sum_up(model, rate, &told);
@@ -64,7 +65,7 @@ lar_status lar_mass_scaling_check(const lar_model *model, const lar_element_rate
                     "largest_share may be larger",
                     lar_model_source(model), model->mass_step, 100 * told.share,
                     100 * model->mass_share, (long long)model->mesh.element_id[told.worst],
-                    told.factor, step_for(model, rate, bound->without, model->mass_share),
+                    told.factor, ROUNDED * step_for(model, rate, bound->without, model->mass_share),
                     bound->without);
 }
 

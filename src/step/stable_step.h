@@ -21,7 +21,7 @@ typedef struct lar_step_bound {
     double fastest[LAR_FACTORS_MAX]; /* lar_domain.fastest */
 } lar_step_bound;
 
-/* Fills rate[elements]. More added mass than the model lets an error tells. */
+/* Fills rate[elements], with as much mass as that takes (lar_mass_scaling_check). */
 lar_status lar_step_bound_find(const lar_model *model, lar_element_kind kind,
                                lar_element_rate *rate, lar_step_bound *bound, lar_error *error);
 
