@@ -1,6 +1,7 @@
 /* Mass scaling: which elements get how much, what that leaves as it is (weight, what is at rest,
  * the balance of energy, the same bits on every grid), what it changes (slow frequencies, by no
  * more than is told), and what is refused. */
+#include "engine/body_contact_test.h"
 #include "engine/engine_test.h"
 
 #define assert_within(value, wanted, error) assert_below(fabs((value) - (wanted)), error)
@@ -311,6 +312,84 @@ static void checkpoints_know_it(void **unused) {
     finish(c, plain);
 }
 
+/* ---- bodies that meet ----------------------------------------------------------------------- */
+
+/* A free brick with a flat layer and a viscous one in it, thrown at one that is so as well. */
+static lar_model *collision(bool scaled, bool heavy) {
+    static const brick lower = {{10, 4, 2}, 0.01, 0.05, LAR_LAW_neo_hookean, 2e4, 2e5, 1000};
+    static const brick upper = {{10, 2, 2}, 0.006, 0, LAR_LAW_neo_hookean, 2e4, 2e5, 1000};
+    lar_model *model = two_bricks(&lower, &upper, 0.001, heavy);
+    int32_t first = 11 * 5 * 3;
+    flatten(model, &lower, 0.4);
+    throw_nodes(model, first, model->mesh.node_count, (double[]){0.1, -0.1, -0.8});
+    lar_material *viscous = LAR_MODEL_APPEND(model, material);
+    *viscous = model->material[0];
+    viscous->viscosity =
+        (lar_viscosity){.terms = 1, .isochoric = true, .rest = 1, .share = {0.5}, .time = {0.004}};
+    for (lar_gid e = 0; e < 40; e++) model->element_material[e] = heavy;
+    if (heavy) memcpy(model->gravity, (double[]){0, 0, -9.81}, 24);
+    model->mass_share = 1;
+    if (scaled) model->mass_step = 1.8 * stable(model);
+    return model;
+}
+
+static double add_momentum(const lar_simulation *s, double sum[3]) {
+    const lar_domain *domain = &s->domain;
+    memset(sum, 0, 3 * sizeof *sum);
+    for (lar_gid n = 0; n < domain->model->mesh.node_count; n++)
+        for (int i = 0; i < 3; i++)
+            sum[i] += domain->mass[domain->layout.local[n]] * node_v(s, n)[i];
+    return sqrt(sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]);
+}
+
+/* At the longest step that there is: springs of contact see the mass that moves. */
+static void bodies_that_meet_keep_momentum_and_gain_nothing(void **unused) {
+    (void)unused;
+    static const double shares[] = {0.5, 0.8, 0.999};
+    for (int share = 0; share < 3; share++) {
+        lar_model *model = collision(true, false);
+        lar_options options = lar_options_default();
+        options.time_step = shares[share] * model->mass_step;
+        lar_simulation *s = start_with(model, options);
+        lar_energy e;
+        lar_contact_info info;
+        double before[3], after[3], size = add_momentum(s, before), most = 0;
+        lar_simulation_energy(s, &e);
+        double had = e.kinetic, touched = 0, missing = 0;
+        while (lar_simulation_time(s) < 0.15) {
+            advance(s, 5);
+            lar_simulation_contact(s, &info);
+            touched = fmax(touched, info.touching);
+            lar_simulation_energy(s, &e);
+            double sum = e.kinetic + e.strain + e.hourglass;
+            most = fmax(most, sum);
+            missing = fmax(missing, fabs(sum + e.contact + e.damping - had));
+        }
+        assert_true(touched > 10);
+        add_momentum(s, after);
+        for (int i = 0; i < 3; i++) assert_within(after[i], before[i], 1e-10 * size);
+        print_message("collision at %g of the stable step: %.4f of the energy at most, %.2g of it "
+                      "missing in the account\n",
+                      shares[share], most / had, missing / had);
+        assert_below(most / had, 1.001);
+        assert_below(missing / had, 1e-3);
+        finish(s, model);
+    }
+}
+
+static void heavy_viscous_bodies_that_meet_have_the_same_bits(void **unused) {
+    (void)unused;
+    static const char *const grids[] = {"1x1x1", "2x1x1", "2x2x1"};
+    lar_model *model = collision(true, true), *plain = collision(false, true);
+    uint64_t hash = hash_on(model, NULL, 0, LAR_ISA_C);
+    assert_true(hash != hash_on(plain, NULL, 0, LAR_ISA_C));
+    for (int grid = 0; grid < 3; grid++)
+        for (int threads = 1; threads <= 2; threads++)
+            assert_int_equal(hash_on(model, grids[grid], threads, LAR_ISA_AUTO), hash);
+    lar_model_destroy(model);
+    lar_model_destroy(plain);
+}
+
 /* ---- what becomes slower -------------------------------------------------------------------- */
 
 /* Mean time between the moments at which the middle of the far end passes its place upwards [s]. */
@@ -391,6 +470,8 @@ int main(void) {
         cmocka_unit_test(every_joule_is_accounted_for),
         cmocka_unit_test(grids_threads_and_lanes_agree),
         cmocka_unit_test(checkpoints_know_it),
+        cmocka_unit_test(bodies_that_meet_keep_momentum_and_gain_nothing),
+        cmocka_unit_test(heavy_viscous_bodies_that_meet_have_the_same_bits),
         cmocka_unit_test(slow_motions_are_slowed_by_no_more_than_told),
         cmocka_unit_test(a_uniform_body_is_slowed_by_what_is_told),
     };
