@@ -282,10 +282,14 @@ static void hold_up_added(const lar_domain *domain, const lar_interactions *inte
     if (!domain->added) return;
     lar_gravity_at(domain->model, lar_settings_of(interactions), lar_state_time(domain, state),
                    gravity);
-    for (int64_t k = 4 * (int64_t)context->first; k < 4 * (int64_t)context->end; k++) {
-        double units = k % 4 < 3 ? domain->added[k / 4] * gravity[k % 4] * domain->scale : 0;
-        if (fabs(units) < 0x1p56)
-            state->force[k] = (int64_t)((uint64_t)state->force[k] + (uint64_t)llrint(units));
+    for (int axis = 0; axis < 3; axis++) {
+        double pull = gravity[axis] * domain->scale;
+        for (int32_t n = context->first; n < context->end && pull != 0; n++) {
+            double units = domain->added[n] * pull;
+            int64_t *force = state->force + 4 * (int64_t)n + axis;
+            if (units != 0 && fabs(units) < 0x1p56)
+                *force = (int64_t)((uint64_t)*force + (uint64_t)llrint(units));
+        }
     }
 }
 
