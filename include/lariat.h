@@ -108,6 +108,22 @@ typedef struct lar_mesh_arrays {
 LAR_API lar_status lar_model_from_arrays(const lar_mesh_arrays *mesh, const char *scene,
                                          lar_model **model, lar_error *error);
 
+/* Mass that elements move with and do not weigh, so that steps may be longer (scene key
+ * `mass_scaling`); what it takes is the scene's to say. */
+typedef struct lar_mass_scaling {
+    double time_step; /* that all elements are to be stable up to [s]; 0: nothing is asked for */
+    double largest_share; /* of the model's mass that may be added */
+    int32_t elements;     /* that have added mass */
+    int32_t worst;        /* the one that has the most for its own */
+    double factor;        /* how many times as much mass this one moves with as it weighs */
+    double added;         /* [kg] */
+    double share;         /* the same as a part of the model's mass */
+    double stable_step;   /* without added mass [s] */
+    double possible_step; /* the longest stable step that largest_share allows [s] */
+    double slowing;       /* by which part of themselves frequencies of slow motions fall at most:
+                             of those that are polynomials of second degree of the place */
+} lar_mass_scaling;
+
 /* What `lariat info` prints. */
 typedef struct lar_model_info {
     const char *title;         /* lives as long as the model */
@@ -123,6 +139,7 @@ typedef struct lar_model_info {
     double stable_step;   /* largest that LAR_ELEMENT_HEX8 allows at rest, without safety [s] */
     int32_t stable_worst; /* the element that asks for it */
     double time_step;     /* what lar_options_default() will take [s] */
+    lar_mass_scaling mass_scaling;
 } lar_model_info;
 
 /* Counts, measures and the stable step: goes through all elements. `info` is the caller's. */

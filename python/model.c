@@ -154,6 +154,14 @@ static PyObject *get_notices(PyObject *me, void *unused) {
     return list_of(model_of(me), lar_model_notice_count(model_of(me)), make_notice);
 }
 
+static PyObject *make_mass_scaling(const lar_mass_scaling *m) {
+    return Py_BuildValue("{s:d,s:d,s:i,s:i,s:d,s:d,s:d,s:d,s:d,s:d}", "time_step", m->time_step,
+                         "largest_share", m->largest_share, "elements", (int)m->elements, "worst",
+                         (int)m->worst, "factor", m->factor, "added", m->added, "share", m->share,
+                         "stable_step", m->stable_step, "possible_step", m->possible_step,
+                         "slowing", m->slowing);
+}
+
 static PyObject *get_info(PyObject *me, void *unused) {
     (void)unused;
     lar_model_info i;
@@ -162,15 +170,15 @@ static PyObject *get_info(PyObject *me, void *unused) {
     const lar_model *model = model_of(me);
     PYTHON_UNLOCKED(status = lar_model_inspect(model, &i, &error));
     if (status) return python_raise(&error);
-    return Py_BuildValue("{s:s,s:i,s:i,s:i,s:i,s:N,s:N,s:d,s:d,s:d,s:d,s:d,s:i,s:d,s:i,s:d}",
-                         "title", i.title, "nodes", (int)i.nodes, "elements", (int)i.elements,
-                         "materials", (int)i.materials, "fixed_nodes", (int)i.fixed_nodes, "lower",
-                         python_tuple(i.lower, 3), "upper", python_tuple(i.upper, 3), "volume",
-                         i.volume, "mass", i.mass, "shortest_edge", i.shortest_edge,
-                         "scaled_jacobian_min", i.scaled_jacobian_min, "scaled_jacobian_mean",
-                         i.scaled_jacobian_mean, "scaled_jacobian_worst",
-                         (int)i.scaled_jacobian_worst, "stable_step", i.stable_step, "stable_worst",
-                         (int)i.stable_worst, "time_step", i.time_step);
+    return Py_BuildValue(
+        "{s:s,s:i,s:i,s:i,s:i,s:N,s:N,s:d,s:d,s:d,s:d,s:d,s:i,s:d,s:i,s:d,s:N}", "title", i.title,
+        "nodes", (int)i.nodes, "elements", (int)i.elements, "materials", (int)i.materials,
+        "fixed_nodes", (int)i.fixed_nodes, "lower", python_tuple(i.lower, 3), "upper",
+        python_tuple(i.upper, 3), "volume", i.volume, "mass", i.mass, "shortest_edge",
+        i.shortest_edge, "scaled_jacobian_min", i.scaled_jacobian_min, "scaled_jacobian_mean",
+        i.scaled_jacobian_mean, "scaled_jacobian_worst", (int)i.scaled_jacobian_worst,
+        "stable_step", i.stable_step, "stable_worst", (int)i.stable_worst, "time_step", i.time_step,
+        "mass_scaling", make_mass_scaling(&i.mass_scaling));
 }
 
 /* ---- arrays --------------------------------------------------------------------------------- */

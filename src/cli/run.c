@@ -168,6 +168,7 @@ static int forget_earlier(run *r) {
 
 static run_report report_of(const run *r) {
     return (run_report){.scene = r->settings.scene,
+                        .model = r->model,
                         .element = cli_element_names[r->settings.element],
                         .interrupted = cli_stop_asked != 0,
                         .verify = r->settings.verify,

@@ -189,8 +189,11 @@ static double gravity_half_work(const lar_condition_context *context, double tim
                                 const lar_state *state) {
     double gravity[3], momentum[3] = {0};
     lar_gravity_at(context->model, context->settings, time, gravity);
-    for (int32_t n = context->first; n < context->end; n++)
-        for (int i = 0; i < 3; i++) momentum[i] += context->weight[n] * state->v[4 * n + i];
+    for (int32_t n = context->first; n < context->end; n++) {
+        double weight = context->weight[n];
+        if (context->added && weight > 0) weight -= context->added[n];
+        for (int i = 0; i < 3; i++) momentum[i] += weight * state->v[4 * n + i];
+    }
     return half_work(gravity, momentum, context->mean_step);
 }
 

@@ -81,6 +81,7 @@ typedef struct lar_condition_context {
     double stable_step;           /* the elements' bound at rest [s] */
     const double *mass;           /* by local node */
     const double *weight;         /* the same, 0 for nodes that another processor accounts for */
+    const double *added;          /* of `mass`, what gravity does not pull at; NULL: nothing */
     int32_t first, end;           /* local nodes that the thread moves */
 } lar_condition_context;
 
@@ -92,8 +93,8 @@ typedef struct lar_condition_share {
     const int32_t *presses; /* [elements of the model] thread that applies pressures on its faces */
 } lar_condition_share;
 
-/* `local` maps global to local nodes, and outlives it. An axis that several entries hold is held once. With a share
- * (NULL: all) only the conditions of one thread, and no `held`. */
+/* `local` maps global to local nodes, and outlives it. An axis that several entries hold is held
+ * once. With a share (NULL: all) only the conditions of one thread, and no `held`. */
 lar_status lar_conditions_create(const lar_model *model, const int32_t *local,
                                  const lar_condition_share *share, lar_conditions *conditions,
                                  lar_error *error);

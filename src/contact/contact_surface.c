@@ -256,7 +256,7 @@ static lar_status fit_masses(const lar_model *model, double time_step, double st
         lar_mesh_corners(mesh, e, corner);
         lar_hex8_prepare(corner, material, &hex8);
         memcpy(hex8.fibre, lar_model_fibre(model, e), sizeof hex8.fibre);
-        double frequency = lar_hex8_frequency(&hex8, material);
+        double frequency = lar_model_slowed(model, lar_hex8_frequency(&hex8, material));
         max = fmax(max, frequency);
         for (int a = 0; a < 8; a++) {
             double *of = &fastest[mesh->element[e][a]];

@@ -16,6 +16,7 @@ lar_model *lar_model_create(void) {
     lar_model *model = lar_calloc(1, sizeof *model);
     if (!model) return NULL;
     for (int axis = 0; axis < 3; axis++) model->gravity_curve[axis] = -1;
+    model->mass_share = 0.05;
     model->output.fields = LAR_FIELD_DISPLACEMENT | LAR_FIELD_VON_MISES;
     return model;
 }
@@ -362,6 +363,9 @@ static lar_status check_numbers(const lar_model *model, lar_error *error) {
         wrong = "damping must be finite and not negative, in 1/s";
     if (!isfinite(model->time_step) || model->time_step < 0.0)
         wrong = "the time step must be finite and not negative, in seconds";
+    if (!(model->mass_step >= 0.0 && model->mass_step <= 1.0) ||
+        !(model->mass_share > 0.0 && model->mass_share <= 1.0))
+        wrong = "mass scaling needs a step up to a second and a share above 0 and up to 1";
     if (!isfinite(model->duration) || model->duration < 0.0)
         wrong = "the duration must be finite and not negative, in seconds";
     if (!isfinite(model->output.every) || model->output.every < 0.0)

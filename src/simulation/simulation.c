@@ -508,7 +508,8 @@ size_t lar_simulation_bytes(const lar_simulation *simulation) {
                    elements * sizeof *layout->corner +
                    (size_t)layout->block_count * sizeof *layout->block +
                    (size_t)domain->model->mesh.node_count * sizeof *layout->local +
-                   nodes * (sizeof *layout->global + sizeof *domain->mass + sizeof *domain->push);
+                   nodes * (sizeof *layout->global + sizeof *domain->mass + sizeof *domain->push +
+                            (domain->added ? sizeof *domain->added : 0));
     size_t moved = (size_t)(conditions->constraint_count - conditions->fixed_count);
     bytes += (size_t)conditions->constraint_count * sizeof *conditions->constraint +
              moved * sizeof *notes->moved +

@@ -45,7 +45,8 @@ static double gravity_account(const lar_simulation *simulation, const lar_settin
     for (lar_gid g = 0; g < domain->model->mesh.node_count; g++) {
         lar_lid n = domain->layout.local[g];
         const double *u = state->u + 4 * n, *v = state->v + 4 * n;
-        for (int i = 0; i < 3; i++) sum += domain->mass[n] * gravity[i] * (half * v[i] - u[i]);
+        double mass = lar_domain_weighs(domain, n);
+        for (int i = 0; i < 3; i++) sum += mass * gravity[i] * (half * v[i] - u[i]);
     }
     return sum;
 }

@@ -10,57 +10,8 @@
 #include "mechanics/hex8_guard.h"
 #include "step/activation.h"
 #include "step/beside.h"
+#include "step/mass_scaling.h"
 #include "step/viscous_history.h"
-
-/* The element's own highest frequency [rad/s]; its hex8 form when asked for. */
-static double element_frequency(const lar_model *model, lar_element_kind kind, lar_gid e,
-                                lar_hex8 *hex8) {
-    double corner[8][3];
-    const lar_material *material = lar_model_material_of(model, e);
-    lar_mesh_corners(&model->mesh, e, corner);
-    lar_hex8_prepare(corner, material, hex8);
-    memcpy(hex8->fibre, lar_model_fibre(model, e), sizeof hex8->fibre);
-    return kind == LAR_ELEMENT_HEX8 ? lar_hex8_frequency(hex8, material)
-                                    : lar_hex8_full_frequency(corner, material);
-}
-
-/* `rate` may be NULL; else [elements], and `max`: lar_domain.fastest. */
-static lar_status stable_step(const lar_model *model, lar_element_kind kind, double *step,
-                              lar_gid *worst, lar_element_rate *rate, double *max,
-                              lar_error *error) {
-    double fastest = 0;
-    *worst = 0;
-    for (lar_gid e = 0; e < model->mesh.element_count; e++) {
-        lar_hex8 hex8;
-        double frequency = element_frequency(model, kind, e, &hex8);
-        if (rate) {
-            double density = lar_model_material_of(model, e)->density;
-            rate[e] = (lar_element_rate){frequency * frequency, density * hex8.volume / 8};
-            double *among = &max[lar_factor_of(model->element_material[e])];
-            *among = fmax(*among, rate[e].square);
-        }
-        if (!(frequency <= fastest)) {
-            fastest = frequency;
-            *worst = e;
-        }
-    }
-    if (!(fastest > 0) || !isfinite(fastest))
-        return lar_fail(error, LAR_ERROR_MODEL,
-                        "%s: element %lld has no finite frequency; check its shape and material",
-                        lar_model_source(model), (long long)model->mesh.element_id[*worst]);
-    *step = 2 / fastest;
-    return LAR_OK;
-}
-
-lar_status lar_stable_step(const lar_model *model, lar_element_kind kind, double *step,
-                           lar_gid *worst, lar_error *error) {
-    return stable_step(model, kind, step, worst, NULL, NULL, error);
-}
-
-double lar_auto_step(const lar_model *model, double stable_step) {
-    double step = 0.8 * stable_step;
-    return model->duration > 0 ? fmin(step, model->duration / 200) : step;
-}
 
 static lar_status choose_step(lar_domain *domain, const lar_options *options, lar_error *error) {
     const lar_model *model = domain->model;
@@ -68,9 +19,14 @@ static lar_status choose_step(lar_domain *domain, const lar_options *options, la
     domain->rate = lar_calloc(elements, sizeof *domain->rate);
     if (!domain->rate)
         return lar_fail_memory(error, elements * sizeof *domain->rate, "the elements");
-    lar_status status = stable_step(model, domain->kind, &domain->stable_step,
-                                    &domain->stable_worst, domain->rate, domain->fastest, error);
+    lar_step_bound bound;
+    lar_status status = lar_step_bound_find(model, domain->kind, domain->rate, &bound, error);
+    if (!status) status = lar_mass_scaling_check(model, domain->rate, &bound, error);
     if (status) return status;
+    domain->stable_step = bound.step;
+    domain->stable_worst = bound.worst;
+    domain->adds = bound.step > bound.without;
+    memcpy(domain->fastest, bound.fastest, sizeof domain->fastest);
     double wanted = options->time_step != 0 ? options->time_step : model->time_step;
     if (wanted == 0) {
         domain->time_step = lar_auto_step(model, domain->stable_step);
@@ -451,16 +407,21 @@ static lar_status spread_mass(lar_domain *domain, lar_error *error) {
     size_t nodes = (size_t)domain->layout.node_padded;
     domain->mass = lar_calloc_aligned(nodes, sizeof *domain->mass);
     domain->push = lar_calloc_aligned(nodes, sizeof *domain->push);
+    if (domain->adds) domain->added = lar_calloc_aligned(nodes, sizeof *domain->added);
     domain->weight = domain->mass;
-    if (!domain->mass || !domain->push)
-        return lar_fail_memory(error, 2 * nodes * sizeof *domain->mass, "the masses");
+    if (!domain->mass || !domain->push || (domain->adds && !domain->added))
+        return lar_fail_memory(error, 3 * nodes * sizeof *domain->mass, "the masses");
     for (lar_gid e = 0; e < model->mesh.element_count; e++) {
         double corner[8][3];
         lar_mesh_corners(&model->mesh, e, corner);
         double share = lar_model_material_of(model, e)->density * lar_hexahedron_volume(corner) / 8;
-        for (int a = 0; a < 8; a++)
-            domain->mass[domain->layout.local[model->mesh.element[e][a]]] += share;
+        for (int a = 0; a < 8; a++) {
+            lar_lid n = domain->layout.local[model->mesh.element[e][a]];
+            domain->mass[n] += share;
+            if (domain->added) domain->added[n] += domain->rate[e].added;
+        }
     }
+    for (size_t n = 0; domain->added && n < nodes; n++) domain->mass[n] += domain->added[n];
     return LAR_OK;
 }
 
@@ -529,14 +490,16 @@ static lar_status copy_nodes(const lar_domain *whole, const bool *counted, lar_d
     domain->mass = lar_calloc_aligned(nodes, sizeof *domain->mass);
     domain->weight = lar_calloc_aligned(nodes, sizeof *domain->weight);
     domain->push = lar_calloc_aligned(nodes, sizeof *domain->push);
-    if (!domain->mass || !domain->weight || !domain->push)
-        return lar_fail_memory(error, 3 * nodes * sizeof *domain->mass, "the masses");
+    if (domain->adds) domain->added = lar_calloc_aligned(nodes, sizeof *domain->added);
+    if (!domain->mass || !domain->weight || !domain->push || (domain->adds && !domain->added))
+        return lar_fail_memory(error, 4 * nodes * sizeof *domain->mass, "the masses");
     for (size_t n = 0; n < nodes; n++) {
         lar_gid g = domain->layout.global[n];
         if (g < 0) continue;
         lar_lid there = whole->layout.local[g];
         domain->mass[n] = whole->mass[there];
         domain->push[n] = whole->push[there];
+        if (domain->added) domain->added[n] = whole->added[there];
         if (counted[g]) domain->weight[n] = domain->mass[n];
     }
     return LAR_OK;
@@ -555,6 +518,7 @@ lar_status lar_domain_create_part(const lar_domain *whole, const lar_part *part,
                            .rate_lent = true,
                            .stable_step = whole->stable_step,
                            .stable_worst = whole->stable_worst,
+                           .adds = whole->adds,
                            .leapfrog = whole->leapfrog};
     lar_status status = copy_materials(domain, error);
     if (!status)
@@ -588,6 +552,7 @@ void lar_domain_destroy(lar_domain *domain) {
     free(domain->spare);
     if (domain->weight != domain->mass) free(domain->weight);
     free(domain->mass);
+    free(domain->added);
     free(domain->push);
     *domain = (lar_domain){0};
 }

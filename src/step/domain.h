@@ -17,12 +17,7 @@
 #include "layout/part_layout.h"
 #include "mechanics/hex8_block.h"
 #include "model/model.h"
-
-/* What an element's frequency follows from. */
-typedef struct lar_element_rate {
-    double square; /* of its highest frequency at rest [1/s^2] */
-    double mass;   /* of a corner [kg] */
-} lar_element_rate;
+#include "step/stable_step.h"
 
 /* What a lane follows from besides gradients and shape, with the model's material. */
 typedef struct lar_lane_base {
@@ -73,6 +68,7 @@ typedef struct lar_domain {
     double *mass;   /* [layout.node_padded] kg; spare nodes 0 */
     double *weight; /* the same, 0 where another processor accounts for the node; in a whole model
                        `mass` itself */
+    double *added;  /* [layout.node_padded] of `mass`, what has no weight; NULL: nothing */
     double *push;   /* [layout.node_padded] see lar_node_update */
 
     double scale;       /* force units per newton, a power of two */
@@ -80,6 +76,7 @@ typedef struct lar_domain {
     uint64_t interval;  /* steps after which is decided (step/interval.h) */
     double stable_step; /* the elements' bound at rest [s] */
     lar_gid stable_worst;
+    bool adds; /* mass, see mass_scaling.h */
     lar_hex8_limits limits;
     lar_leapfrog leapfrog; /* without gravity when gravity follows a curve */
 
@@ -105,18 +102,15 @@ lar_status lar_domain_create_part(const lar_domain *whole, const lar_part *part,
                                   const bool *counted, int32_t run_max, lar_domain *domain,
                                   lar_error *error);
 
-/* The elements' bound of the time step at rest and the element that sets it. */
-lar_status lar_stable_step(const lar_model *model, lar_element_kind kind, double *step,
-                           lar_gid *worst, lar_error *error);
-
-/* The step that `time_step: auto` takes: 0.8 of the stable step, which leaves room for elements
- * that are squeezed during the run, and at most 1/200 of a duration that the model states. */
-double lar_auto_step(const lar_model *model, double stable_step);
-
 /* The largest component of a force that may be set on a node [N]: a few hundred together, and more
  * from elements, still fit the force sums. */
 static inline double lar_domain_force_max(const lar_domain *domain) {
     return 0x1p52 / domain->scale;
+}
+
+/* What gravity pulls at, of a node's mass [kg]. */
+static inline double lar_domain_weighs(const lar_domain *domain, lar_lid n) {
+    return domain->added ? domain->mass[n] - domain->added[n] : domain->mass[n];
 }
 
 /* The material of element e as stiff as it is now. */

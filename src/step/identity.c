@@ -120,6 +120,7 @@ static uint64_t hash_materials(const lar_model *model) {
         hash = hash_doubles(hash, v->time, (size_t)v->terms);
     }
     hash = hash_fibres(hash, model);
+    if (model->mass_step > 0) hash = lar_hash_double(hash, model->mass_step);
     return hash_indices(hash, model->element_material, model->mesh.element_count);
 }
 

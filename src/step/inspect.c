@@ -4,6 +4,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "step/mass_scaling.h"
+
 static void inspect_elements(const lar_model *model, lar_model_info *info) {
     info->shortest_edge = DBL_MAX;
     info->scaled_jacobian_min = DBL_MAX;
@@ -44,6 +46,21 @@ static lar_status count_fixed_nodes(const lar_model *model, int32_t *count, lar_
     return LAR_OK;
 }
 
+static lar_status inspect_step(const lar_model *model, lar_model_info *info, lar_error *error) {
+    size_t bytes = (size_t)model->mesh.element_count * sizeof(lar_element_rate);
+    lar_element_rate *rate = lar_calloc(bytes, 1);
+    lar_step_bound bound;
+    if (!rate) return lar_fail_memory(error, bytes, "the elements");
+    lar_status status = lar_step_bound_find(model, LAR_ELEMENT_HEX8, rate, &bound, error);
+    if (!status) status = lar_mass_scaling_check(model, rate, &bound, error);
+    info->stable_step = bound.step;
+    info->stable_worst = bound.worst;
+    if (!status)
+        status = lar_mass_scaling_tell(model, rate, &bound, info, &info->mass_scaling, error);
+    free(rate);
+    return status;
+}
+
 lar_status lar_model_inspect(const lar_model *model, lar_model_info *info, lar_error *error) {
     if (!model || !info)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
@@ -63,9 +80,7 @@ lar_status lar_model_inspect(const lar_model *model, lar_model_info *info, lar_e
     }
     inspect_elements(model, &made);
     lar_status status = count_fixed_nodes(model, &made.fixed_nodes, error);
-    if (!status)
-        status =
-            lar_stable_step(model, LAR_ELEMENT_HEX8, &made.stable_step, &made.stable_worst, error);
+    if (!status) status = inspect_step(model, &made, error);
     if (status) return status;
     made.time_step =
         model->time_step > 0 ? model->time_step : lar_auto_step(model, made.stable_step);

@@ -163,7 +163,7 @@ static double gravity_potential(const look *l) {
     double work = 0;
     for (int32_t n = 0; n < l->domain->layout.node_count; n++)
         for (int i = 0; i < 3; i++)
-            work += l->domain->mass[n] * l->gravity[i] * l->state.u[4 * n + i];
+            work += lar_domain_weighs(l->domain, n) * l->gravity[i] * l->state.u[4 * n + i];
     return work;
 }
 

@@ -274,6 +274,25 @@ static void add_body_contact(lar_body_contact *contact, const lar_condition_cont
         *fault = (lar_fault){.kind = LAR_FAULT_TOO_MANY_PAIRS, .element = -1, .step = state->step};
 }
 
+/* Drift is gravity's for all that moves: mass without weight is held up, in whole units. A force
+ * beyond these is of a run that is about to break. */
+static void hold_up_added(const lar_domain *domain, const lar_interactions *interactions,
+                          const lar_condition_context *context, lar_state *state) {
+    double gravity[3];
+    if (!domain->added) return;
+    lar_gravity_at(domain->model, lar_settings_of(interactions), lar_state_time(domain, state),
+                   gravity);
+    for (int axis = 0; axis < 3; axis++) {
+        double pull = gravity[axis] * domain->scale;
+        for (int32_t n = context->first; n < context->end && pull != 0; n++) {
+            double units = domain->added[n] * pull;
+            int64_t *force = state->force + 4 * (int64_t)n + axis;
+            if (units != 0 && fabs(units) < 0x1p56)
+                *force = (int64_t)((uint64_t)*force + (uint64_t)llrint(units));
+        }
+    }
+}
+
 /* Friction of tools: all other forces are there. */
 static void add_friction(const lar_domain *domain, lar_interactions *interactions,
                          const lar_condition_context *context, lar_state *state) {
@@ -297,6 +316,7 @@ void lar_step_forces(const lar_domain *domain, lar_interactions *scratch, lar_st
         for (int32_t r = 0; r < domain->run_count; r++) recover_run(domain, r, false, NULL, state);
         lar_guard_apply_all(domain, state);
     }
+    hold_up_added(domain, scratch, &context, state);
     add_friction(domain, scratch, &context, state);
 }
 
@@ -310,6 +330,7 @@ void lar_step_move(const lar_domain *domain, lar_interactions *interactions,
                    const lar_condition_context *context, lar_state *state, lar_fault *fault) {
     const lar_conditions *conditions = &interactions->surroundings->conditions;
     double time = lar_state_time(domain, state);
+    hold_up_added(domain, interactions, context, state);
     add_friction(domain, interactions, context, state);
     lar_tool_friction_half_work(&interactions->tool_contact, context, state);
     lar_conditions_observe(conditions, context, &interactions->notes, state);

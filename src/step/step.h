@@ -114,6 +114,7 @@ static inline lar_condition_context lar_domain_context_of(const lar_domain *doma
                                    .stable_step = domain->stable_step,
                                    .mass = domain->mass,
                                    .weight = domain->weight,
+                                   .added = domain->added,
                                    .first = first,
                                    .end = end};
 }

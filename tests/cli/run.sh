@@ -22,7 +22,10 @@ has_keys title file lower upper sets.0.name sets.0.kind materials.0.law contacts
     tools.0.spread nodes \
     elements fixed_nodes volume mass shortest_edge scaled_jacobian.min scaled_jacobian.mean \
     scaled_jacobian.worst_element stable_step stable_step_element time_step duration \
-    output_interval sets.0.count materials.0.shear_modulus
+    output_interval sets.0.count materials.0.shear_modulus mass_scaling.time_step \
+    mass_scaling.largest_share mass_scaling.elements mass_scaling.added mass_scaling.share \
+    mass_scaling.largest_factor mass_scaling.largest_factor_element \
+    mass_scaling.stable_step_without mass_scaling.possible_step mass_scaling.slowing
 [ "$(value_of elements)" = 1840 ] || fail "the organ has $(value_of elements) elements"
 
 expect 0 "$LARIAT" run "$scene" --steps 200 --json --out "$SCRATCH/results"

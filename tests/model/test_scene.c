@@ -98,18 +98,27 @@ static void test_plain_values(void **state) {
     (void)state;
     lar_model *model = scene(HEAD MATERIAL "title: 'A: brick'\nscale: 0.001\n"
                                            "gravity: [0, 0, -9.81]\ntime_step: 1.0e-5\n"
-                                           "damping: 2.0\nduration: 3\nview: [0, 3, 4]\n");
+                                           "damping: 2.0\nduration: 3\nview: [0, 3, 4]\n"
+                                           "mass_scaling: {time_step: 2e-5}\n");
     assert_string_equal(model->title, "A: brick");
     assert_string_equal(model->source, "s.yaml");
     same(model->mesh.position[26][0], 2e-5);
     same(model->gravity[2], -9.81);
     same(model->time_step, 1e-5);
+    same(model->mass_step, 2e-5);
+    same(model->mass_share, 0.05);
     same(model->damping, 2.0);
     same(lar_model_duration(model), 3.0);
     same(model->view[1], 0.6);
     same(model->view[2], 0.8);
     lar_model_destroy(model);
+    model = scene(HEAD MATERIAL "time_step: auto\n"
+                                "mass_scaling: {largest_share: 0.5, time_step: 1.0e-3}\n");
+    same(model->mass_step, 1e-3);
+    same(model->mass_share, 0.5);
+    lar_model_destroy(model);
     model = scene(HEAD MATERIAL "time_step: auto\n");
+    same(model->mass_step, 0.0);
     assert_string_equal(model->title, "s.yaml");
     same(model->time_step, 0.0);
     same(model->gravity[2], 0.0);

@@ -54,6 +54,18 @@ static void test_root(void **state) {
          "duration: expected rest, or a number in seconds (SI units), for example 0.2, but found "
          "\"2 s\""},
         {"title: []\n", "4:8", "title: expected a text, but found a list"},
+        {"mass_scaling: 1e-4\n", "4:15", "mass_scaling as a mapping, {time_step: ...}"},
+        {"mass_scaling: {}\n", "4:15", "mass_scaling needs the key \"time_step\""},
+        {"mass_scaling: {step: 1e-4}\n", "4:16", "may have the keys: time_step, largest_share"},
+        {"mass_scaling: {time_step: auto}\n", "4:27", "expected a number in seconds up to 1"},
+        {"mass_scaling: {time_step: .nan}\n", "4:27", "not a finite number"},
+        {"mass_scaling: {time_step: -1e-4}\n", "4:27", "more than zero"},
+        {"mass_scaling: {time_step: 2}\n", "4:27", "time_step is 2; expected a number in seconds"},
+        {"mass_scaling: {time_step: 1e-4, largest_share: 0}\n", "4:48", "more than zero"},
+        {"mass_scaling: {time_step: 1e-4, largest_share: 5}\n", "4:48", "largest_share is 5"},
+        {"mass_scaling: {time_step: 1e-4, largest_share: 5 %}\n", "4:48", "expected a part of"},
+        {"time_step: 2e-4\nmass_scaling: {time_step: 1e-4}\n", "5:27",
+         "stable up to 0.0001 s, and the scene's time_step is 0.0002 s"},
     };
     REFUSES(whole, "");
     REFUSES(extra, BASE);

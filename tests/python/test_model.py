@@ -51,6 +51,19 @@ class Arrays(unittest.TestCase):
         self.assertEqual(model.tools[0]["name"], "probe")
         self.assertIn({"name": "top", "kind": "nodes", "count": 42}, model.sets)
 
+    def test_mass_scaling_is_a_key_like_others(self):
+        told = block().info["mass_scaling"]
+        self.assertEqual((told["time_step"], told["elements"], told["added"]), (0, 0, 0))
+        step = 1.01 * told["stable_step"]
+        info = block(mass_scaling={"time_step": step, "largest_share": 0.1}).info
+        told = info["mass_scaling"]
+        self.assertAlmostEqual(info["stable_step"], step, delta=1e-12)
+        self.assertLess(0, told["elements"])
+        self.assertAlmostEqual(told["factor"], 1.01**2, delta=1e-9)
+        self.assertAlmostEqual(told["added"], told["share"] * info["mass"], delta=1e-15)
+        with self.assertRaisesRegex(lariat.Error, "largest_share of 5 %"):
+            block(mass_scaling={"time_step": 2 * step}).info
+
     def test_text_and_dict_are_the_same_model(self):
         import json
         nodes, hexahedra, sets = block_arrays()

@@ -3,6 +3,8 @@
 #include <inttypes.h>
 #include <stdio.h>
 
+#include "cli/report/mass_scaling.h"
+
 /* The words of scenes; hands are in none. */
 static const char *const shape_word[] = {"sphere", "capsule", "grasper", "hand"};
 
@@ -81,6 +83,7 @@ void info_report_json(const info_report *report) {
     lar_json_number(&json, "stable_step", info->stable_step);
     lar_json_integer(&json, "stable_step_element", lar_model_element_id(model, info->stable_worst));
     lar_json_number(&json, "time_step", info->time_step);
+    cli_write_mass_scaling(&json, model, &info->mass_scaling);
     if (report->timed) cli_write_speed(&json, &report->speed);
     lar_json_number(&json, "duration", lar_model_duration(model));
     lar_json_boolean(&json, "until_rest", lar_model_until_rest(model));
@@ -221,6 +224,7 @@ void info_report_table(const info_report *report) {
     cli_print_jacobians(&report->quality);
     printf("%-17s%.4g s (stable up to %.4g s, set by element %" PRId64 ")\n", "time step",
            info->time_step, info->stable_step, lar_model_element_id(model, info->stable_worst));
+    cli_print_mass_scaling(model, &info->mass_scaling, true, stdout);
     if (report->timed) cli_print_speed(&report->speed);
     print_duration(model);
     print_materials(model);

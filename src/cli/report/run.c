@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "cli/parallel.h"
+#include "cli/report/mass_scaling.h"
 #include "base/json/write.h"
 
 /* Wall time that the simulated time is compared with: the steps, and the waiting between them when
@@ -118,6 +119,7 @@ void run_report_json(const run_report *report, FILE *out) {
     lar_json_number(&json, "time", lar_simulation_time(simulation));
     lar_json_number(&json, "time_step", lar_simulation_time_step(simulation));
     lar_json_number(&json, "stable_step", report->info.stable_step);
+    cli_write_mass_scaling(&json, report->model, &report->info.mass_scaling);
     cli_write_parallel(&json, report->parallel);
     lar_json_text(&json, "isa", lar_simulation_isa(simulation));
     lar_json_number(&json, "wall_time", stepping_time(report));
@@ -246,6 +248,7 @@ void run_report_table(const run_report *report, FILE *out) {
     fprintf(out, "%-17s%.6g s in %" PRIu64 " steps of %.4g s%s\n", "simulated",
             lar_simulation_time(simulation), lar_simulation_steps(simulation),
             lar_simulation_time_step(simulation), report->interrupted ? ", interrupted" : "");
+    cli_print_mass_scaling(report->model, &report->info.mass_scaling, false, out);
     print_pace(report, out);
     if (clock->times.count > 0) {
         fprintf(out, "%-17smedian %.4g us, 99 %% below %.4g, 99.9 %% below %.4g, longest %.4g\n",

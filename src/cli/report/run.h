@@ -10,6 +10,7 @@
 
 typedef struct run_report {
     const char *scene; /* the file */
+    const lar_model *model;
     lar_model_info info;
     const char *element; /* kind */
     bool interrupted;

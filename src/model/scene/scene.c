@@ -6,10 +6,10 @@
 #include "model/rest.h"
 
 static lar_status check_root(const lar_scene *scene) {
-    static const char *const keys[] = {"lariat",    "title",    "mesh",      "scale",   "gravity",
-                                       "time_step", "damping",  "materials", "sets",    "fix",
-                                       "move",      "load",     "initial",   "contact", "tools",
-                                       "output",    "duration", "surface",   "view",    NULL};
+    static const char *const keys[] = {
+        "lariat",    "title",  "mesh",     "scale",   "gravity", "time_step",    "damping",
+        "materials", "sets",   "fix",      "move",    "load",    "initial",      "contact",
+        "tools",     "output", "duration", "surface", "view",    "mass_scaling", NULL};
     const lar_yaml *version = NULL;
     int64_t number;
     if (scene->root->kind != LAR_YAML_MAPPING)
@@ -33,6 +33,36 @@ static lar_status read_time_step(lar_scene *scene, const lar_yaml *node) {
     const char *const expected = "auto, or a number in seconds (SI units), for example 1.0e-4";
     if (lar_scene_is_word(node, "auto")) return LAR_OK;
     return lar_scene_positive(scene, node, expected, &scene->model->time_step);
+}
+
+/* More than a second is no step, and more mass than a body has is another body. */
+static lar_status read_mass_scaling(lar_scene *scene, const lar_yaml *node) {
+    static const char *const keys[] = {"time_step", "largest_share", NULL};
+    const char *const step = "a number in seconds up to 1, for example 2.0e-4: what all elements "
+                             "shall be stable up to",
+                      *const share = "a part of the model's mass above 0 and up to 1, for example "
+                                     "0.05";
+    lar_model *model = scene->model;
+    const lar_yaml *value;
+    lar_status status = lar_scene_keys(scene, node, "mass_scaling", keys);
+    if (!status)
+        status =
+            lar_scene_need(scene, node, "mass_scaling", "time_step", "time_step: 2.0e-4", &value);
+    if (!status) status = lar_scene_positive(scene, value, step, &model->mass_step);
+    if (status) return status;
+    if (model->mass_step > 1)
+        return lar_scene_fail(scene, value, LAR_ERROR_MODEL, "time_step is %s; expected %s",
+                              value->text, step);
+    if (model->time_step > model->mass_step)
+        return lar_scene_fail(scene, value, LAR_ERROR_MODEL,
+                              "mass_scaling makes elements stable up to %g s, and the scene's "
+                              "time_step is %g s: make one larger or the other smaller",
+                              model->mass_step, model->time_step);
+    if (!(value = lar_yaml_get(node, "largest_share"))) return LAR_OK;
+    status = lar_scene_positive(scene, value, share, &model->mass_share);
+    if (status || model->mass_share <= 1) return status;
+    return lar_scene_fail(scene, value, LAR_ERROR_MODEL, "largest_share is %s; expected %s",
+                          value->text, share);
 }
 
 /* Seconds, or "rest". Without a damping of its own such a scene is damped as static decks are. */
@@ -83,6 +113,8 @@ static lar_status read_plain_values(lar_scene *scene, double *scale) {
         status = lar_scene_not_negative(scene, value, "a number in 1/s, for example 2.0",
                                         &model->damping);
     if (!status && (value = lar_yaml_get(root, "duration"))) status = read_duration(scene, value);
+    if (!status && (value = lar_yaml_get(root, "mass_scaling")))
+        status = read_mass_scaling(scene, value);
     if (!status && (value = lar_yaml_get(root, "view")))
         status = lar_scene_direction(scene, value, model->view);
     return status;

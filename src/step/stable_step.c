@@ -1,0 +1,74 @@
+#include "step/stable_step.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "mechanics/hex8_full.h"
+#include "mechanics/hex8_guard.h"
+
+/* The element's own highest frequency [rad/s]; its hex8 form when asked for. */
+static double element_frequency(const lar_model *model, lar_element_kind kind, lar_gid e,
+                                lar_hex8 *hex8) {
+    double corner[8][3];
+    const lar_material *material = lar_model_material_of(model, e);
+    lar_mesh_corners(&model->mesh, e, corner);
+    lar_hex8_prepare(corner, material, hex8);
+    memcpy(hex8->fibre, lar_model_fibre(model, e), sizeof hex8->fibre);
+    return kind == LAR_ELEMENT_HEX8 ? lar_hex8_frequency(hex8, material)
+                                    : lar_hex8_full_frequency(corner, material);
+}
+
+lar_status lar_step_bound_find(const lar_model *model, lar_element_kind kind,
+                               lar_element_rate *rate, lar_step_bound *bound, lar_error *error) {
+    double fastest = 0, moving = 0;
+    *bound = (lar_step_bound){0};
+    for (lar_gid e = 0; e < model->mesh.element_count; e++) {
+        lar_hex8 hex8;
+        double frequency = element_frequency(model, kind, e, &hex8);
+        double mass = lar_model_material_of(model, e)->density * hex8.volume / 8;
+        double now = lar_model_slowed(model, frequency);
+        rate[e] = (lar_element_rate){now * now, mass, 0};
+        if (now < frequency) {
+            rate[e].added = mass * ((frequency / now) * (frequency / now) - 1);
+            rate[e].mass = mass + rate[e].added;
+        }
+        double *among = &bound->fastest[lar_factor_of(model->element_material[e])];
+        *among = fmax(*among, rate[e].square);
+        if (!(now <= moving)) {
+            moving = now;
+            bound->worst = e;
+        }
+        if (!(frequency <= fastest)) {
+            fastest = frequency;
+            bound->worst_without = e;
+        }
+    }
+    if (!(fastest > 0) || !isfinite(fastest))
+        return lar_fail(error, LAR_ERROR_MODEL,
+                        "%s: element %lld has no finite frequency; check its shape and material",
+                        lar_model_source(model),
+                        (long long)model->mesh.element_id[bound->worst_without]);
+    bound->step = 2 / moving;
+    bound->without = 2 / fastest;
+    return LAR_OK;
+}
+
+lar_status lar_stable_step(const lar_model *model, lar_element_kind kind, double *step,
+                           lar_gid *worst, lar_error *error) {
+    size_t bytes = (size_t)model->mesh.element_count * sizeof(lar_element_rate);
+    lar_element_rate *rate = lar_calloc(bytes, 1);
+    lar_step_bound bound;
+    if (!rate) return lar_fail_memory(error, bytes, "the elements");
+    lar_status status = lar_step_bound_find(model, kind, rate, &bound, error);
+    free(rate);
+    if (status) return status;
+    *step = bound.step;
+    *worst = bound.worst;
+    return LAR_OK;
+}
+
+double lar_auto_step(const lar_model *model, double stable_step) {
+    double step = 0.8 * stable_step;
+    return model->duration > 0 ? fmin(step, model->duration / 200) : step;
+}

@@ -1,0 +1,36 @@
+/* How long a step may be: the elements' highest frequencies, and the mass that the scene lets those
+ * have that would ask for shorter steps than it wants (mass_scaling.h).
+ */
+#ifndef LAR_STEP_STABLE_STEP_H
+#define LAR_STEP_STABLE_STEP_H
+
+#include "model/model.h"
+#include "model/settings.h"
+
+/* What an element's frequency follows from, with the mass that moves. */
+typedef struct lar_element_rate {
+    double square; /* of its highest frequency at rest [1/s^2] */
+    double mass;   /* of a corner [kg] */
+    double added;  /* of this; what the element does not weigh [kg] */
+} lar_element_rate;
+
+typedef struct lar_step_bound {
+    double step;    /* the elements' bound at rest [s] */
+    double without; /* the same without added mass [s] */
+    lar_gid worst, worst_without;
+    double fastest[LAR_FACTORS_MAX]; /* lar_domain.fastest */
+} lar_step_bound;
+
+/* Fills rate[elements], with as much mass as that takes (lar_mass_scaling_check). */
+lar_status lar_step_bound_find(const lar_model *model, lar_element_kind kind,
+                               lar_element_rate *rate, lar_step_bound *bound, lar_error *error);
+
+/* The elements' bound of the time step at rest and the element that sets it. */
+lar_status lar_stable_step(const lar_model *model, lar_element_kind kind, double *step,
+                           lar_gid *worst, lar_error *error);
+
+/* The step that `time_step: auto` takes: 0.8 of the stable step, which leaves room for elements
+ * that are squeezed during the run, and at most 1/200 of a duration that the model states. */
+double lar_auto_step(const lar_model *model, double stable_step);
+
+#endif
