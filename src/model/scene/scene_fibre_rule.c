@@ -376,7 +376,8 @@ static lar_status turn_in_wall(const rule *r, const wall *w, const field *throug
     if (!make_unit(t, 1e-6))
         return lar_scene_fail(r->scene, w->axis ? w->axis : w->path, LAR_ERROR_MODEL,
                               "in element %lld the %.4s goes straight through the wall, so that no "
-                              "angle can count from it; take another one",
+                              "angle can count from it; take another one, or name faces as outer "
+                              "that leave out the ends",
                               id_of(r, i), w->axis ? "axis" : "path");
     lar_cross(n, t, beside);
     turn_of((1 - far) * w->angle[0] + far * w->angle[1], &cosine, &sine);
