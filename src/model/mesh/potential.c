@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/error.h"
+#include "base/union_find.h"
 #include "base/vector.h"
 
 /* ---- one element ---------------------------------------------------------------------------- */
@@ -60,24 +61,6 @@ double lar_potential_at(const lar_mesh *mesh, const double *value, int32_t e, do
 
 /* ---- what hangs together -------------------------------------------------------------------- */
 
-/* The first node of those that hang together with n; the way there becomes shorter. */
-static int32_t root_of(int32_t *above, int32_t n) {
-    while (above[n] != n) n = above[n] = above[above[n]];
-    return n;
-}
-
-static void join(const lar_mesh *mesh, const int32_t *element, int32_t count, int32_t *above) {
-    for (int32_t i = 0; i < count; i++)
-        for (int a = 1; a < 8; a++) {
-            int32_t one = root_of(above, mesh->element[element[i]][0]);
-            int32_t two = root_of(above, mesh->element[element[i]][a]);
-            if (one < two)
-                above[two] = one;
-            else
-                above[one] = two;
-        }
-}
-
 lar_status lar_potential_loose(const lar_mesh *mesh, const int32_t *element, int32_t count,
                                const uint8_t *held, int32_t *loose, int *missing,
                                lar_error *error) {
@@ -86,12 +69,14 @@ lar_status lar_potential_loose(const lar_mesh *mesh, const int32_t *element, int
     uint8_t *reached = above ? lar_calloc(nodes, 1) : NULL;
     *loose = -1;
     if (reached) {
-        for (int32_t n = 0; n < mesh->node_count; n++) above[n] = n;
-        join(mesh, element, count, above);
+        lar_union_start(above, mesh->node_count);
+        for (int32_t i = 0; i < count; i++)
+            for (int a = 1; a < 8; a++)
+                lar_union_join(above, mesh->element[element[i]][0], mesh->element[element[i]][a]);
         for (int32_t n = 0; n < mesh->node_count; n++)
-            reached[root_of(above, n)] |= held[n]; /* low is one bit, high another */
+            reached[lar_union_root(above, n)] |= held[n]; /* low is one bit, high another */
         for (int32_t i = 0; i < count && *loose < 0; i++) {
-            int there = reached[root_of(above, mesh->element[element[i]][0])];
+            int there = reached[lar_union_root(above, mesh->element[element[i]][0])];
             if (there == (LAR_POTENTIAL_LOW | LAR_POTENTIAL_HIGH)) continue;
             *loose = element[i];
             *missing = there & LAR_POTENTIAL_LOW ? LAR_POTENTIAL_HIGH : LAR_POTENTIAL_LOW;
