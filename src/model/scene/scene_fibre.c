@@ -86,6 +86,7 @@ lar_status lar_scene_read_fibres(const lar_scene *scene, const lar_yaml *node,
         given ? lar_scene_keys(scene, node, "fibres whose law the tissue file has", beside)
               : lar_scene_keys(scene, node, "fibres", keys);
     const lar_yaml *active = status ? NULL : lar_yaml_get(node, "active");
+    if (!status && !given) status = read_passive(scene, node, fibre);
     if (!status && !file)
         status = lar_scene_need(scene, node, "fibres", "direction", "direction: {axis: [1, 0, 0]}",
                                 &direction);
@@ -93,7 +94,6 @@ lar_status lar_scene_read_fibres(const lar_scene *scene, const lar_yaml *node,
         status = lar_scene_fail(scene, lar_yaml_get(node, "direction"), LAR_ERROR_FORMAT,
                                 "direction: along what fibres run is not the tissue's but the "
                                 "body's; say it in the scene, beside tissue");
-    if (!status && !given) status = read_passive(scene, node, fibre);
     fibre->line = node->line;
     return status || !active ? status : lar_scene_read_active(scene, active, material);
 }
