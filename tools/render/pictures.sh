@@ -3,7 +3,7 @@
 #
 #   tools/render/pictures.sh [LARIAT [FOLDER]]      default: build/lariat docs/images
 #
-# Needs python3-vtk9, xvfb and xauth (see render.py).
+# Needs python3-vtk9, xvfb and xauth (see render.py), and imagemagick.
 set -eu
 here=$(dirname "$0")
 lariat=${1:-$here/../../build/lariat}
@@ -85,4 +85,22 @@ render --out "$images/contact_strip.png" "$work/strip/strip_000000.vtu" \
     "$work/strip/strip_000015.vtu" "$work/strip/strip_000100.vtu" --size 1200 400 \
     --color von_mises --range 0 600 --legend 'von Mises\nstress [Pa]' --crease 60 \
     --azimuth 15 --elevation 10 --zoom 1.05 --caption "at rest" --caption "0.15 s" --caption "1 s"
+
+# Muscles, moving: scene, part of the pictures that is kept, hundredths of a second for each of
+# them, every how manieth frame, how it is drawn.
+moving() {
+    scene=$1 part=$2 delay=$3 every=$4
+    shift 4
+    "$lariat" run "$here/../../examples/scenes/$scene.yaml" --out "$work/$scene" >"$work/log"
+    render --film --out "$work/film_$scene" --size 280 280 --azimuth 36 --elevation 25 "$@" \
+        "$work/$scene/$scene.pvd" >"$work/log"
+    # shellcheck disable=SC2046
+    convert -delay "$delay" -loop 0 \
+        $(find "$work/film_$scene" -name '*.png' | sort | awk "(NR - 1) % $every == 0") \
+        -crop "$part" +repage -colors 20 -layers optimize "$images/$scene.gif"
+}
+moving contracting 190x180+25+50 6 1 --zoom 0.8 --color parts
+moving beating 160x260+55+5 8 2 --zoom 1.3 --color von_mises --range 0 4000
+moving twisting 200x220+10+30 6 1 --zoom 1 --color von_mises --range 0 8000
+moving peristalsis 130x280+75+0 8 2 --zoom 0.95 --color von_mises --range 0 1500
 ls -l "$images"
