@@ -3,6 +3,10 @@
 #include <math.h>
 
 const char *const lar_fibre_law_name[LAR_FIBRE_LAWS] = {"", "exp-pow", "exp-linear", "pow-linear"};
+const char *const lar_fibre_parameter_name[LAR_FIBRE_LAWS][LAR_FIBRE_PARAMETERS] = {
+    [LAR_FIBRE_EXP_POW] = {"ksi", "alpha", "beta"},
+    [LAR_FIBRE_EXP_LINEAR] = {"c3", "c4", "c5", "lam_max"},
+    [LAR_FIBRE_POW_LINEAR] = {"E", "lam0", "beta"}};
 
 double lar_material_shear(const lar_material *material) {
     double shear = lar_law_table[material->law].shear(material->parameter);

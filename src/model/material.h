@@ -21,6 +21,8 @@ typedef struct lar_material {
 
 /* What scenes call the laws of fibres; "" for none. */
 extern const char *const lar_fibre_law_name[LAR_FIBRE_LAWS];
+/* And their parameters, in the order of lar_fibre.parameter; NULL: no more. */
+extern const char *const lar_fibre_parameter_name[LAR_FIBRE_LAWS][LAR_FIBRE_PARAMETERS];
 
 /* Small-strain moduli of the material at rest [Pa], of a viscous one in the end. */
 double lar_material_shear(const lar_material *material);

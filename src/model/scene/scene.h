@@ -172,6 +172,8 @@ typedef lar_status lar_scene_material_reader(const lar_scene *scene, const lar_y
 /* The same from the file that the key `tissue` of a material names, by `read`. */
 lar_status lar_scene_read_tissue(lar_scene *scene, const lar_yaml *entry,
                                  lar_scene_material_reader *read, lar_material *material);
+/* Whether it is a tissue file that is read. */
+bool lar_scene_is_tissue(const lar_scene *scene);
 /* The fibres of a material; and, when all elements have their materials, the directions of those of
  * one (scene_fibre_rule.c). */
 lar_status lar_scene_read_fibres(const lar_scene *scene, const lar_yaml *node,

@@ -42,14 +42,17 @@ static lar_status read_wave(const lar_scene *scene, const lar_yaml *node, lar_wa
 lar_status lar_scene_read_active(const lar_scene *scene, const lar_yaml *node,
                                  lar_material *material) {
     static const char *const keys[] = {"along", "across", "over", "curve", "wave", NULL};
+    static const char *const strength[] = {"along", "across", NULL};
+    static const char in_file[] = "active, in a tissue file,";
     lar_fibre *fibre = &material->fibre;
     lar_activation *activation = &material->activation;
     int curve = -1;
-    lar_status status = lar_scene_keys(scene, node, "active", keys);
+    lar_status status = lar_scene_is_tissue(scene) ? lar_scene_keys(scene, node, in_file, strength)
+                                                   : lar_scene_keys(scene, node, "active", keys);
     if (status) return status;
     const lar_yaml *along = lar_yaml_get(node, "along"), *across = lar_yaml_get(node, "across");
     const lar_yaml *wave = lar_yaml_get(node, "wave");
-    if (!along && !across)
+    if (!along && !across && !lar_fibre_active(fibre))
         return lar_scene_fail(scene, node, LAR_ERROR_FORMAT,
                               "active: give \"along\" or \"across\" the fibres, or both, for "
                               "example {along: 2.0e3}");

@@ -3,10 +3,7 @@
 
 #include <string.h>
 
-/* Their parameters, in the order of lar_fibre.parameter. */
 static const char *const *const law_names = lar_fibre_law_name + LAR_FIBRE_EXP_POW;
-static const char *const parameter_names[LAR_FIBRE_LAWS - LAR_FIBRE_EXP_POW][LAR_FIBRE_PARAMETERS] =
-    {{"ksi", "alpha", "beta", NULL}, {"c3", "c4", "c5", "lam_max"}, {"E", "lam0", "beta", NULL}};
 enum { LAWS = LAR_FIBRE_LAWS - LAR_FIBRE_EXP_POW };
 
 static lar_status read_law(const lar_scene *scene, const lar_yaml *node, lar_fibre *fibre) {
@@ -30,7 +27,7 @@ static lar_status read_part(const lar_scene *scene, const lar_yaml *node, bool *
 /* Which parameter of the law has that name; -1: none. */
 static int parameter_of(lar_fibre_law law, const char *name) {
     for (int k = 0; law != LAR_FIBRE_NONE && k < LAR_FIBRE_PARAMETERS; k++) {
-        const char *own = parameter_names[law - LAR_FIBRE_EXP_POW][k];
+        const char *own = lar_fibre_parameter_name[law][k];
         if (own && strcmp(own, name) == 0) return k;
     }
     return -1;
@@ -41,7 +38,7 @@ static lar_status read_parameters(const lar_scene *scene, const lar_yaml *node, 
     lar_status status = LAR_OK;
     for (int i = 0; i < LAWS * LAR_FIBRE_PARAMETERS && !status; i++) {
         int law = LAR_FIBRE_EXP_POW + i / LAR_FIBRE_PARAMETERS;
-        const char *name = parameter_names[law - LAR_FIBRE_EXP_POW][i % LAR_FIBRE_PARAMETERS];
+        const char *name = lar_fibre_parameter_name[law][i % LAR_FIBRE_PARAMETERS];
         const lar_yaml *value = name ? lar_yaml_get(node, name) : NULL;
         int k = name ? parameter_of(fibre->law, name) : -1;
         if (k >= 0 && !value && (int)fibre->law == law)
@@ -61,26 +58,42 @@ static lar_status read_parameters(const lar_scene *scene, const lar_yaml *node, 
     return status;
 }
 
+/* Law and parameters; of what is only active there are none. */
+static lar_status read_passive(const lar_scene *scene, const lar_yaml *node, lar_fibre *fibre) {
+    static const char what[] = "fibres";
+    const lar_yaml *law = NULL, *part = NULL;
+    lar_status status = LAR_OK;
+    if (!lar_yaml_get(node, "active") || lar_yaml_get(node, "law") || lar_yaml_get(node, "part")) {
+        status = lar_scene_need(scene, node, what, "law", "law: exp-pow", &law);
+        if (!status) status = lar_scene_need(scene, node, what, "part", "part: isochoric", &part);
+        if (!status) status = read_law(scene, law, fibre);
+        if (!status) status = read_part(scene, part, &fibre->isochoric);
+    }
+    return status ? status : read_parameters(scene, node, fibre);
+}
+
+/* In a tissue file all but the direction, in an entry with such fibres nothing else. */
 lar_status lar_scene_read_fibres(const lar_scene *scene, const lar_yaml *node,
                                  lar_material *material) {
     static const char *const keys[] = {"law",     "part", "direction", "active", "ksi",
                                        "alpha",   "beta", "c3",        "c4",     "c5",
                                        "lam_max", "E",    "lam0",      NULL};
-    static const char what[] = "fibres";
-    const lar_yaml *law = NULL, *part = NULL, *direction = NULL;
+    static const char *const beside[] = {"direction", "active", NULL};
+    const lar_yaml *direction = NULL;
     lar_fibre *fibre = &material->fibre;
-    lar_status status = lar_scene_keys(scene, node, what, keys);
+    const bool given = lar_fibre_here(fibre), file = lar_scene_is_tissue(scene);
+    lar_status status =
+        given ? lar_scene_keys(scene, node, "fibres whose law the tissue file has", beside)
+              : lar_scene_keys(scene, node, "fibres", keys);
     const lar_yaml *active = status ? NULL : lar_yaml_get(node, "active");
-    bool passive = !active || lar_yaml_get(node, "law") || lar_yaml_get(node, "part");
-    if (!status && passive) status = lar_scene_need(scene, node, what, "law", "law: exp-pow", &law);
-    if (!status && passive)
-        status = lar_scene_need(scene, node, what, "part", "part: isochoric", &part);
-    if (!status)
-        status = lar_scene_need(scene, node, what, "direction", "direction: {axis: [1, 0, 0]}",
+    if (!status && !file)
+        status = lar_scene_need(scene, node, "fibres", "direction", "direction: {axis: [1, 0, 0]}",
                                 &direction);
-    if (!status && passive) status = read_law(scene, law, fibre);
-    if (!status && passive) status = read_part(scene, part, &fibre->isochoric);
+    else if (!status && lar_yaml_get(node, "direction"))
+        status = lar_scene_fail(scene, lar_yaml_get(node, "direction"), LAR_ERROR_FORMAT,
+                                "direction: along what fibres run is not the tissue's but the "
+                                "body's; say it in the scene, beside tissue");
+    if (!status && !given) status = read_passive(scene, node, fibre);
     fibre->line = node->line;
-    if (!status && active) status = lar_scene_read_active(scene, active, material);
-    return status ? status : read_parameters(scene, node, fibre);
+    return status || !active ? status : lar_scene_read_active(scene, active, material);
 }

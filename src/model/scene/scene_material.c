@@ -223,7 +223,7 @@ static lar_status assign(lar_scene *scene, const lar_yaml *cells, int material) 
 
 /* A tissue file has its version instead of what only a scene can say. */
 static lar_status check_keys(const lar_scene *scene, const lar_yaml *node) {
-    enum { OF_SCENES = 3 };
+    enum { OF_SCENES = 2 };
     const char *key[KEYS_MAX + 1];
     list_keys(key);
     if (scene->root != node) return lar_scene_keys(scene, node, "a material", key);
@@ -243,7 +243,8 @@ static lar_status read_tissue(const lar_scene *scene, const lar_yaml *node,
     if (!status) status = lar_scene_positive(scene, density, LAR_IN_DENSITY, &material->density);
     if (!status) status = read_stiffness(scene, node, material);
     if (!status && viscous) status = read_viscosity(scene, viscous, &material->viscosity);
-    return status;
+    const lar_yaml *fibres = lar_yaml_get(node, "fibres");
+    return status || !fibres ? status : lar_scene_read_fibres(scene, fibres, material);
 }
 
 static lar_status read_name(const lar_scene *scene, const lar_yaml *node, lar_material *material) {
@@ -255,8 +256,19 @@ static lar_status read_name(const lar_scene *scene, const lar_yaml *node, lar_ma
     return material->name ? LAR_OK : lar_scene_no_memory(scene, strlen(name) + 1);
 }
 
+/* Of an entry with a tissue file. */
+static lar_status read_fibres_beside(const lar_scene *scene, const lar_yaml *entry,
+                                     lar_material *material) {
+    const lar_yaml *fibres = lar_yaml_get(entry, "fibres");
+    if (fibres) return lar_scene_read_fibres(scene, fibres, material);
+    if (!lar_fibre_directed(&material->fibre)) return LAR_OK;
+    return lar_scene_fail(scene, lar_yaml_get(entry, "tissue"), LAR_ERROR_FORMAT,
+                          "tissue: it has fibres; say along what they run, for example fibres: "
+                          "{direction: {axis: [1, 0, 0]}}");
+}
+
 static lar_status read_material(lar_scene *scene, const lar_yaml *node) {
-    const lar_yaml *cells = NULL, *fibres;
+    const lar_yaml *cells = NULL;
     const bool apart = lar_yaml_get(node, "tissue") != NULL;
     lar_status status = apart ? LAR_OK : check_keys(scene, node);
     if (!status) status = lar_scene_need(scene, node, "a material", "cells", "cells: all", &cells);
@@ -268,8 +280,7 @@ static lar_status read_material(lar_scene *scene, const lar_yaml *node) {
         status = lar_scene_read_tissue(scene, node, read_tissue, material);
     else if (!status)
         status = read_tissue(scene, node, material);
-    fibres = lar_yaml_get(node, "fibres");
-    if (!status && fibres) status = lar_scene_read_fibres(scene, fibres, material);
+    if (!status && apart) status = read_fibres_beside(scene, node, material);
     if (status) return status;
     char where[512];
     snprintf(where, sizeof where, "%s:%d:%d", scene->path, node->line, node->column);

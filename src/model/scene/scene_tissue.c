@@ -12,6 +12,10 @@ static lar_status check_entry(const lar_scene *scene, const lar_yaml *entry) {
     return lar_scene_keys(scene, entry, "a material with a tissue file", keys);
 }
 
+bool lar_scene_is_tissue(const lar_scene *scene) {
+    return lar_yaml_get(scene->root, "lariat-tissue") != NULL;
+}
+
 static lar_status check_version(const lar_scene *file) {
     const lar_yaml *version = NULL;
     int64_t number;

@@ -92,6 +92,7 @@ static lar_status check_parameter(const reader *r, const lar_yaml *node,
                                   const lar_inverse_parameter *p) {
     enum { MAX = 20 };
     const char *name[MAX];
+    lar_inverse_name own[MAX];
     double value;
     const lar_yaml *where = lar_yaml_get(node, "material");
     const lar_material *material = lar_inverse_material(r->problem, p->material);
@@ -105,11 +106,11 @@ static lar_status check_parameter(const reader *r, const lar_yaml *node,
         return lar_scene_unknown(&r->scene, where, LAR_ERROR_MODEL, "the material",
                                  "those with a name in the scenes are", name, count);
     }
-    if (!lar_inverse_get(material, p->name, &value))
-        return lar_scene_unknown(&r->scene, lar_yaml_get(node, "parameter"), LAR_ERROR_MODEL,
-                                 "the parameter", "this material has", name,
-                                 lar_inverse_names(material, name, MAX));
-    return LAR_OK;
+    if (lar_inverse_get(material, p->name, &value)) return LAR_OK;
+    int count = lar_inverse_names(material, own, MAX);
+    for (int i = 0; i < count; i++) name[i] = own[i];
+    return lar_scene_unknown(&r->scene, lar_yaml_get(node, "parameter"), LAR_ERROR_MODEL,
+                             "the parameter", "this material has", name, count);
 }
 
 /* ---- experiments ----------------------------------------------------------------------------- */

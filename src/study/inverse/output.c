@@ -52,12 +52,28 @@ static void write_provenance(FILE *out, const lar_inverse_problem *p, const lar_
     fprintf(out, "# All else is as the scenes of the fit have it.\n");
 }
 
+/* Along what they run is the scene's to say. */
+static void write_fibres(FILE *out, const lar_fibre *fibre) {
+    if (!lar_fibre_here(fibre)) return;
+    fprintf(out, "fibres:\n");
+    if (fibre->law != LAR_FIBRE_NONE)
+        fprintf(out, "  law: %s\n  part: %s\n", lar_fibre_law_name[fibre->law],
+                fibre->isochoric ? "isochoric" : "whole");
+    for (int k = 0; k < LAR_FIBRE_PARAMETERS; k++) {
+        const char *name = lar_fibre_parameter_name[fibre->law][k];
+        if (name) fprintf(out, "  %s: %.9g\n", name, fibre->parameter[k]);
+    }
+    if (lar_fibre_active(fibre))
+        fprintf(out, "  active: { along: %.9g, across: %.9g }\n", fibre->along, fibre->across);
+}
+
 static void write_material(FILE *out, const lar_material *m) {
     const lar_law_row *law = &lar_law_table[m->law];
     fprintf(out, "law: %s\ndensity: %.9g\n", law->name, m->density);
     for (int i = 0; i < law->count; i++)
         if (m->parameter[i] != 0 || !lar_law_may_miss(law->parameter, i))
             fprintf(out, "%s: %.9g\n", law->parameter[i].name, m->parameter[i]);
+    write_fibres(out, &m->fibre);
     if (m->viscosity.terms == 0) return;
     fprintf(out, "viscous:\n  part: %s\n  g0: %.9g\n  terms:\n",
             m->viscosity.isochoric ? "isochoric" : "whole", m->viscosity.rest);

@@ -11,6 +11,7 @@ static const char *const modulus_name[] = {"shear_modulus", "bulk_modulus", "you
 enum { SHEAR, BULK, YOUNG, POISSON, MODULI };
 static const char *const share_name[LAR_VISCOUS_TERMS] = {"g1", "g2", "g3"};
 static const char *const time_name[LAR_VISCOUS_TERMS] = {"time1", "time2", "time3"};
+static const char FIBRES[] = "fibres."; /* laws have parameters of the same names */
 
 /* Whether two moduli say all that the law has: then they can be set through them. */
 static bool by_moduli(const lar_material *m, double moduli[MODULI]) {
@@ -27,8 +28,22 @@ static bool by_moduli(const lar_material *m, double moduli[MODULI]) {
     return true;
 }
 
+/* `name` without what stands before it. */
+static double *fibre_number(lar_fibre *fibre, const char *name) {
+    for (int k = 0; k < LAR_FIBRE_PARAMETERS; k++) {
+        const char *own = lar_fibre_parameter_name[fibre->law][k];
+        if (own && strcmp(own, name) == 0) return &fibre->parameter[k];
+    }
+    if (!lar_fibre_active(fibre)) return NULL;
+    return strcmp(name, "along") == 0    ? &fibre->along
+           : strcmp(name, "across") == 0 ? &fibre->across
+                                         : NULL;
+}
+
 static double *own_number(lar_material *m, const char *name) {
     const lar_law_row *law = &lar_law_table[m->law];
+    if (strncmp(name, FIBRES, strlen(FIBRES)) == 0)
+        return fibre_number(&m->fibre, name + strlen(FIBRES));
     for (int i = 0; i < law->count; i++)
         if (strcmp(law->parameter[i].name, name) == 0) return &m->parameter[i];
     if (m->viscosity.terms > 0 && strcmp(name, "g0") == 0) return &m->viscosity.rest;
@@ -69,25 +84,50 @@ bool lar_inverse_set(lar_material *m, const char *name, double value) {
     return true;
 }
 
-int lar_inverse_names(const lar_material *m, const char **name, int max) {
+static int add_name(lar_inverse_name *name, int count, int max, const char *before,
+                    const char *own) {
+    if (count == max) return max;
+    snprintf(name[count], sizeof name[count], "%s%s", before, own);
+    return count + 1;
+}
+
+static int add_fibre_names(const lar_fibre *fibre, lar_inverse_name *name, int count, int max) {
+    for (int k = 0; k < LAR_FIBRE_PARAMETERS; k++) {
+        const char *own = lar_fibre_parameter_name[fibre->law][k];
+        if (own) count = add_name(name, count, max, FIBRES, own);
+    }
+    if (!lar_fibre_active(fibre)) return count;
+    count = add_name(name, count, max, FIBRES, "along");
+    return add_name(name, count, max, FIBRES, "across");
+}
+
+int lar_inverse_names(const lar_material *m, lar_inverse_name *name, int max) {
     const lar_law_row *law = &lar_law_table[m->law];
     double moduli[MODULI];
+    lar_material copy = *m;
     int count = 0;
-    for (int i = 0; i < law->count && count < max; i++) name[count++] = law->parameter[i].name;
-    for (int i = 0; i < MODULI && count < max && by_moduli(m, moduli); i++) {
-        lar_material copy = *m;
-        if (!own_number(&copy, modulus_name[i])) name[count++] = modulus_name[i];
+    for (int i = 0; i < law->count; i++)
+        count = add_name(name, count, max, "", law->parameter[i].name);
+    for (int i = 0; i < MODULI && by_moduli(m, moduli); i++)
+        if (!own_number(&copy, modulus_name[i]))
+            count = add_name(name, count, max, "", modulus_name[i]);
+    if (m->viscosity.terms > 0) count = add_name(name, count, max, "", "g0");
+    for (int i = 0; i < m->viscosity.terms; i++) {
+        count = add_name(name, count, max, "", share_name[i]);
+        count = add_name(name, count, max, "", time_name[i]);
     }
-    if (m->viscosity.terms > 0 && count < max) name[count++] = "g0";
-    for (int i = 0; i < m->viscosity.terms && count < max - 1; i++) {
-        name[count++] = share_name[i];
-        name[count++] = time_name[i];
-    }
-    return count;
+    return add_fibre_names(&m->fibre, name, count, max);
 }
 
 const char *lar_inverse_unit(const lar_material *m, const char *name) {
     const lar_law_row *law = &lar_law_table[m->law];
+    if (strncmp(name, FIBRES, strlen(FIBRES)) == 0) {
+        lar_fibre fibre = m->fibre;
+        const double *own = fibre_number(&fibre, name + strlen(FIBRES));
+        for (int k = 0; k < LAR_FIBRE_PARAMETERS; k++)
+            if (own == &fibre.parameter[k]) return lar_fibre_scales(fibre.law, k) ? "Pa" : "";
+        return "Pa";
+    }
     for (int i = 0; i < law->count; i++)
         if (strcmp(law->parameter[i].name, name) == 0)
             return lar_law_in_pascal(&law->parameter[i]) ? "Pa" : "";

@@ -1,7 +1,9 @@
 /* Parameters of materials by name, and the axis on which a fit moves them.
  *
  * Names are those of the law's row (law/law.h); shear_modulus, bulk_modulus, youngs_modulus and
- * poisson_ratio where two moduli are all that the law has; g0, g1, time1, g2, ... of what relaxes.
+ * poisson_ratio where two moduli are all that the law has; g0, g1, time1, g2, ... of what relaxes;
+ * fibres.ksi and so on of fibres (lar_fibre_parameter_name), fibres.along and fibres.across of what
+ * is active in them.
  *
  *     value p          [low, high]
  *     u                ln p where the bounds are positive: moduli of tissue are known to a factor,
@@ -21,7 +23,8 @@
 bool lar_inverse_get(const lar_material *material, const char *name, double *value);
 bool lar_inverse_set(lar_material *material, const char *name, double value);
 /* The names that a material has, into name[max]; how many. */
-int lar_inverse_names(const lar_material *material, const char **name, int max);
+typedef char lar_inverse_name[24];
+int lar_inverse_names(const lar_material *material, lar_inverse_name *name, int max);
 /* "Pa", "s" or "". */
 const char *lar_inverse_unit(const lar_material *material, const char *name);
 

@@ -118,6 +118,7 @@ LAR_INLINE lar_lane lar_ilane_to_lane(int64_t a) {
 #define lar_law_name                 counted_law_name
 #define lar_law_table                counted_law_table
 #define lar_fibre_law_name           counted_fibre_law_name
+#define lar_fibre_parameter_name     counted_fibre_parameter_name
 #define lar_material_shear           counted_material_shear
 #define lar_material_bulk            counted_material_bulk
 #define lar_material_instant_shear   counted_material_instant_shear
