@@ -60,6 +60,8 @@ pip)
     for test in model meshing misuse envs study; do
         PYTHONPATH="$here" "$scratch/venv/bin/python" -X faulthandler "$here/test_$test.py" || exit 1
     done
+    found=$("$scratch/venv/bin/python" -c 'from lariat._command import program; print(program())')
+    [ "$found" = "$scratch/venv/bin/lariat" ] || { echo "not the wheel's command: $found"; exit 1; }
     if [ -e "$page/index.html" ]; then
         "$scratch/venv/bin/python" - "$page/index.html" "$source/examples/beam.yaml" <<'END' || exit 1
 import sys, urllib.request
