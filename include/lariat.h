@@ -228,6 +228,24 @@ LAR_API int lar_model_embedded(const lar_model *model, lar_embedded_info *info);
 LAR_API void lar_model_embedded_move(const lar_model *model, const double (*u)[3],
                                      double (*place)[3]);
 
+/* What a ray meets first. */
+typedef struct lar_ray_hit {
+    int32_t face;     /* of lar_surface_info; -1: nothing, and no other field says anything */
+    int32_t element;  /* behind it */
+    int32_t body;     /* the connected part of the mesh, counted from 0 by their first nodes */
+    double distance;  /* from the origin [m]; INFINITY: nothing */
+    double point[3];  /* where [m] */
+    double normal[3]; /* of the surface there, outwards, of length 1 */
+} lar_ray_hit;
+
+/* Rays against the outer surface when the nodes have moved by u, [nodes][3]; NULL: at rest. From
+ * origin[k] along direction[k], of any length but 0, at most `longest` [m] (INFINITY: any), into
+ * hit[k]. A face is two triangles, corners 0 1 2 and 0 2 3; inner sides are met too. The same
+ * answer for rays asked together and one by one; from eight on they share a tree. Any thread. */
+LAR_API lar_status lar_model_rays(const lar_model *model, const double (*u)[3], int32_t count,
+                                  const double (*origin)[3], const double (*direction)[3],
+                                  double longest, lar_ray_hit *hit, lar_error *error);
+
 /* The nodes of an element, eight indices; NULL: no such element. Lives as long as the model. */
 LAR_API const int32_t *lar_model_element_nodes(const lar_model *model, int32_t element);
 
@@ -642,6 +660,12 @@ LAR_API lar_status lar_simulation_node_value(const lar_simulation *simulation, l
 LAR_API lar_status lar_simulation_element_value(const lar_simulation *simulation, lar_field field,
                                                 int32_t element, const double (*u)[3],
                                                 double *value, lar_error *error);
+/* Mean Cauchy stress [Pa] and Green-Lagrange strain of all elements now, [elements][6] each, as xx
+ * yy zz xy yz zx: components of tensors, shear without a factor 2. Viscous and active stress is in
+ * it: what results on disk are made of. An element that is inside out has none that is finite.
+ * Either may be NULL. */
+LAR_API lar_status lar_simulation_stresses(const lar_simulation *simulation, double (*cauchy)[6],
+                                           double (*strain)[6], lar_error *error);
 /* What all elements store at u, and what their hourglass control does [J]. u and threads as above.
  * Not finite when an element is inside out. */
 LAR_API lar_status lar_simulation_stored_energy(const lar_simulation *simulation,

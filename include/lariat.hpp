@@ -35,6 +35,9 @@ namespace lariat {
 /* x, y, z; an array of them is a `double (*)[3]` of lariat.h. */
 using Vec3 = std::array<double, 3>;
 static_assert(sizeof(Vec3) == sizeof(double[3]), "lariat: Vec3 must be three doubles");
+/* xx, yy, zz, xy, yz, zx of a symmetric tensor. */
+using Vec6 = std::array<double, 6>;
+static_assert(sizeof(Vec6) == sizeof(double[6]), "lariat: Vec6 must be six doubles");
 
 class Error : public std::runtime_error {
   public:
@@ -199,6 +202,18 @@ class Model : public detail::Handle<lar_model, lar_model_destroy> {
     bool embedded(lar_embedded_info &info) const { return lar_model_embedded(get(), &info) != 0; }
     void embedded_move(const Vec3 *u, Vec3 *place) const {
         lar_model_embedded_move(get(), detail::raw(u), detail::raw(place));
+    }
+    /* u NULL: at rest. */
+    std::vector<lar_ray_hit> rays(const std::vector<Vec3> &origin,
+                                  const std::vector<Vec3> &direction, double longest,
+                                  const Vec3 *u = nullptr) const {
+        if (origin.size() != direction.size())
+            throw std::invalid_argument("rays: as many directions as origins");
+        std::vector<lar_ray_hit> hit(origin.size());
+        detail::call(lar_model_rays, get(), detail::raw(u), static_cast<std::int32_t>(hit.size()),
+                     detail::raw(origin.data()), detail::raw(direction.data()), longest,
+                     hit.data());
+        return hit;
     }
     bool view(Vec3 &from) const { return lar_model_view(get(), from.data()) != 0; }
     std::int32_t contact_count() const { return lar_model_contact_count(get()); }
@@ -368,6 +383,9 @@ class Simulation : public detail::Handle<lar_simulation, lar_simulation_destroy>
         return detail::ask<double>(lar_simulation_element_value, get(), field, element,
                                    detail::raw(u));
     }
+    /* Cauchy stress [Pa] and Green-Lagrange strain of every element; see lariat.h. */
+    std::vector<Vec6> stresses() const { return tensors(true); }
+    std::vector<Vec6> strains() const { return tensors(false); }
     void stored_energy(const Vec3 *u, double &strain, double &hourglass) const {
         detail::call(lar_simulation_stored_energy, get(), detail::raw(u), &strain, &hourglass);
     }
@@ -478,6 +496,13 @@ class Simulation : public detail::Handle<lar_simulation, lar_simulation_destroy>
     explicit Simulation(lar_simulation *owned) { owned_.reset(owned); }
     std::size_t nodes() const {
         return static_cast<std::size_t>(lar_model_node_count(inspect().model));
+    }
+    std::vector<Vec6> tensors(bool stress) const {
+        std::vector<Vec6> all(static_cast<std::size_t>(lar_model_element_count(inspect().model)));
+        auto *out = reinterpret_cast<double(*)[6]>(all.data());
+        detail::call(lar_simulation_stresses, get(), stress ? out : nullptr,
+                     stress ? nullptr : out);
+        return all;
     }
 };
 

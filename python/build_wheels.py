@@ -5,8 +5,8 @@
 
 It needs what the library needs to be built (tools/setup.sh), python3-dev's headers, and of Python
 its standard library only, so that it works in an empty virtual environment without network. The
-library is inside the extension; libxml2, libyaml and the like are the system's. LARIAT_CMAKE_ARGS:
-further arguments for CMake.
+library is inside the extension, and the command goes along; libxml2, libyaml and the like are the
+system's. LARIAT_CMAKE_ARGS: further arguments for CMake.
 """
 
 import base64
@@ -49,7 +49,7 @@ def _run(*command):
 
 
 def _build(folder):
-    """Configures and builds; returns the folder of the package."""
+    """Configures and builds; returns the folder of the package and the command."""
     if not shutil.which("cmake"):
         raise RuntimeError("cmake is missing; tools/setup.sh installs what Lariat is built with")
     ninja = ["-G", "Ninja"] if shutil.which("ninja") else []
@@ -59,8 +59,8 @@ def _build(folder):
                 *shlex.split(os.environ.get("LARIAT_CMAKE_ARGS", "")))
     if not os.path.exists(os.path.join(folder, "python", "lariat")):
         raise RuntimeError("the Python module cannot be built here; CMake says:\n" + said)
-    _run("cmake", "--build", folder, "--target", "lariat_python", "-j", str(os.cpu_count() or 2))
-    return os.path.join(folder, "python", "lariat")
+    _run("cmake", "--build", folder, "--target", "lariat_python", "lariat", "-j", str(os.cpu_count() or 2))
+    return os.path.join(folder, "python", "lariat"), os.path.join(folder, "lariat")
 
 
 def _files(package):
@@ -96,20 +96,24 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
     info = f"lariat-{_version()}.dist-info"
     record = []
 
-    def add(wheel, path, data):
+    def add(wheel, path, data, mode=0o644):
         digest = base64.urlsafe_b64encode(hashlib.sha256(data).digest()).rstrip(b"=").decode()
         record.append(f"{path},sha256={digest},{len(data)}")
-        wheel.writestr(path, data)
+        entry = zipfile.ZipInfo(path)
+        entry.external_attr, entry.compress_type = (0o100000 | mode) << 16, zipfile.ZIP_DEFLATED
+        wheel.writestr(entry, data)
 
     with tempfile.TemporaryDirectory(prefix="lariat-wheel-") as folder:
-        package = _build(folder)
+        package, command = _build(folder)
         if shutil.which("strip"):
-            _run("strip", os.path.join(package, "_lariat.abi3.so"))
+            _run("strip", os.path.join(package, "_lariat.abi3.so"), command)
         with zipfile.ZipFile(os.path.join(wheel_directory, name), "w",
                              zipfile.ZIP_DEFLATED) as wheel:
             for path, source in _files(package):
                 with open(source, "rb") as file:
                     add(wheel, path, file.read())
+            with open(command, "rb") as file:  # what lariat.fit and its like run; pip knows where to
+                add(wheel, f"lariat-{_version()}.data/scripts/lariat", file.read(), 0o755)
             with open(os.path.join(SOURCE, "LICENSE"), "rb") as file:
                 add(wheel, f"{info}/LICENSE", file.read())
             add(wheel, f"{info}/METADATA", _metadata().encode())

@@ -93,6 +93,11 @@ static PyObject *get_duration(PyObject *me, void *unused) {
     (void)unused;
     return PyFloat_FromDouble(lar_model_duration(model_of(me)));
 }
+static PyObject *get_output_interval(PyObject *me, void *unused) {
+    (void)unused;
+    return PyFloat_FromDouble(lar_model_output_interval(model_of(me)));
+}
+
 static PyObject *get_damping(PyObject *me, void *unused) {
     (void)unused;
     return PyFloat_FromDouble(lar_model_damping(model_of(me)));
@@ -264,6 +269,8 @@ static PyGetSetDef model_properties[] = {
     {"source", get_source, NULL, "The file that it was read from; \"model\" when there is none.",
      NULL},
     {"duration", get_duration, NULL, "How long its own description lasts [s], at least 0.", NULL},
+    {"output_interval", get_output_interval, NULL,
+     "Simulated time between the frames that the scene asks for [s]; 0: it does not say.", NULL},
     {"damping", get_damping, NULL, "Damping in proportion to mass [1/s].", NULL},
     {"info", get_info, NULL,
      "dict: what `lariat info` prints. Counts, bounding box [m], volume [m^3], mass [kg], quality, "
@@ -318,6 +325,11 @@ static PyMethodDef model_methods[] = {
      "embedded_positions($self, displacements=None, out=None)\n--\n\n"
      "Places of the embedded surface's vertices [m], float64 [vertices, 3], when the nodes have "
      "moved by `displacements`, float64 [nodes, 3]; None: at rest. `out` is filled where given."},
+    {"rays", FUNCTION(python_model_rays), METH_VARARGS | METH_KEYWORDS,
+     "rays($self, origins, directions, longest=None, displacements=None)\n--\n\n"
+     "As Simulation.rays, against the surface when the nodes have moved by `displacements`, "
+     "float64 "
+     "[nodes, 3], such as those of Session.snapshot(); None: at rest."},
     {"__reduce__", model_reduce, METH_NOARGS,
      "For pickle: models of files are read again from the same path, models of arrays carry them."},
     {NULL, NULL, 0, NULL}};

@@ -133,8 +133,8 @@ PyMODINIT_FUNC PyInit__lariat(void) {
     if (!module) return NULL;
     bool ok = python_errors_add(module) && python_array_add(module) && python_model_add(module) &&
               python_meshing_add(module) && python_saved_add(module) &&
-              python_simulation_add(module) && python_batch_add(module) &&
-              python_session_add(module) && python_view_add(module) &&
+              python_simulation_add(module) && python_results_add(module) &&
+              python_batch_add(module) && python_session_add(module) && python_view_add(module) &&
               pthread_atfork(NULL, NULL, after_fork) == 0 &&
               PyModule_AddStringConstant(module, "__version__", lar_version()) == 0;
     if (!ok) Py_CLEAR(module);

@@ -8,6 +8,7 @@
  *     session.c       class Session: life, clock         session_state.c   states, snapshots
  *     mesh.c          lariat.mesh                    meshing.c   class Meshing
  *     saved.c         class Saved: a state in memory     view.c      class View: the browser
+ *     results.c       class Results: states on disk      look.c      rays, stress and strain
  *     batch.c         class Batch: its life, advance     batch_state.c    arrays, tools, resets
  *     pool.c          its threads                        module.c    the module itself
  *
@@ -92,6 +93,7 @@ bool python_model_add(PyObject *module);
 bool python_meshing_add(PyObject *module);
 bool python_saved_add(PyObject *module);
 bool python_simulation_add(PyObject *module);
+bool python_results_add(PyObject *module);
 bool python_batch_add(PyObject *module);
 bool python_session_add(PyObject *module);
 bool python_view_add(PyObject *module);
@@ -220,6 +222,9 @@ PyObject *python_meshing_wrap(lar_meshing *meshing); /* takes it over, also on f
 /* lariat.mesh */
 PyObject *python_mesh(PyObject *module, PyObject *args, PyObject *keywords);
 
+/* Model.rays */
+PyObject *python_model_rays(PyObject *me, PyObject *args, PyObject *keywords);
+
 /* ---- simulations ---------------------------------------------------------------------------- */
 
 /* The simulation for a call that keeps the interpreter's lock; NULL: an exception says why not. */
@@ -234,7 +239,8 @@ bool python_simulation_tool(lar_simulation *simulation, PyObject *source, int32_
 void python_positions(const lar_simulation *simulation, double (*out)[3]);
 
 /* Rows of the class that stand in other files; each table ends with a row of NULL. */
-extern PyMethodDef python_state_methods[], python_change_methods[], python_tool_methods[];
+extern PyMethodDef python_state_methods[], python_change_methods[], python_tool_methods[],
+    python_look_methods[];
 extern PyGetSetDef python_change_properties[], python_tool_properties[];
 
 /* ---- threads of a batch ------------------------------------------------------------------------

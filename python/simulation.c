@@ -456,10 +456,10 @@ static const char simulation_doc[] =
 
 bool python_simulation_add(PyObject *module) {
     PyMethodDef *const methods[] = {simulation_methods, python_state_methods, python_change_methods,
-                                    python_tool_methods};
+                                    python_tool_methods, python_look_methods};
     PyGetSetDef *const properties[] = {simulation_properties, python_change_properties,
                                        python_tool_properties};
-    PyMethodDef *all = python_join_methods(methods, 4);
+    PyMethodDef *all = python_join_methods(methods, 5);
     PyGetSetDef *shown = python_join_properties(properties, 3);
     if (!all || !shown) return false;
     PyType_Slot slots[] = {{Py_tp_doc, (void *)(uintptr_t)simulation_doc},

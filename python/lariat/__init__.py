@@ -9,7 +9,8 @@
 
 mesh: from scans and surfaces to a Meshing. Model: what is simulated, constant. Simulation: the state that moves. Saved: a state in memory.
 Batch: many simulations, advanced on all cores; lariat.envs: environments of Gymnasium's interface.
-Session: a simulation in real time, with tools, devices and the viewer. SI units; vectors are x, y,
+Session: a simulation in real time, with tools, devices and the viewer. info, requirements, predict
+and fit measure, plan and find parameters of tissue, by the command `lariat`. SI units; vectors are x, y,
 z; nodes and elements count from 0. Arrays are memoryviews, which numpy.asarray takes without a copy;
 numpy is not needed. What is refused raises a subclass of Error with the library's sentence.
 docs/python.md is the tutorial.
@@ -28,6 +29,7 @@ from ._lariat import (
     ModelError,
     OutOfMemoryError,
     PeerError,
+    Results,
     Saved,
     Session,
     Simulation,
@@ -40,12 +42,18 @@ from ._lariat import (
     mesh,
     write_demo,
 )
+from ._study import Answer, Experiment, Fit, Parameter, fit, info, predict, profiles, requirements
 
 __all__ = [
-    "ArgumentError", "Batch", "Error", "FileError", "FormatError", "Meshing", "Model", "ModelError",
-    "OutOfMemoryError", "PeerError", "Saved", "Session", "Simulation", "StateError", "UnstableError",
-    "UnsupportedError", "View", "__version__", "checkpoint_info", "mesh", "write_demo",
+    "Answer", "ArgumentError", "Batch", "Error", "Experiment", "FileError", "Fit", "FormatError",
+    "Meshing", "Model", "ModelError", "OutOfMemoryError", "Parameter", "PeerError",
+    "Results", "Saved", "Session", "Simulation", "StateError", "UnstableError", "UnsupportedError", "View",
+    "__version__", "checkpoint_info", "fit", "info", "mesh", "predict", "profiles", "requirements",
+    "write_demo",
 ]
+# What help() and pickles call them.
+for _public in (Answer, Experiment, Fit, Parameter, fit, info, predict, profiles, requirements):
+    _public.__module__ = __name__
 
 # Wheels bring the viewer's page along; elsewhere the library knows where it was installed.
 _viewer_folder = _os.path.join(_os.path.dirname(_os.path.abspath(__file__)), "viewer")

@@ -1,6 +1,7 @@
 """Types of lariat. Lengths in metres, times in seconds, forces in newtons; help() says more."""
 
 import os
+from array import array
 from collections.abc import Callable, Mapping, Sequence
 from types import TracebackType
 from typing import Any, Union
@@ -8,6 +9,7 @@ from typing import Any, Union
 _Path = Union[str, bytes, os.PathLike[str], os.PathLike[bytes]]
 _Array = Any  # whatever exports a buffer (numpy.ndarray, memoryview, array.array), or nested lists
 _Vector = Sequence[float]
+_AnyModel = Union["Model", "Meshing", _Path, Mapping[str, Any]]
 _Tool = Union[int, str]
 _Material = Union[int, str, None]
 
@@ -49,6 +51,116 @@ def mesh(
     fibres_in: Union[str, None] = None,
 ) -> Meshing: ...
 
+class Answer:
+    def __init__(self, fields: Mapping[str, Any]) -> None: ...
+    def __getattr__(self, name: str) -> Any: ...  # the keys of the command's JSON, docs/cli.md
+
+class Parameter(Answer):
+    material: str
+    parameter: str
+    unit: str
+    value: float  # in `unit`, as the next five
+    low: float
+    high: float
+    guess: float
+    lower_bound: float
+    upper_bound: float
+    told: bool
+    profiled: bool
+    sensitivity: float
+    correlation: array[float]  # [parameters]
+    tissue: Union[str, None]
+
+class Experiment(Answer):
+    name: str
+    kind: str
+    scene: str
+    data: str
+    in_time: bool
+    values: int
+    noise: float  # N or m, as rms
+    rms: float
+    relative: float
+    sign_runs: int
+    sign_runs_z: Union[float, None]
+    lag: Union[float, None]
+    systematic: bool
+    measured: array[float]  # [values], N or m, as the next two
+    model: array[float]
+    picture: Union[str, None]
+    @property
+    def residuals(self) -> array[float]: ...
+
+class Fit(Answer):
+    file: str
+    title: str
+    converged: bool
+    interrupted: bool
+    values: int
+    runs: int
+    wall_time: float
+    deviation: Union[float, None]
+    parameters: list[Parameter]
+    experiments: list[Experiment]
+    notes: list[str]
+    def __init__(self, fields: Mapping[str, Any], out: Union[str, None] = None) -> None: ...
+    def __getitem__(self, key: Union[str, tuple[str, str]]) -> Parameter: ...
+    @property
+    def untold(self) -> list[Parameter]: ...
+
+def info(
+    model: _AnyModel,
+    *,
+    against: Union[_Path, None] = None,
+    scale: Union[float, None] = None,
+    speed: bool = True,
+) -> Answer: ...
+def requirements(
+    model: Union[_AnyModel, None] = None,
+    *,
+    grid: Union[str, None] = None,
+    distribution: Union[_Path, None] = None,
+    iterations: Union[int, None] = None,
+    implicit_step: Union[float, None] = None,
+    thesis: bool = False,
+    speed: bool = True,
+) -> Answer: ...
+def predict(
+    model: Union[_AnyModel, None] = None,
+    grid: Union[str, None] = None,
+    *,
+    machine: Union[_Path, None] = None,
+    processor_speed: Union[float, str, None] = None,
+    latency: Union[float, None] = None,
+    overhead: Union[float, None] = None,
+    bandwidth: Union[float, None] = None,
+    threads: Union[int, None] = None,
+    scheme: Union[str, None] = None,
+    channels: Union[str, None] = None,
+    distribution: Union[_Path, None] = None,
+    schedules: Union[_Path, None] = None,
+    steps: Union[int, None] = None,
+    measure: bool = False,
+    comm: Union[str, None] = None,
+    check: bool = False,
+    repeat: Union[int, None] = None,
+    trace: Union[_Path, None] = None,
+    svg: Union[_Path, None] = None,
+    scale_to: Union[Sequence[int], None] = None,
+    elements_per_processor: Union[int, None] = None,
+    critical: bool = False,
+    list_machines: bool = False,
+) -> Answer: ...
+def fit(
+    experiment: Union[_Path, Mapping[str, Any]],
+    *,
+    out: Union[_Path, None] = None,
+    progress: Union[Callable[[dict[str, Any]], object], bool, None] = None,
+) -> Fit: ...
+def profiles(
+    film: _Path, view: Union[_Path, Mapping[str, Any]], *, out: Union[_Path, None] = None
+) -> Answer: ...
+
 class Meshing:
     @property
     def nodes(self) -> memoryview: ...
@@ -85,10 +197,19 @@ class Model:
         fibres: _Array = None,
     ) -> Model: ...
     def embedded_positions(self, displacements: _Array = None, out: Any = None) -> Any: ...
+    def rays(
+        self,
+        origins: _Array,
+        directions: _Array,
+        longest: Union[float, None] = None,
+        displacements: _Array = None,
+    ) -> dict[str, memoryview]: ...
     @property
     def node_count(self) -> int: ...
     @property
     def element_count(self) -> int: ...
+    @property
+    def output_interval(self) -> float: ...
     @property
     def source(self) -> str: ...
     @property
@@ -164,6 +285,14 @@ class Simulation:
     def displacements(self, out: Any = None) -> Any: ...
     def velocities(self, out: Any = None) -> Any: ...
     def field(self, name: str, out: Any = None) -> Any: ...
+    def stresses(self, out: Any = None) -> Any: ...
+    def strains(self, out: Any = None) -> Any: ...
+    def ray(
+        self, origin: _Vector, direction: _Vector, longest: Union[float, None] = None
+    ) -> Union[dict[str, Any], None]: ...
+    def rays(
+        self, origins: _Array, directions: _Array, longest: Union[float, None] = None
+    ) -> dict[str, memoryview]: ...
     def hash(self) -> int: ...
     def energies(self) -> dict[str, float]: ...
     def contact(self) -> dict[str, Any]: ...
@@ -212,6 +341,22 @@ class Simulation:
     def info(self) -> dict[str, Any]: ...
     @property
     def tools(self) -> list[dict[str, Any]]: ...
+
+class Results:
+    def __new__(
+        cls, simulation: Simulation, folder: _Path, *, surface: bool = False
+    ) -> Results: ...
+    def add(self) -> None: ...
+    def close(self) -> None: ...
+    def __enter__(self) -> Results: ...
+    def __exit__(
+        self,
+        kind: Union[type[BaseException], None],
+        value: Union[BaseException, None],
+        trace: Union[TracebackType, None],
+    ) -> None: ...
+    @property
+    def closed(self) -> bool: ...
 
 class Batch:
     def __new__(

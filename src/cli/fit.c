@@ -26,6 +26,18 @@ static void show_progress(void *context, const lar_inverse_progress *p) {
     fflush(stderr);
 }
 
+/* The same for a program that reads along: a line for each. It ends with a program that has closed
+ * its end of the pipe (SIGPIPE). */
+static void write_progress(void *context, const lar_inverse_progress *p) {
+    char left[32] = "null", residual[32] = "null";
+    (void)context;
+    if (p->remaining >= 0) snprintf(left, sizeof left, "%.6g", p->remaining);
+    if (isfinite(p->residual)) snprintf(residual, sizeof residual, "%.17g", p->residual);
+    fprintf(stderr, "{\"doing\": \"%s\", \"residual\": %s, \"runs\": %d, \"remaining\": %s}\n",
+            p->doing, residual, p->runs, left);
+    fflush(stderr);
+}
+
 /* ---- results --------------------------------------------------------------------------------- */
 
 /* Letters, digits, - and _ of a name; the others become _. */
@@ -77,12 +89,14 @@ static int complain(const lar_error *error) {
                         "%s", error->message);
 }
 
-static int fit(const lar_inverse_problem *problem, const char *folder, bool json) {
+static int fit(const lar_inverse_problem *problem, const char *folder, bool json, bool lines) {
     lar_inverse_result result;
     lar_error error = {0}, full = {0};
-    const bool terminal = isatty(STDERR_FILENO);
+    const bool terminal = !lines && isatty(STDERR_FILENO);
     const lar_inverse_options options = {.stop = &cli_stop_asked,
-                                         .progress = terminal ? show_progress : NULL};
+                                         .progress = lines      ? write_progress
+                                                     : terminal ? show_progress
+                                                                : NULL};
     cli_catch_stop();
     lar_status failed = lar_inverse_solve(problem, &options, &result, &error);
     if (terminal) fputs("\r\033[K", stderr);
@@ -134,7 +148,7 @@ static int measure(const char *film, const char *view, const char *folder, bool 
 
 static int fit_main(int argc, char **argv) {
     const char *path = NULL, *folder = NULL, *film = NULL;
-    bool json = false;
+    bool json = false, lines = false;
     const cli_option options[] = {
         CLI_TEXT("--profile", "FRAMES",
                  "measure instead of fitting: FRAMES are side views of tissue in a\ntube, a folder "
@@ -145,6 +159,10 @@ static int fit_main(int argc, char **argv) {
                  "(.svg) and fit.json there; with --profile\nprofiles.csv, which an aspiration "
                  "reads, and its picture",
                  &folder),
+        CLI_FLAG("--progress",
+                 "a line of JSON on standard error after every simulation:\ndoing, residual, runs, "
+                 "remaining (s)",
+                 &lines),
         CLI_FLAG("--json", "the answer as one JSON object on standard output", &json), CLI_END};
     int status = cli_parse(&cli_fit, options, argc, argv, &path, 1);
     if (status >= 0) return status;
@@ -159,7 +177,7 @@ static int fit_main(int argc, char **argv) {
         (folder && lar_folder_make(folder, &error)))
         status = complain(&error);
     else
-        status = fit(&problem, folder, json);
+        status = fit(&problem, folder, json, lines);
     lar_inverse_problem_clear(&problem);
     return status;
 }

@@ -213,6 +213,13 @@ if [ -c /dev/full ]; then
     says 'shear_modulus: 2'
 fi
 
+# Programs read how far it is.
+expect 0 "$LARIAT" fit fit.yaml --progress --json
+has_keys --numbers runs
+[ "$(grep -c '^{"doing": "[a-z ]*", "residual": [0-9.e+-]*, "runs": [0-9]*, "remaining": \([0-9.e+-]*\|null\)}$' err)" -ge 2 ] ||
+    fail "no lines of progress: $(cat err)"
+[ -z "$(grep -v '^{' err)" ] || fail "other lines than progress: $(cat err)"
+
 # Ctrl-C leaves the best so far.
 sed 's/^move.*/time_step: 1.0e-7\n&/' one.yaml >slow.yaml
 sed 's/one\.yaml/slow.yaml/' fit.yaml >slow_fit.yaml

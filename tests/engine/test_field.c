@@ -92,6 +92,45 @@ static void stresses_are_those_of_results(void **unused) {
     lar_model_destroy(model);
 }
 
+/* All components, against the two numbers that results have of them, on every grid. */
+static void tensors_of_elements(void **unused) {
+    (void)unused;
+    enum { MOST = 100 };
+    static double stress[2][MOST][6], strain[2][MOST][6];
+    lar_model *model = everything_model(&body);
+    const int32_t elements = model->mesh.element_count;
+    assert_true(elements <= MOST);
+    lar_error error;
+    for (int divided = 0; divided < 2; divided++) {
+        lar_options options = lar_options_default();
+        options.grid = divided ? "2x2x1" : NULL;
+        lar_simulation *simulation = start_with(model, options);
+        advance(simulation, 40);
+        double(*u)[3] = displacements(simulation);
+        assert_int_equal(
+            lar_simulation_stresses(simulation, stress[divided], strain[divided], &error), LAR_OK);
+        assert_int_equal(lar_simulation_stresses(simulation, NULL, NULL, &error), LAR_OK);
+        for (int32_t e = 0; e < elements; e++) {
+            double mises, pressure;
+            const double *s = stress[divided][e];
+            assert_int_equal(lar_simulation_element_value(simulation, LAR_FIELD_VON_MISES, e,
+                                                          (const double(*)[3])u, &mises, &error),
+                             LAR_OK);
+            assert_int_equal(lar_simulation_element_value(simulation, LAR_FIELD_PRESSURE, e,
+                                                          (const double(*)[3])u, &pressure, &error),
+                             LAR_OK);
+            assert_true(lar_von_mises(s) == mises && lar_mean_pressure(s) == pressure);
+        }
+        free(u);
+        lar_simulation_destroy(simulation);
+    }
+    assert_memory_equal(stress[0], stress[1], (size_t)elements * sizeof stress[0][0]);
+    assert_memory_equal(strain[0], strain[1], (size_t)elements * sizeof strain[0][0]);
+    assert_true(strain[0][0][0] != 0);
+    assert_int_equal(lar_simulation_stresses(NULL, stress[0], NULL, &error), LAR_ERROR_ARGUMENT);
+    lar_model_destroy(model);
+}
+
 static void lengths_and_processors(void **unused) {
     (void)unused;
     lar_model *model = everything_model(&body);
@@ -229,6 +268,7 @@ static void pictures_while_it_computes(void **unused) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(tensors_of_elements),
         cmocka_unit_test(stresses_are_those_of_results),
         cmocka_unit_test(lengths_and_processors),
         cmocka_unit_test(broken_bodies),

@@ -76,7 +76,7 @@ depends() {
 depends liblariat0 libc6 'libxml2[a-z0-9]*' libyaml-0-2 'zlib1g'
 depends lariat libc6 libyaml-0-2
 depends liblariat-dev "liblariat0 \(= $version\)"
-depends python3-lariat "liblariat0 \(= $version\)" 'python3 \(>= 3.11\)'
+depends python3-lariat "liblariat0 \(= $version\)" "lariat \(= $version\)" 'python3 \(>= 3.11\)'
 ! grep -q '^Depends: .*liblariat' debian/lariat-viewer/DEBIAN/control || fail "the page needs a library"
 ! grep -rl "$source/" debian/*/usr/lib/*/pkgconfig debian/*/usr/lib/*/cmake 2>/dev/null ||
     fail "these files name the machine that built them"

@@ -255,8 +255,73 @@ static void test_part_of_a_surface(void **state) {
     lar_triangles_clear(&ball);
 }
 
+/* Where the line meets a triangle, by the formula of Moeller and Trumbore; INFINITY: it does not.
+ */
+static double brute_line(const lar_triangles *s, int32_t t, const double from[3],
+                         const double along[3]) {
+    const int32_t *c = s->corner[t];
+    double e[3], f[3], p[3], q[3], away[3];
+    lar_minus(s->vertex[c[1]], s->vertex[c[0]], e);
+    lar_minus(s->vertex[c[2]], s->vertex[c[0]], f);
+    lar_cross(along, f, p);
+    const double det = lar_dot(e, p);
+    if (fabs(det) < 1e-12) return INFINITY;
+    lar_minus(from, s->vertex[c[0]], away);
+    lar_cross(away, e, q);
+    const double v = lar_dot(away, p) / det, w = lar_dot(along, q) / det;
+    return v >= 0 && w >= 0 && v + w <= 1 ? lar_dot(f, q) / det : INFINITY;
+}
+
+typedef struct line_seen {
+    bool *seen;
+    int32_t left; /* visits until it is to end */
+} line_seen;
+
+static bool see(void *context, int32_t triangle) {
+    line_seen *line = context;
+    assert_false(line->seen[triangle]);
+    line->seen[triangle] = true;
+    return --line->left != 0;
+}
+
+static void test_lines(void **state) {
+    (void)state;
+    enum { COUNT = 300 };
+    lar_triangles soup = random_soup(COUNT, 11);
+    lar_triangle_tree *tree = tree_of(&soup, NULL, 0);
+    uint64_t seed = 5;
+    int met = 0, visits = 0;
+    for (int k = 0; k < 200; k++) {
+        double from[3], along[3];
+        const double reach = k % 3 ? INFINITY : 0.9;
+        for (int i = 0; i < 3; i++) {
+            const double aim =
+                soup.vertex[3 * k][i] + soup.vertex[3 * k + 1][i] + soup.vertex[3 * k + 2][i];
+            from[i] = k % 7 == i ? aim / 3 : 3 * shape_random(&seed) - 1; /* in a plane of axes */
+            along[i] = aim / 3 - from[i];
+        }
+        bool seen[COUNT] = {false};
+        line_seen line = {seen, 0};
+        lar_triangle_tree_line(tree, from, along, &reach, see, &line);
+        for (int32_t t = 0; t < COUNT; t++) {
+            const double at = brute_line(&soup, t, from, along);
+            if (at >= 0 && at <= reach && at < INFINITY) {
+                assert_true(seen[t]);
+                met++;
+            }
+            visits += seen[t];
+        }
+        bool once[COUNT] = {false};
+        lar_triangle_tree_line(tree, from, along, &reach, see, &(line_seen){once, 1});
+    }
+    assert_true(met > 50 && visits < 200 * COUNT / 3);
+    lar_triangle_tree_destroy(tree);
+    lar_triangles_clear(&soup);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_lines),
         cmocka_unit_test(test_soup_against_all),
         cmocka_unit_test(test_ties_go_to_the_smallest_index),
         cmocka_unit_test(test_few_triangles),

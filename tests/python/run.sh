@@ -3,9 +3,9 @@
 #
 #   run.sh NAME SOURCE BUILD SCRATCH [WHY]    WHY: why there is nothing to test; "" when there is
 #
-# NAME is that of test_NAME.py; `docs` runs the blocks of docs/python.md and docs/environments.md, `pip`
-# installs a copy of the checkout into an empty virtual environment, without network, and tests what is
-# there then; `asan` builds the module once more with the sanitizers for addresses and undefined
+# NAME is that of test_NAME.py; `docs` runs the blocks of docs/python.md and docs/environments.md;
+# `reference` makes docs/python-reference.md again and compares; `pip` installs a copy of the checkout
+# into an empty virtual environment, without network, and tests what is there then; `asan` builds the module once more with the sanitizers for addresses and undefined
 # behaviour, on the same library. (CMake leaves an empty WHY out of what it hands on.)
 set -eu
 name=$1 source=$2 build=$3 scratch=$4 why=${5-}
@@ -33,6 +33,13 @@ docs)
             "$source/docs/$page.md") || exit 1
     done
     ;;
+reference)
+    PYTHONPATH="$build/python" "$python" "$here/reference.py" >"$scratch/page" || exit 1
+    diff "$source/docs/python-reference.md" "$scratch/page" || {
+        echo "docs/python-reference.md is not what the docstrings say; make it anew (tests/python/reference.py)"
+        exit 1
+    }
+    ;;
 pip)
     "$python" -c 'import venv, ensurepip' 2>/dev/null || { echo "skipped: no venv (apt-get install python3-venv)"; exit 77; }
     "$python" -m venv "$scratch/venv"
@@ -50,9 +57,11 @@ pip)
         "$scratch/venv/bin/python" -m pip install --no-index --disable-pip-version-check \
         "$scratch/copy" >"$scratch/log" 2>&1 || { cat "$scratch/log"; exit 1; }
     rm -rf "$scratch/copy"
-    for test in model meshing misuse envs; do
+    for test in model meshing misuse envs study; do
         PYTHONPATH="$here" "$scratch/venv/bin/python" -X faulthandler "$here/test_$test.py" || exit 1
     done
+    found=$("$scratch/venv/bin/python" -c 'from lariat._command import program; print(program())')
+    [ "$found" = "$scratch/venv/bin/lariat" ] || { echo "not the wheel's command: $found"; exit 1; }
     if [ -e "$page/index.html" ]; then
         "$scratch/venv/bin/python" - "$page/index.html" "$source/examples/beam.yaml" <<'END' || exit 1
 import sys, urllib.request
@@ -77,11 +86,12 @@ asan)
     include=$("$python" -c 'import sysconfig; print(sysconfig.get_path("include"))')
     [ -e "$include/Python.h" ] || { echo "skipped: no headers of $python"; exit 77; }
     cp -r "$build/python" "$scratch/python"
+    ln -s "$build/lariat" "$scratch/lariat"
     gcc -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer -shared \
         -fPIC -D_GNU_SOURCE -DPy_LIMITED_API=0x030b0000 -I"$include" -I"$source/include" \
         "$source"/python/*.c -o "$scratch/python/lariat/_lariat.abi3.so" -L"$build" -llariat \
         -Wl,-rpath,"$build"
-    for test in model meshing simulation batch envs session misuse; do
+    for test in model meshing simulation look batch envs session misuse study; do
         env LD_PRELOAD="$runtime $undefined" ASAN_OPTIONS=detect_leaks=0 PYTHONMALLOC=malloc \
             LARIAT_TEST_SANITIZED=1 PYTHONPATH="$scratch/python:$here" \
             "$python" "$here/test_$test.py" || exit 1

@@ -458,3 +458,48 @@ void lar_triangle_tree_boxes(const lar_triangle_tree *tree, const double lower[3
         }
     }
 }
+
+/* ---- lines -------------------------------------------------------------------------------- */
+
+/* Where a line comes into a box; INFINITY: not within `reach`. */
+static double line_enters(const small_box *around, const double origin[3],
+                          const double direction[3], double reach) {
+    double from = 0, to = reach;
+    for (int i = 0; i < 3; i++) {
+        const double below = around->lower[i] - origin[i], above = around->upper[i] - origin[i];
+        if (direction[i] == 0) {
+            if (below > 0 || above < 0) return INFINITY;
+            continue;
+        }
+        const double one = below / direction[i], other = above / direction[i];
+        from = larger(from, smaller(one, other));
+        to = smaller(to, larger(one, other));
+    }
+    return from > to * SLACK ? INFINITY : from;
+}
+
+void lar_triangle_tree_line(const lar_triangle_tree *tree, const double origin[3],
+                            const double direction[3], const double *reach,
+                            lar_triangle_visit *visit, void *context) {
+    waiting stack[STACK];
+    int height = 0;
+    if (tree->node_count > 0) stack[height++] = (waiting){0, 0};
+    while (height > 0) {
+        const waiting next = stack[--height];
+        const tree_node *node = &tree->node[next.node];
+        if (next.distance > *reach * SLACK) continue;
+        for (int32_t k = 0; k < node->count; k++)
+            if (!visit(context, tree->leaf[node->next + k].triangle)) return;
+        if (node->count > 0) continue;
+        waiting near = {next.node + 1, line_enters(&node[1].box, origin, direction, *reach)};
+        waiting far = {node->next,
+                       line_enters(&tree->node[node->next].box, origin, direction, *reach)};
+        if (far.distance < near.distance) {
+            waiting swapped = near;
+            near = far;
+            far = swapped;
+        }
+        if (far.distance < INFINITY) stack[height++] = far;
+        if (near.distance < INFINITY) stack[height++] = near;
+    }
+}

@@ -36,4 +36,10 @@ void lar_triangle_tree_boxes(const lar_triangle_tree *tree, const double lower[3
                              const double upper[3], double margin, lar_triangle_visit *visit,
                              void *context);
 
+/* Calls `visit` for every triangle whose box a line from `origin` along `direction` meets within
+ * `*reach` times that; `visit` may make it shorter. Nearer boxes first. */
+void lar_triangle_tree_line(const lar_triangle_tree *tree, const double origin[3],
+                            const double direction[3], const double *reach,
+                            lar_triangle_visit *visit, void *context);
+
 #endif

@@ -1,0 +1,207 @@
+/* Looking at a body: rays against its surface, stress and strain of its elements. */
+#include <math.h>
+
+#include "module.h"
+
+/* ---- rays ----------------------------------------------------------------------------------- */
+
+static PyObject *hit_dict(const lar_ray_hit *h) {
+    if (h->face < 0) Py_RETURN_NONE;
+    return Py_BuildValue("{s:d,s:N,s:N,s:i,s:i,s:i}", "distance", h->distance, "point",
+                         python_tuple(h->point, 3), "normal", python_tuple(h->normal, 3), "face",
+                         (int)h->face, "element", (int)h->element, "body", (int)h->body);
+}
+
+/* One array for each field; the others are let go of where one cannot be made. */
+static PyObject *hits_dict(const lar_ray_hit *hit, Py_ssize_t count) {
+    static const struct {
+        const char *name;
+        char format;
+        int columns;
+    } column[] = {{"distances", 'd', 0}, {"points", 'd', 3},   {"normals", 'd', 3},
+                  {"faces", 'i', 0},     {"elements", 'i', 0}, {"bodies", 'i', 0}};
+    enum { COLUMNS = sizeof column / sizeof column[0] };
+    void *data[COLUMNS];
+    PyObject *dict = PyDict_New();
+    for (int c = 0; c < COLUMNS && dict; c++) {
+        PyObject *array = python_array_new(column[c].format, count, column[c].columns, &data[c]);
+        if (!array || PyDict_SetItemString(dict, column[c].name, array)) Py_CLEAR(dict);
+        Py_XDECREF(array);
+    }
+    for (Py_ssize_t k = 0; k < count && dict; k++) {
+        ((double *)data[0])[k] = hit[k].distance;
+        memcpy((double *)data[1] + 3 * k, hit[k].point, sizeof hit[k].point);
+        memcpy((double *)data[2] + 3 * k, hit[k].normal, sizeof hit[k].normal);
+        ((int32_t *)data[3])[k] = hit[k].face;
+        ((int32_t *)data[4])[k] = hit[k].element;
+        ((int32_t *)data[5])[k] = hit[k].body;
+    }
+    return dict;
+}
+
+/* Rays that were asked for, and where the nodes are. */
+typedef struct rays {
+    python_rows origin, direction, displacement;
+    double longest;
+    double (*u)[3]; /* owned */
+    lar_ray_hit *hit;
+} rays;
+
+static void rays_free(rays *r) {
+    python_rows_free(&r->origin);
+    python_rows_free(&r->direction);
+    python_rows_free(&r->displacement);
+    free(r->u);
+    free(r->hit);
+}
+
+/* None: any distance. What is no length the library refuses. */
+static bool longest_parse(PyObject *source, rays *r) {
+    r->longest = source == Py_None ? INFINITY : PyFloat_AsDouble(source);
+    return !PyErr_Occurred();
+}
+
+static bool rays_parse(PyObject *origins, PyObject *directions, PyObject *longest, rays *r) {
+    if (!longest_parse(longest, r)) return false;
+    if (!python_doubles(origins, "origins", 3, &r->origin) ||
+        !python_doubles(directions, "directions", 3, &r->direction))
+        return false;
+    if (r->direction.rows != r->origin.rows)
+        return python_refuse("directions: expected one for each of %zd origins, got %zd",
+                             r->origin.rows, r->direction.rows);
+    if (r->origin.rows > INT32_MAX) return python_refuse("origins: at most 2^31 - 1");
+    r->hit = calloc((size_t)r->origin.rows + 1, sizeof *r->hit);
+    return r->hit || PyErr_NoMemory() != NULL;
+}
+
+PyObject *python_model_rays(PyObject *me, PyObject *args, PyObject *keywords) {
+    static char *names[] = {"origins", "directions", "longest", "displacements", NULL};
+    const lar_model *model = ((python_model *)me)->model;
+    PyObject *origins, *directions, *longest = Py_None, *u = Py_None;
+    rays r = {.hit = NULL};
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, "OO|OO:rays", names, &origins, &directions,
+                                     &longest, &u))
+        return NULL;
+    bool good = rays_parse(origins, directions, longest, &r) &&
+                (u == Py_None || python_doubles(u, "displacements", 3, &r.displacement));
+    if (good && u != Py_None && r.displacement.rows != lar_model_node_count(model))
+        good = python_refuse("displacements: expected shape [%d, 3], got [%zd, 3]",
+                             (int)lar_model_node_count(model), r.displacement.rows);
+    PyObject *answer = NULL;
+    lar_error error;
+    lar_status status;
+    if (good) {
+        PYTHON_UNLOCKED(status = lar_model_rays(model, r.displacement.data, (int32_t)r.origin.rows,
+                                                r.origin.data, r.direction.data, r.longest, r.hit,
+                                                &error));
+        answer = status ? python_raise(&error) : hits_dict(r.hit, r.origin.rows);
+    }
+    rays_free(&r);
+    return answer;
+}
+
+/* From a simulation, whose nodes are where they are now. */
+static bool shoot(python_simulation *self, const char *call, const void *origin,
+                  const void *direction, int32_t count, rays *r) {
+    const lar_model *model = self->model->model;
+    lar_simulation *simulation = python_simulation_take(self, call);
+    if (!simulation) return false;
+    lar_error error = {.status = LAR_ERROR_MEMORY, .message = "no memory for rays"};
+    lar_status status = LAR_ERROR_MEMORY;
+    r->u = malloc(((size_t)lar_model_node_count(model) + 1) * sizeof *r->u);
+    PYTHON_UNLOCKED(if (r->u) {
+        lar_simulation_displacements(simulation, r->u);
+        status = lar_model_rays(model, (const double(*)[3])r->u, count, origin, direction,
+                                r->longest, r->hit, &error);
+    });
+    python_simulation_give(self);
+    return !status || python_raise(&error) != NULL;
+}
+
+static PyObject *simulation_rays(PyObject *me, PyObject *args, PyObject *keywords) {
+    static char *names[] = {"origins", "directions", "longest", NULL};
+    PyObject *origins, *directions, *longest = Py_None, *answer = NULL;
+    rays r = {.hit = NULL};
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, "OO|O:rays", names, &origins, &directions,
+                                     &longest))
+        return NULL;
+    if (rays_parse(origins, directions, longest, &r) &&
+        shoot((python_simulation *)me, "rays", r.origin.data, r.direction.data,
+              (int32_t)r.origin.rows, &r))
+        answer = hits_dict(r.hit, r.origin.rows);
+    rays_free(&r);
+    return answer;
+}
+
+static PyObject *simulation_ray(PyObject *me, PyObject *args, PyObject *keywords) {
+    static char *names[] = {"origin", "direction", "longest", NULL};
+    PyObject *origin, *direction, *longest = Py_None, *answer = NULL;
+    double from[3], along[3];
+    rays r = {.hit = NULL};
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, "OO|O:ray", names, &origin, &direction,
+                                     &longest) ||
+        !python_vector(origin, "origin", 3, from) ||
+        !python_vector(direction, "direction", 3, along) || !longest_parse(longest, &r))
+        return NULL;
+    r.hit = calloc(1, sizeof *r.hit);
+    if (!r.hit) return PyErr_NoMemory();
+    if (shoot((python_simulation *)me, "ray", from, along, 1, &r)) answer = hit_dict(r.hit);
+    rays_free(&r);
+    return answer;
+}
+
+/* ---- stress and strain ---------------------------------------------------------------------- */
+
+static PyObject *tensors(PyObject *me, PyObject *args, PyObject *keywords, const char *call,
+                         const char *format, bool stress) {
+    static char *names[] = {"out", NULL};
+    python_simulation *self = (python_simulation *)me;
+    PyObject *out = NULL;
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, format, names, &out)) return NULL;
+    python_target target;
+    if (!python_target_open(out, 'd', lar_model_element_count(self->model->model), 6, &target))
+        return NULL;
+    lar_simulation *simulation = python_simulation_take(self, call);
+    if (!simulation) return python_target_close(&target, true);
+    lar_error error;
+    lar_status status;
+    PYTHON_UNLOCKED(status = lar_simulation_stresses(simulation, stress ? target.data : NULL,
+                                                     stress ? NULL : target.data, &error));
+    python_simulation_give(self);
+    if (status) python_raise(&error);
+    return python_target_close(&target, status != LAR_OK);
+}
+
+static PyObject *stresses(PyObject *me, PyObject *args, PyObject *keywords) {
+    return tensors(me, args, keywords, "stresses", "|O:stresses", true);
+}
+static PyObject *strains(PyObject *me, PyObject *args, PyObject *keywords) {
+    return tensors(me, args, keywords, "strains", "|O:strains", false);
+}
+
+#define FUNCTION(f) ((PyCFunction)(void (*)(void))(f))
+#define OUT_DOC                                                                                    \
+    " float64 [elements, 6] as xx, yy, zz, xy, yz, zx: components of tensors, shear without a "    \
+    "factor 2; not finite in an element that is inside out. Into `out` where given."
+PyMethodDef python_look_methods[] = {
+    {"ray", FUNCTION(simulation_ray), METH_VARARGS | METH_KEYWORDS,
+     "ray($self, origin, direction, longest=None)\n--\n\nWhat a ray meets first of the outer "
+     "surface "
+     "as it is now: a dict of distance [m], point [m], normal (outwards, of length 1), face (of "
+     "Model.surface), element behind it and body (the connected part of the mesh, from 0); None: "
+     "nothing within `longest` [m], or at all. `direction` has any length but 0. The same on every "
+     "grid."},
+    {"rays", FUNCTION(simulation_rays), METH_VARARGS | METH_KEYWORDS,
+     "rays($self, origins, directions, longest=None)\n--\n\nMany rays at once, float64 [n, 3] "
+     "each: "
+     "a dict of memoryviews: distances float64 [n] [m], inf where nothing is met; points [n, 3] "
+     "[m] "
+     "and normals [n, 3]; faces, elements and bodies int32 [n], -1 where nothing is met."},
+    {"stresses", FUNCTION(stresses), METH_VARARGS | METH_KEYWORDS,
+     "stresses($self, out=None)\n--\n\nMean Cauchy stress of every element now [Pa], viscous and "
+     "active stress included," OUT_DOC},
+    {"strains", FUNCTION(strains), METH_VARARGS | METH_KEYWORDS,
+     "strains($self, out=None)\n--\n\nGreen-Lagrange strain (F^T F - 1) / 2 of every element's "
+     "mean "
+     "deformation gradient F now," OUT_DOC},
+    {NULL, NULL, 0, NULL}};

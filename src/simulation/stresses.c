@@ -1,0 +1,37 @@
+/* Stress and strain of all elements as they are now, viscous and active parts included: those that
+ * results on disk are made of (results.c), with all their components. */
+#include "simulation/simulation.h"
+#include "step/measure.h"
+
+/* Green and Lagrange's (F^T F - 1) / 2 of the mean deformation gradient. */
+static void element_strain(const lar_domain *domain, const lar_state *state, lar_gid e,
+                           double strain[6]) {
+    static const int row[6] = {0, 1, 2, 0, 1, 2}, column[6] = {0, 1, 2, 1, 2, 0};
+    double corner[8][3], u[8][3], F[3][3];
+    const lar_material now = lar_domain_material_copy(domain, e, NULL);
+    lar_hex8 hex8;
+    lar_mesh_corners(&domain->model->mesh, e, corner);
+    lar_domain_corners(domain, state->u, e, u);
+    lar_hex8_prepare(corner, &now, &hex8);
+    lar_hex8_gradient(&hex8, u, F);
+    for (int n = 0; n < 6; n++) {
+        double sum = row[n] == column[n] ? -1 : 0;
+        for (int i = 0; i < 3; i++) sum += F[i][row[n]] * F[i][column[n]];
+        strain[n] = sum / 2;
+    }
+}
+
+lar_status lar_simulation_stresses(const lar_simulation *simulation, double (*cauchy)[6],
+                                   double (*strain)[6], lar_error *error) {
+    lar_status status = lar_simulation_check_zero(simulation, "lar_simulation_stresses", error);
+    if (status) return status;
+    lar_simulation_state(simulation);
+    lar_state state = simulation->state;
+    state.past =
+        lar_past_step(&simulation->domain, lar_division_of(&simulation->interactions), &state);
+    for (lar_gid e = 0; e < simulation->domain.model->mesh.element_count; e++) {
+        if (cauchy) lar_measure_stress(&simulation->domain, &state, e, cauchy[e]);
+        if (strain) element_strain(&simulation->domain, &state, e, strain[e]);
+    }
+    return LAR_OK;
+}
