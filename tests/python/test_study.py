@@ -40,15 +40,18 @@ def experiment(scene=None, **changes):
                              "data": {"displacement": PULLED, "force": FORCE}, **changes}]}
 
 
-def left_behind():
-    return [name for name in os.listdir(tempfile.gettempdir()) if name.startswith("lariat-")
-            and not name.startswith("lariat-test")]
-
-
 class Quick(unittest.TestCase):
     def setUp(self):
-        before = set(left_behind())
-        self.addCleanup(lambda: self.assertEqual(set(left_behind()) - before, set()))
+        """Nothing stays in the folder for temporary files, which is this test's own."""
+        demo()
+        folder = tempfile.TemporaryDirectory(prefix="lariat-test-")
+        before, tempfile.tempdir = tempfile.tempdir, folder.name
+
+        def look():
+            tempfile.tempdir = before
+            with folder:
+                self.assertEqual(os.listdir(folder.name), [])
+        self.addCleanup(look)
 
     def test_info_of_paths_models_and_dicts(self):
         path = os.path.join(demo(), "uterus.yaml")
