@@ -390,24 +390,40 @@ static unsigned relax(const lar_block_run *run, const lar_viscous_step *step, in
 }
 
 /* And for fibres; where somebody `watches`, *strained gets those that are much stiffer. */
-static unsigned stretch(const lar_block_run *run, int32_t b, size_t count,
-                        const lar_hex8_limits *limits, bool watches, lar_lane gradient[][9],
-                        lane_record *record, lane_strain *strain, unsigned *strained) {
+LAR_INLINE unsigned stretch_family(bool spread, const lar_block_run *run, int kind, int family,
+                                   int32_t b, size_t count, double max, bool watches,
+                                   lar_lane gradient[][9], lane_record *record, lane_strain *strain,
+                                   unsigned *strained) {
+    const lar_fibre_block *fibres = family ? run->second : run->fibres;
     unsigned beyond = 0;
     size_t part = 0;
-    if (lar_fibre_kind_law(run->fibrous) == LAR_FIBRE_NONE) return 0;
     for (size_t i = (size_t)b; i < (size_t)b + count; i++)
         for (int lane = 0; lane < LAR_BLOCK; lane += LAR_LANES, part++) {
-            lar_lane length;
+            lar_lane number = family ? strain[part].number[LAR_STRAIN_FIBRE] : lar_lane_set(0);
             unsigned stiffer = 0;
-            beyond |= fibre_lanes(&run->fibres[i], lane, run->fibrous, gradient[part],
-                                  limits->stress_square, record[part].F, &length,
-                                  watches ? &stiffer : NULL)
-                      << part * LAR_LANES;
+            beyond |=
+                fibre_lanes(spread, run->second != NULL, &fibres[i], lane, kind, gradient[part],
+                            max, record[part].F, &number, watches ? &stiffer : NULL)
+                << part * LAR_LANES;
             if (!watches) continue;
-            strain[part].number[LAR_STRAIN_FIBRE] = length;
+            strain[part].number[LAR_STRAIN_FIBRE] = number;
             *strained |= stiffer << part * LAR_LANES;
         }
+    return beyond;
+}
+
+static unsigned stretch(const lar_block_run *run, int32_t b, size_t count, double max, bool watches,
+                        lar_lane gradient[][9], lane_record *record, lane_strain *strain,
+                        unsigned *strained) {
+    int kind = run->second ? run->fibrous - LAR_FIBRE_SINGLE : run->fibrous;
+    unsigned beyond = 0;
+    lar_fibre_law law = lar_fibre_kind_law(kind);
+    for (int family = 0; law != LAR_FIBRE_NONE && family < (run->second ? 2 : 1); family++)
+        beyond |= law == LAR_FIBRE_HGO
+                      ? stretch_family(true, run, kind, family, b, count, max, watches, gradient,
+                                       record, strain, strained)
+                      : stretch_family(false, run, kind, family, b, count, max, watches, gradient,
+                                       record, strain, strained);
     return beyond;
 }
 
@@ -462,7 +478,8 @@ LAR_INLINE int64_t recover_form(const lar_block_run *run, int fibrous, const lar
         unsigned beyond =
             stress(blocks, more, count, size, record, limits, share, limit, strains, &strained);
         if (fibrous)
-            beyond |= stretch(run, b, count, limits, limit, gradient, record, strains, &strained);
+            beyond |= stretch(run, b, count, limits->stress_square, limit, gradient, record,
+                              strains, &strained);
         if (step) beyond |= relax(run, step, b, count, limits, gradient, record);
         if (fibrous) beyond |= contract(run, active, b, count, limits, gradient, record);
         forces(blocks, count, run->turn, record, force);

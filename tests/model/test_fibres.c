@@ -61,6 +61,32 @@ static void scenes_say_laws_and_directions(void **state) {
     lar_model_destroy(model);
 }
 
+#define HGO "law: hgo, part: isochoric, k1: 2e3, k2: 1.5, kappa: 0.2, "
+
+static void scenes_say_a_second_family(void **state) {
+    (void)state;
+    lar_model *model = scene(SCENE(HGO "direction: {axis: [0, 3, 4]}, second: {axis: [0, 3, -4]}"));
+    const lar_fibre *f = &model->material[0].fibre;
+    double both[6];
+    assert_true(f->law == LAR_FIBRE_HGO && f->isochoric && f->paired);
+    assert_true(f->parameter[0] == 2e3 && f->parameter[1] == 1.5 && f->parameter[2] == 0.2);
+    for (int32_t e = 0; e < model->mesh.element_count; e++) {
+        lar_model_fibres(model, e, both);
+        near(both, 0, 0.6, 0.8);
+        near(both + 3, 0, 0.6, -0.8);
+    }
+    lar_model_destroy(model);
+    model = scene(SCENE(POW "direction: {axis: [1, 0, 0]}, active: {along: 50}, second: {around: "
+                            "{point: [0.01, 0.01, 0], axis: [0, 0, 2]}}"));
+    assert_true(model->material[0].fibre.paired && model->material[0].fibre.along == 50);
+    const double s = sqrt(0.5);
+    near(model->mesh.second[0], s, -s, 0);
+    lar_model_destroy(model);
+    model = scene(SCENE(HGO "direction: {axis: [1, 0, 0]}"));
+    assert_true(!model->material[0].fibre.paired && !model->mesh.second);
+    lar_model_destroy(model);
+}
+
 static void scenes_say_what_is_active(void **state) {
     (void)state;
     lar_model *model = scene(SCENE("active: {along: 2e3}, direction: {axis: [0, 0, 1]}"));
@@ -163,6 +189,25 @@ static void scenes_say_what_is_wrong(void **state) {
                "length: 1}}"),
          "direction"},
         {SCENE(POW "twist: 1, direction: mesh"), "twist"},
+        {SCENE(HGO "kappa: 0.1, direction: mesh"), "kappa"},
+        {SCENE("law: hgo, part: isochoric, k1: 1, k2: 1, direction: mesh"), "need kappa; add it"},
+        {SCENE("law: hgo, part: whole, k1: 1, k2: 1, kappa: 0, direction: {axis: [1, 0, 0]}"),
+         "one of the isochoric part of the stretch"},
+        {SCENE("law: hgo, part: isochoric, k1: 1, k2: 1, kappa: 0.4, direction: {axis: [1, 0, 0]}"),
+         "kappa must be between 0"},
+        {SCENE("law: hgo, part: isochoric, k1: -1, k2: 1, kappa: 0, direction: {axis: [1, 0, 0]}"),
+         "k1 is -1"},
+        {SCENE("law: hgo, part: isochoric, k1: 1, k2: 2e4, kappa: 0, direction: {axis: [1, 0, 0]}"),
+         "k2 must be between 0 and 10000"},
+        {SCENE(POW "k2: 1, direction: mesh"), "k2 is no parameter of the law exp-pow"},
+        {SCENE(HGO "direction: {axis: [1, 0, 0]}, second: mesh"), "cell array \"fibre2\""},
+        {SCENE(HGO "direction: {axis: [1, 0, 0]}, second: {}"), "second: expected mesh, {axis"},
+        {SCENE(HGO "direction: {axis: [1, 0, 0]}, second: {axis: [0, 0, 0]}"), "axis"},
+        {SCENE(HGO "direction: {axis: [1, 0, 0]}, second: {around: {point: [0.005, 0.005, 0], "
+                   "axis: [0, 0, 1]}}"),
+         "element 101 has a second family of fibres and their direction is 0, 0, 0"},
+        {SCENE("active: {along: 1}, direction: mesh, second: mesh"),
+         "only fibres with a law can have a second family"},
         {SCENE(POW "direction: mesh"), "no mesh has directions"},
         {SCENE(POW "direction: {}"), "direction: expected mesh, {axis: [x, y, z]}"},
         {SCENE(POW "direction: {axis: [0, 0, 0]}"), "axis"},
@@ -229,6 +274,37 @@ static void meshes_bring_directions(void **state) {
         assert_non_null(strstr(error.message, i ? "direction is not finite" : "is 0, 0, 0"));
         assert_non_null(strstr(error.message, "element 3 "));
     }
+    lar_bytes_free(&bytes);
+}
+
+/* Two meshes, of which the second one has no second family, written and read once more. */
+static void meshes_bring_second_families(void **state) {
+    (void)state;
+    lar_mesh mesh = {0}, back = {0};
+    lar_error error;
+    assert_int_equal(brick_read("brick.vtu", 1, &mesh, &error), LAR_OK);
+    size_t count = (size_t)mesh.element_count;
+    mesh.fibre = lar_calloc(count, sizeof *mesh.fibre);
+    mesh.second = lar_calloc(count, sizeof *mesh.second);
+    for (size_t e = 0; e < count; e++) mesh.fibre[e][2] = mesh.second[e][1] = 1 + (double)e;
+    const lar_vtu_frame frame = {.mesh = &mesh};
+    if (lar_vtu_write(FILE_NAME, &frame, &error)) fail_msg("%s", error.message);
+    if (lar_mesh_read(FILE_NAME, 1, &back, &error)) fail_msg("%s", error.message);
+    for (size_t e = 0; e < count; e++) {
+        near(back.fibre[e], 0, 0, 1 + (double)e);
+        near(back.second[e], 0, 1 + (double)e, 0);
+    }
+    lar_mesh_clear(&mesh);
+    lar_mesh_clear(&back);
+    static const char text[] =
+        "lariat: 1\nmesh: [" FILE_NAME ", " FILE_NAME "]\nmaterials:\n  - {" TISSUE
+        ", fibres: {" HGO "direction: mesh, second: mesh}}\n";
+    lar_bytes bytes = {(unsigned char *)lar_strdup(text), strlen(text)};
+    lar_model *model = NULL;
+    if (lar_scene_parse("s.yaml", &bytes, &model, &error)) fail_msg("%s", error.message);
+    assert_int_equal(model->mesh.element_count, 2 * count);
+    near(model->mesh.second[2 * count - 1], 0, 1, 0);
+    lar_model_destroy(model);
     lar_bytes_free(&bytes);
 }
 
@@ -394,11 +470,13 @@ static void decks_say_what_is_wrong(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(scenes_say_laws_and_directions),
+        cmocka_unit_test(scenes_say_a_second_family),
         cmocka_unit_test(scenes_say_what_is_active),
         cmocka_unit_test(scenes_say_when_it_is_active),
         cmocka_unit_test(the_last_material_has_its_own_rule),
         cmocka_unit_test(scenes_say_what_is_wrong),
         cmocka_unit_test(meshes_bring_directions),
+        cmocka_unit_test(meshes_bring_second_families),
         cmocka_unit_test(decks_say_laws_and_directions),
         cmocka_unit_test(decks_say_when_it_is_active),
         cmocka_unit_test(decks_say_what_is_wrong),

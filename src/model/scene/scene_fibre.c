@@ -6,7 +6,10 @@
 /* Their parameters, in the order of lar_fibre.parameter. */
 static const char *const *const law_names = lar_fibre_law_name + LAR_FIBRE_EXP_POW;
 static const char *const parameter_names[LAR_FIBRE_LAWS - LAR_FIBRE_EXP_POW][LAR_FIBRE_PARAMETERS] =
-    {{"ksi", "alpha", "beta", NULL}, {"c3", "c4", "c5", "lam_max"}, {"E", "lam0", "beta", NULL}};
+    {{"ksi", "alpha", "beta", NULL},
+     {"c3", "c4", "c5", "lam_max"},
+     {"E", "lam0", "beta", NULL},
+     {"k1", "k2", "kappa", NULL}};
 enum { LAWS = LAR_FIBRE_LAWS - LAR_FIBRE_EXP_POW };
 
 static lar_status read_law(const lar_scene *scene, const lar_yaml *node, lar_fibre *fibre) {
@@ -63,9 +66,9 @@ static lar_status read_parameters(const lar_scene *scene, const lar_yaml *node, 
 
 lar_status lar_scene_read_fibres(const lar_scene *scene, const lar_yaml *node,
                                  lar_material *material) {
-    static const char *const keys[] = {"law",     "part", "direction", "active", "ksi",
-                                       "alpha",   "beta", "c3",        "c4",     "c5",
-                                       "lam_max", "E",    "lam0",      NULL};
+    static const char *const keys[] = {"law",  "part", "direction", "active", "ksi",     "alpha",
+                                       "beta", "c3",   "c4",        "c5",     "lam_max", "E",
+                                       "lam0", "k1",   "k2",        "kappa",  "second",  NULL};
     static const char what[] = "fibres";
     const lar_yaml *law = NULL, *part = NULL, *direction = NULL;
     lar_fibre *fibre = &material->fibre;
@@ -78,6 +81,12 @@ lar_status lar_scene_read_fibres(const lar_scene *scene, const lar_yaml *node,
     if (!status)
         status = lar_scene_need(scene, node, what, "direction", "direction: {axis: [1, 0, 0]}",
                                 &direction);
+    const lar_yaml *second = status ? NULL : lar_yaml_get(node, "second");
+    if (second && !passive)
+        return lar_scene_fail(scene, second, LAR_ERROR_FORMAT,
+                              "second: only fibres with a law can have a second family; what is "
+                              "active runs along the first, remove it");
+    fibre->paired = second != NULL;
     if (!status && passive) status = read_law(scene, law, fibre);
     if (!status && passive) status = read_part(scene, part, &fibre->isochoric);
     fibre->line = node->line;
