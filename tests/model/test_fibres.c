@@ -400,6 +400,59 @@ static void decks_say_laws_and_directions(void **state) {
     lar_model_destroy(model);
 }
 
+#define HGO_DECK "<c>800</c><k1>2500</k1><k2>1.4</k2><kappa>0.1</kappa><gamma>30</gamma><k>9e4</k>"
+#define HGO_TYPE "Holzapfel-Gasser-Ogden"
+
+static bool says(const lar_model *model, const char *words) {
+    for (int i = 0; i < model->notice_count; i++)
+        if (strstr(model->notice[i], words)) return true;
+    return false;
+}
+
+/* Both families, at +30 and -30 degrees. */
+static void hold_pair(const lar_model *model, int32_t e, const double e1[3], const double e2[3]) {
+    const double c = sqrt(0.75), s = 0.5;
+    const double *first = lar_model_fibre(model, e), *second = model->mesh.second[e];
+    near(first, c * e1[0] + s * e2[0], c * e1[1] + s * e2[1], c * e1[2] + s * e2[2]);
+    near(second, c * e1[0] - s * e2[0], c * e1[1] - s * e2[1], c * e1[2] - s * e2[2]);
+}
+
+static void decks_say_two_families(void **state) {
+    (void)state;
+    const double x[3] = {1, 0, 0}, y[3] = {0, 1, 0}, z[3] = {0, 0, 1};
+    lar_model *model = deck(DECK(HGO_TYPE, HGO_DECK, ""));
+    const lar_material *m = &model->material[0];
+    const lar_fibre *f = &m->fibre;
+    assert_true(m->law == LAR_LAW_neo_hookean && lar_material_shear(m) == 800);
+    assert_true(lar_material_bulk(m) == 9e4);
+    assert_true(f->law == LAR_FIBRE_HGO && f->isochoric && f->paired);
+    assert_true(f->parameter[0] == 2500 && f->parameter[1] == 1.4 && f->parameter[2] == 0.1);
+    hold_pair(model, 1, x, y);
+    assert_true(says(model, "answers a change of volume by K/2 (J - 1)^2"));
+    lar_model_destroy(model);
+    model = deck(DECK(HGO_TYPE,
+                      HGO_DECK "<mat_axis type=\"vector\"><a>0,0,3</a><d>1,0,7</d></mat_axis>"
+                               "<pressure_model>Abaqus</pressure_model>",
+                      ""));
+    hold_pair(model, 0, z, x);
+    assert_false(says(model, "a change of volume"));
+    lar_model_destroy(model);
+    model = deck(DECK(HGO_TYPE,
+                      HGO_DECK "<mat_axis type=\"local\">1,5,2</mat_axis>"
+                               "<pressure_model>default</pressure_model>",
+                      ""));
+    assert_true(model->material[0].law == LAR_LAW_mooney_rivlin);
+    assert_true(fabs(lar_material_shear(&model->material[0]) - 800) < 1e-9);
+    hold_pair(model, 1, z, x);
+    lar_model_destroy(model);
+    model = deck(DECK(HGO_TYPE, HGO_DECK "<mat_axis type=\"user\"/>",
+                      "<ElementData type=\"mat_axis\" elem_set=\"back\"><e lid=\"1\"><a>0,2,0</a>"
+                      "<d>0,0,1</d></e><e lid=\"2\"><a>0,0,1</a><d>0,3,0</d></e></ElementData>"));
+    hold_pair(model, 0, z, y);
+    hold_pair(model, 1, y, z);
+    lar_model_destroy(model);
+}
+
 #define CONTRACTS(lc)                                                                              \
     SOLID "<solid type=\"prescribed uniaxial active contraction\"><T0" lc ">200</T0>" ALONG        \
           "</solid>"
@@ -457,6 +510,26 @@ static void decks_say_what_is_wrong(void **state) {
         {MIX(SOLID "<solid type=\"fiber-exp-pow\">" EXP ALONG "<lam0>1.1</lam0></solid>"),
          "<lam0> of a material with fibres is not read"},
         {MIX(SOLID "<solid type=\"ellipsoidal fiber distribution\"/>"), "is not read"},
+        {MIX(SOLID "<solid type=\"" HGO_TYPE "\"/>"), "is read where it stands alone"},
+        {DECK(HGO_TYPE, "<c>800</c><k1>2500</k1><k2>1.4</k2><kappa>0.1</kappa><k>9e4</k>", ""),
+         "no parameter <gamma>"},
+        {DECK(HGO_TYPE, HGO_DECK "<pressure_model>NIKE3D</pressure_model>", ""),
+         "pressure_model 'NIKE3D' of a material"},
+        {DECK(HGO_TYPE, HGO_DECK ALONG, ""), "give it a <mat_axis>"},
+        {DECK(HGO_TYPE, HGO_DECK "<mat_axis type=\"vector\"><a>1,0,0</a></mat_axis>", ""),
+         "needs <a> and <d>"},
+        {DECK(HGO_TYPE, HGO_DECK "<mat_axis type=\"vector\"><a>1,0,0</a><d>2,0,0</d></mat_axis>",
+              ""),
+         "span no plane"},
+        {DECK(HGO_TYPE, HGO_DECK "<mat_axis type=\"local\">1,2,9</mat_axis>", ""),
+         "names three corners"},
+        {DECK(HGO_TYPE, HGO_DECK "<mat_axis type=\"cylindrical\"/>", ""), "is not read"},
+        {DECK(HGO_TYPE, HGO_DECK "<mat_axis type=\"user\"/>", ""), "direction is 0, 0, 0"},
+        {DECK(HGO_TYPE, HGO_DECK "<mat_axis type=\"user\"/>",
+              "<ElementData type=\"fiber\" elem_set=\"back\"><e lid=\"1\">0,0,5</e>"
+              "</ElementData>"),
+         "give it <a> and <d>"},
+        {DECK(HGO_TYPE " unconstrained", HGO_DECK, ""), "is not read; of FEBio's, Lariat has"},
     };
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
         lar_model *model = NULL;
@@ -478,6 +551,7 @@ int main(void) {
         cmocka_unit_test(meshes_bring_directions),
         cmocka_unit_test(meshes_bring_second_families),
         cmocka_unit_test(decks_say_laws_and_directions),
+        cmocka_unit_test(decks_say_two_families),
         cmocka_unit_test(decks_say_when_it_is_active),
         cmocka_unit_test(decks_say_what_is_wrong),
     };
