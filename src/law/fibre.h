@@ -1,7 +1,7 @@
 /* Fibres of a material, on top of any law: one family of them in each element, along a unit vector
- * `a` of the body at rest, or a pair of families alike, along two; they carry tension only. And the
- * stress that they develop when a muscle is active. Adding to the law's energy (a solid mixture, in
- * FEBio's words),
+ * `a` of the body at rest, or, of the law hgo, a pair of families alike, along two; they carry
+ * tension only. And the stress that they develop when a muscle is active. Adding to the law's
+ * energy (a solid mixture, in FEBio's words),
  *
  *     exp-pow      W = ksi / (alpha beta) (exp(alpha (I - 1)^beta) - 1),      I = l^2 > 1
  *                  alpha = 0: ksi / beta (I - 1)^beta
@@ -47,7 +47,7 @@ enum { LAR_FIBRE_PARAMETERS = 4 };
 typedef struct lar_fibre {
     lar_fibre_law law;
     bool isochoric; /* they see the isochoric part of the stretch */
-    bool paired;    /* two families, both as the parameters say */
+    bool paired;    /* two families of the law hgo, both as the parameters say */
     double parameter[LAR_FIBRE_PARAMETERS];
     double along, across; /* active stress [Pa] at an activation of 1 */
     int line;             /* of the file that says so, for messages */
@@ -72,6 +72,8 @@ static inline int lar_fibre_families(const lar_fibre *fibre) {
 /* Kinds of fibres whose elements may share a block: 0 none, else law and part. Pairs have kinds of
  * their own, LAR_FIBRE_SINGLE further up than that of one of their families. */
 enum { LAR_FIBRE_SINGLE = 1 + 2 * LAR_FIBRE_LAWS, LAR_FIBRE_KINDS = 2 * LAR_FIBRE_SINGLE };
+/* Those from here on spread. */
+enum { LAR_FIBRE_SPREAD = 1 + 2 * LAR_FIBRE_HGO };
 static inline int lar_fibre_kind_single(const lar_fibre *fibre) {
     return lar_fibre_here(fibre) ? 1 + 2 * (int)fibre->law + fibre->isochoric : 0;
 }

@@ -102,8 +102,8 @@ typedef struct lar_viscous_block {
 typedef struct lar_fibre_block {
     double direction[3][LAR_BLOCK], parameter[LAR_FIBRE_PARAMETERS][LAR_BLOCK];
     double along[LAR_BLOCK], across[LAR_BLOCK];
-    double limit[LAR_BLOCK]; /* of the stiffness of all families, from where on an element is
-                                listed: lar_fibre_limit */
+    double limit[LAR_BLOCK]; /* of lar_fibre_stiffness, from where on an element is listed:
+                                lar_fibre_limit */
 } __attribute__((aligned(64))) lar_fibre_block;
 
 /* Where parameter k of a lane stands; `more` is of that block, NULL for laws that fit. */
@@ -166,8 +166,8 @@ typedef struct lar_hex8_limits {
 } lar_hex8_limits;
 
 /* What a monitor says of an element's strain: det F, |F|^2, |cof F|^2 and along fibres |F a|^2, of
- * fibres that spread lar_fibre_mean: 1, 3, 3 and 1 at rest, the last one 0 where there are none. Of
- * a pair it is the stiffness of both families as a part of `limit`. */
+ * fibres that spread lar_fibre_mean, of two families the larger: 1, 3, 3 and 1 at rest, the last
+ * one 0 where there are none. */
 enum {
     LAR_STRAIN_VOLUME,
     LAR_STRAIN_LENGTH,

@@ -6,28 +6,21 @@
 
 #include "law/fibre_stress.h"
 
-/* Some lanes of a block, of fibres that `spread` (law hgo) or do not. Returns those that are beyond
- * the limit; *stiffer, where it is not NULL, becomes those to be looked at more closely, and
- * *number what the monitor says of them: of a pair's family more of it than *number. */
-LAR_INLINE unsigned fibre_lanes(bool spread, bool paired, const lar_fibre_block *block, int lane,
-                                int kind, const lar_lane F[9], double limit, lar_lane P[9],
-                                lar_lane *number, unsigned *stiffer) {
+/* Some lanes of a block. Returns those that are beyond the limit; *stiffer, where it is not NULL,
+ * becomes those to be looked at more closely. Of fibres that `spread` (law hgo) or do not. */
+LAR_INLINE unsigned fibre_lanes(bool spread, const lar_fibre_block *block, int lane, int kind,
+                                const lar_lane F[9], double limit, lar_lane P[9], lar_lane *length,
+                                unsigned *stiffer) {
     lar_fibre_lane c;
-    lar_lane stiff, length, size;
+    lar_lane stiff;
     for (int i = 0; i < 3; i++) c.direction[i] = lar_lane_load(&block->direction[i][lane]);
     for (int k = 0; k < LAR_FIBRE_PARAMETERS; k++)
         c.parameter[k] = lar_lane_load(&block->parameter[k][lane]);
-    size = spread ? lar_fibre_hgo_stress(F, &c, &length, stiffer ? &stiff : NULL, P)
-                  : lar_fibre_stress(kind, F, &c, &length, stiffer ? &stiff : NULL, P);
-    if (stiffer) {
-        lar_lane most = lar_lane_load(&block->limit[lane]);
-        if (paired) {
-            stiff = *number + stiff / lar_lane_max(most, lar_lane_set(LAR_LANE_TINY));
-            most = lar_lane_set(1);
-        }
-        *number = paired ? stiff : length;
-        *stiffer = ~lar_lane_not_greater(stiff, most) & ((1U << LAR_LANES) - 1);
-    }
+    lar_lane size = spread ? lar_fibre_hgo_stress(F, &c, length, stiffer ? &stiff : NULL, P)
+                           : lar_fibre_stress(kind, F, &c, length, stiffer ? &stiff : NULL, P);
+    if (stiffer)
+        *stiffer = ~lar_lane_not_greater(stiff, lar_lane_load(&block->limit[lane])) &
+                   ((1U << LAR_LANES) - 1);
     return lar_lane_not_greater(lar_lane_set(limit), size);
 }
 

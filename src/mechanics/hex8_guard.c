@@ -206,28 +206,26 @@ double lar_hex8_corner_limit(const lar_hex8 *element, const double rest[8][3]) {
 }
 
 double lar_fibre_limit(const lar_material *material) {
-    static const double PART = 0.1; /* of the law's modulus */
+    static const double PART = 0.1; /* of the law's modulus, by all families together */
     double modulus = lar_material_bulk(material) + 4 * lar_material_shear(material) / 3;
-    return lar_fibre_families(&material->fibre) * lar_fibre_stiffest(&material->fibre) +
-           PART * modulus;
+    return lar_fibre_stiffest(&material->fibre) +
+           PART * modulus / lar_fibre_families(&material->fibre);
 }
 
-/* What fibres have become stiffer than where tension begins [Pa]. */
-static double fibre_growth(const lar_material *material, const float strain[LAR_STRAIN_NUMBERS]) {
-    const lar_fibre *fibre = &material->fibre;
+/* What fibres have become stiffer than where tension begins [Pa]. Stiffness of a pair grows with
+ * the number, so the other family's is not above the one that is known. */
+static double fibre_growth(const lar_fibre *fibre, const float strain[LAR_STRAIN_NUMBERS]) {
     double p[LAR_FIBRE_PARAMETERS], J = strain[LAR_STRAIN_VOLUME], area = strain[LAR_STRAIN_AREA];
-    double number = strain[LAR_STRAIN_FIBRE], most = lar_fibre_stiffest(fibre);
-    if (lar_fibre_families(fibre) == 2)
-        return fmax(number * lar_fibre_limit(material) - 2 * most, 0);
+    double length = strain[LAR_STRAIN_FIBRE];
     int kind = lar_fibre_kind_single(fibre);
-    double square = lar_fibre_square(kind, number, J);
+    double square = lar_fibre_square(kind, length, J);
     memcpy(p, fibre->parameter, sizeof p);
     lar_fibre_answer now = lar_fibre_tension(fibre->law, square, p);
     double stiff = fibre->law == LAR_FIBRE_HGO
-                       ? lar_fibre_spread_stiffness(&now, square, number, strain[LAR_STRAIN_LENGTH],
+                       ? lar_fibre_spread_stiffness(&now, square, length, strain[LAR_STRAIN_LENGTH],
                                                     p[2], J, area)
-                       : lar_fibre_stiffness(kind, &now, square, number, J, area);
-    return fmax(stiff - most, 0);
+                       : lar_fibre_stiffness(kind, &now, square, length, J, area);
+    return lar_fibre_families(fibre) * fmax(stiff - lar_fibre_stiffest(fibre), 0);
 }
 
 double lar_hex8_growth(const lar_material *material, const float strain[LAR_STRAIN_NUMBERS]) {
@@ -245,6 +243,7 @@ double lar_hex8_growth(const lar_material *material, const float strain[LAR_STRA
                     whole;
     if (material->fibre.law == LAR_FIBRE_NONE) return growth;
     /* Along any direction the element is as stiff as `whole`, and fibres at rest count beside. */
-    double fibres = lar_viscosity_instant(&material->viscosity) * fibre_growth(material, strain);
+    double fibres =
+        lar_viscosity_instant(&material->viscosity) * fibre_growth(&material->fibre, strain);
     return fmax(growth, 1) + fibres / whole;
 }

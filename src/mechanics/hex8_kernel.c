@@ -389,42 +389,48 @@ static unsigned relax(const lar_block_run *run, const lar_viscous_step *step, in
     return beyond;
 }
 
-/* And for fibres; where somebody `watches`, *strained gets those that are much stiffer. */
-LAR_INLINE unsigned stretch_family(bool spread, const lar_block_run *run, int kind, int family,
-                                   int32_t b, size_t count, double max, bool watches,
-                                   lar_lane gradient[][9], lane_record *record, lane_strain *strain,
-                                   unsigned *strained) {
-    const lar_fibre_block *fibres = family ? run->second : run->fibres;
+/* And for fibres; where somebody `watches`, *strained gets those that are much stiffer. Of those
+ * that `spread` and may be a pair the larger number counts. */
+LAR_INLINE unsigned stretch_family(bool spread, const lar_fibre_block *fibres, int kind, int32_t b,
+                                   size_t count, double max, bool watches, lar_lane gradient[][9],
+                                   lane_record *record, lane_strain *strain, unsigned *strained) {
     unsigned beyond = 0;
     size_t part = 0;
     for (size_t i = (size_t)b; i < (size_t)b + count; i++)
         for (int lane = 0; lane < LAR_BLOCK; lane += LAR_LANES, part++) {
-            lar_lane number = family ? strain[part].number[LAR_STRAIN_FIBRE] : lar_lane_set(0);
+            lar_lane length, *number = &strain[part].number[LAR_STRAIN_FIBRE];
             unsigned stiffer = 0;
-            beyond |=
-                fibre_lanes(spread, run->second != NULL, &fibres[i], lane, kind, gradient[part],
-                            max, record[part].F, &number, watches ? &stiffer : NULL)
-                << part * LAR_LANES;
+            beyond |= fibre_lanes(spread, &fibres[i], lane, kind, gradient[part], max,
+                                  record[part].F, &length, watches ? &stiffer : NULL)
+                      << part * LAR_LANES;
             if (!watches) continue;
-            strain[part].number[LAR_STRAIN_FIBRE] = number;
+            *number = spread ? lar_lane_max(length, *number) : length;
             *strained |= stiffer << part * LAR_LANES;
         }
+    return beyond;
+}
+
+/* A function of its own, so that straight fibres do not pay for it. */
+__attribute__((noinline)) static unsigned stretch_spread(const lar_block_run *run, int32_t b,
+                                                         size_t count, double max, bool watches,
+                                                         lar_lane gradient[][9],
+                                                         lane_record *record, lane_strain *strain,
+                                                         unsigned *strained) {
+    unsigned beyond = 0;
+    for (const lar_fibre_block *of = run->fibres; of; of = of == run->second ? NULL : run->second)
+        beyond |=
+            stretch_family(true, of, 0, b, count, max, watches, gradient, record, strain, strained);
     return beyond;
 }
 
 static unsigned stretch(const lar_block_run *run, int32_t b, size_t count, double max, bool watches,
                         lar_lane gradient[][9], lane_record *record, lane_strain *strain,
                         unsigned *strained) {
-    int kind = run->second ? run->fibrous - LAR_FIBRE_SINGLE : run->fibrous;
-    unsigned beyond = 0;
-    lar_fibre_law law = lar_fibre_kind_law(kind);
-    for (int family = 0; law != LAR_FIBRE_NONE && family < (run->second ? 2 : 1); family++)
-        beyond |= law == LAR_FIBRE_HGO
-                      ? stretch_family(true, run, kind, family, b, count, max, watches, gradient,
-                                       record, strain, strained)
-                      : stretch_family(false, run, kind, family, b, count, max, watches, gradient,
-                                       record, strain, strained);
-    return beyond;
+    if (lar_fibre_kind_law(run->fibrous) == LAR_FIBRE_NONE) return 0;
+    if (run->fibrous >= LAR_FIBRE_SPREAD)
+        return stretch_spread(run, b, count, max, watches, gradient, record, strain, strained);
+    return stretch_family(false, run->fibres, run->fibrous, b, count, max, watches, gradient,
+                          record, strain, strained);
 }
 
 /* What is active, behind all that relaxes. */
@@ -506,19 +512,6 @@ static int64_t recover_more(const lar_block_run *run, const lar_viscous_step *st
 #endif
 
 /* ---- corners ------------------------------------------------------------------------------- */
-
-/* Where the corners of a block are, less whatever `nodes` says. */
-LAR_INLINE void gather_corners(const lar_block_head *head, int lane, lar_block_rows rows,
-                               const double *nodes, lar_lane x[8][3]) {
-    UNROLL4 for (int edge = 0; edge < 4; edge++) {
-        lar_lane left[3], right[3];
-        gather_pair(head, lane, rows, edge, nodes, left, right);
-        UNROLL3 for (int i = 0; i < 3; i++) {
-            x[left_node[edge]][i] = left[i];
-            x[right_node[edge]][i] = right[i];
-        }
-    }
-}
 
 /* The volumes that the edges span in the eight corners. */
 LAR_INLINE void corner_volumes(const lar_lane x[8][3], lar_lane volume[8]) {

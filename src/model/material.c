@@ -145,6 +145,8 @@ static lar_status check_fibres(const lar_material *material, const char *where, 
         if (!f->isochoric)
             wrong = "the law hgo is one of the isochoric part of the stretch; take that part";
     }
+    if (f->paired && f->law != LAR_FIBRE_HGO)
+        wrong = "only fibres of the law hgo can have a second family; take that one";
     if (!(f->along >= 0 && f->across >= 0 && f->along + f->across <= STIFF * stiff))
         wrong = "the active stress must not be negative, nor a million times the law's moduli";
     if (!wrong && material->viscosity.terms > 0 && material->viscosity.isochoric &&

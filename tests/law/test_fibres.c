@@ -24,11 +24,12 @@ static const lar_fibre FIBRES[] = {
     {.law = LAR_FIBRE_HGO, .parameter = {800, 0, 0.226}, .isochoric = true, .along = 250},
     {.law = LAR_FIBRE_HGO, .parameter = {500, 3, 1.0 / 3}, .isochoric = true},
     {.law = LAR_FIBRE_HGO, .parameter = {900, 0.8, 0.1}, .isochoric = true, .paired = true},
-    {.law = LAR_FIBRE_EXP_POW, .parameter = {400, 1.5, 2}, .paired = true, .along = 150},
-    {.law = LAR_FIBRE_EXP_LINEAR,
-     .parameter = {80, 12, 2000, 1.15},
+    {.law = LAR_FIBRE_HGO,
+     .parameter = {400, 1.5, 0},
      .isochoric = true,
-     .paired = true},
+     .paired = true,
+     .along = 150},
+    {.law = LAR_FIBRE_HGO, .parameter = {700, 0, 0.15}, .isochoric = true, .paired = true},
 };
 enum { FAMILIES = sizeof FIBRES / sizeof *FIBRES, STATES = 100 };
 

@@ -76,7 +76,7 @@ static void scenes_say_a_second_family(void **state) {
         near(both + 3, 0, 0.6, -0.8);
     }
     lar_model_destroy(model);
-    model = scene(SCENE(POW "direction: {axis: [1, 0, 0]}, active: {along: 50}, second: {around: "
+    model = scene(SCENE(HGO "direction: {axis: [1, 0, 0]}, active: {along: 50}, second: {around: "
                             "{point: [0.01, 0.01, 0], axis: [0, 0, 2]}}"));
     assert_true(model->material[0].fibre.paired && model->material[0].fibre.along == 50);
     const double s = sqrt(0.5);
@@ -207,7 +207,9 @@ static void scenes_say_what_is_wrong(void **state) {
                    "axis: [0, 0, 1]}}"),
          "element 101 has a second family of fibres and their direction is 0, 0, 0"},
         {SCENE("active: {along: 1}, direction: mesh, second: mesh"),
-         "only fibres with a law can have a second family"},
+         "only fibres of the law hgo can have a second family"},
+        {SCENE(POW "direction: {axis: [1, 0, 0]}, second: {axis: [0, 1, 0]}"),
+         "only fibres of the law hgo can have a second family"},
         {SCENE(POW "direction: mesh"), "no mesh has directions"},
         {SCENE(POW "direction: {}"), "direction: expected mesh, {axis: [x, y, z]}"},
         {SCENE(POW "direction: {axis: [0, 0, 0]}"), "axis"},

@@ -217,9 +217,7 @@ int main(void) {
             {.law = LAR_FIBRE_EXP_LINEAR, .parameter = {300, 9, 5e3, 1.1}, .isochoric = true},
             {.law = LAR_FIBRE_POW_LINEAR, .parameter = {4e3, 1.05, 3}},
             {.law = LAR_FIBRE_POW_LINEAR, .parameter = {3e3, 1.1, 2}, .isochoric = true},
-            {.law = LAR_FIBRE_HGO, .parameter = {2e3, 1, 0.2}, .isochoric = true},
             {.law = LAR_FIBRE_HGO, .parameter = {2e3, 1, 0.1}, .isochoric = true, .paired = true},
-            {.law = LAR_FIBRE_EXP_POW, .parameter = {2e3, 1, 2.5}, .paired = true},
             {.along = 400}};
     int failures = 0;
     for (lar_isa isa = LAR_ISA_C; isa <= LAR_ISA_AVX512; isa++) {

@@ -82,10 +82,10 @@ lar_status lar_scene_read_fibres(const lar_scene *scene, const lar_yaml *node,
         status = lar_scene_need(scene, node, what, "direction", "direction: {axis: [1, 0, 0]}",
                                 &direction);
     const lar_yaml *second = status ? NULL : lar_yaml_get(node, "second");
-    if (second && !passive)
+    if (second && !(law && lar_scene_is_word(law, lar_fibre_law_name[LAR_FIBRE_HGO])))
         return lar_scene_fail(scene, second, LAR_ERROR_FORMAT,
-                              "second: only fibres with a law can have a second family; what is "
-                              "active runs along the first, remove it");
+                              "second: only fibres of the law hgo can have a second family; take "
+                              "that one, or remove it");
     fibre->paired = second != NULL;
     if (!status && passive) status = read_law(scene, law, fibre);
     if (!status && passive) status = read_part(scene, part, &fibre->isochoric);
