@@ -108,8 +108,21 @@ def tube():
     mesh.write("tube.inp", "A tube")
 
 
+def ring():
+    """A quarter of a ring of an artery."""
+    def place(u, v, w):
+        radius = 3.1 + 0.8 * v
+        return radius * sin(pi / 2 * u), radius * cos(pi / 2 * u), 1.5 * w
+    mesh = Mesh()
+    mesh.grid((16, 4, 2), place, "media")
+    for name, layer in (("inside", 0), ("outside", 4)):
+        mesh.sets[name] = [1 + i + 17 * (layer + 5 * k) for k in range(3) for i in range(17)]
+    mesh.write("ring.inp", "A quarter of a ring of an artery")
+
+
 blocks()
 strip()
 bar()
 cup()
 tube()
+ring()

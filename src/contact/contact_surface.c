@@ -255,7 +255,7 @@ static lar_status fit_masses(const lar_model *model, double time_step, double st
         const lar_material *material = lar_model_material_of(model, e);
         lar_mesh_corners(mesh, e, corner);
         lar_hex8_prepare(corner, material, &hex8);
-        memcpy(hex8.fibre, lar_model_fibre(model, e), sizeof hex8.fibre);
+        lar_model_fibres(model, e, hex8.fibre);
         double frequency = lar_model_slowed(model, lar_hex8_frequency(&hex8, material));
         max = fmax(max, frequency);
         for (int a = 0; a < 8; a++) {

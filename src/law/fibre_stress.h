@@ -4,6 +4,9 @@
  *     P += s (g (x) a / I)                             of the whole stretch
  *     P += s (g (x) a / I - cof F / (3 J))             of its isochoric part
  *
+ * Of fibres that spread (hgo) the mean of g (x) a and of |g|^2 over them stand in place of both: q
+ * = kappa |F|^2 + (1 - 3 kappa) |g|^2 and (kappa F + (1 - 3 kappa) g (x) a) / q, I = J^(-2/3) q.
+ *
  * Fibres that are pressed have exactly no stress, and lanes without an element, with a direction
  * and parameters of zero, too. What is active is added behind viscosity: it does not relax.
  *
@@ -12,7 +15,9 @@
  *
  *     s' l (1 / (3 |g|^2) + |F^-T|^2 / 9) + s (1 / |g|^2 + |F^-T|^2 / 3)
  *
- * is not below any of them.
+ * is not below any of them. Of fibres that spread, the part of s is linear in |g|^2 and so in q;
+ * that of s' l has the square of dI/dF, which with the mean M of |F b (x) b|, a tensor, is by 4 (q
+ * - |M|^2) smaller.
  */
 #ifndef LAR_LAW_FIBRE_STRESS_H
 #define LAR_LAW_FIBRE_STRESS_H
@@ -79,13 +84,28 @@ LAR_INLINE lar_fibre_answer lar_fibre_pow_linear(lar_lane square, const lar_lane
                               .slope = lar_lane_fma(stretch, steep, pull)};
 }
 
-/* `square`: l^2. */
-LAR_INLINE lar_fibre_answer lar_fibre_tension(lar_fibre_law law, lar_lane square,
-                                              const lar_lane *p) {
+/* `square`: E + 1. */
+LAR_INLINE lar_fibre_answer lar_fibre_hgo(lar_lane square, const lar_lane *p) {
+    lar_lane x = lar_lane_max(square - lar_lane_set(1), lar_lane_set(0));
+    lar_lane exponent = p[1] * (x * x), steep = p[0] * lar_lane_exp(exponent), first = steep * x;
+    lar_lane second = lar_lane_fma(lar_lane_set(2) * steep, exponent, steep);
+    return (lar_fibre_answer){.tension = lar_lane_set(2) * square * first,
+                              .slope = lar_lane_set(4) * lar_lane_sqrt(square) *
+                                       lar_lane_fma(square, second, first)};
+}
+
+/* `square`: l^2; of fibres that all run along `a`. */
+LAR_INLINE lar_fibre_answer lar_fibre_straight(lar_fibre_law law, lar_lane square,
+                                               const lar_lane *p) {
     if (law == LAR_FIBRE_EXP_POW) return lar_fibre_exp_pow(square, p);
     if (law == LAR_FIBRE_EXP_LINEAR) return lar_fibre_exp_linear(lar_lane_sqrt(square), p);
     if (law == LAR_FIBRE_POW_LINEAR) return lar_fibre_pow_linear(square, p);
     return (lar_fibre_answer){lar_lane_set(0), lar_lane_set(0)};
+}
+
+LAR_INLINE lar_fibre_answer lar_fibre_tension(lar_fibre_law law, lar_lane square,
+                                              const lar_lane *p) {
+    return law == LAR_FIBRE_HGO ? lar_fibre_hgo(square, p) : lar_fibre_straight(law, square, p);
 }
 
 /* l^2 from |F a|^2. */
@@ -116,6 +136,12 @@ LAR_INLINE lar_lane lar_fibre_push(const lar_lane F[9], const lar_lane a[3], lar
     return lar_lane_fma(g[2], g[2], lar_lane_fma(g[1], g[1], g[0] * g[0]));
 }
 
+/* The mean of |F b|^2 over fibres b that spread; `length` is |F a|^2. */
+LAR_INLINE lar_lane lar_fibre_mean(const lar_lane F[9], lar_lane length, lar_lane kappa) {
+    lar_lane most = lar_lane_fnma(lar_lane_set(3), kappa, lar_lane_set(1));
+    return lar_lane_fma(kappa, lar_lane_square_sum(F), most * length);
+}
+
 /* Adds to P the stress of fibres that are stretched. Returns the square of its size, as laws do;
  * *length becomes |F a|^2 and *stiff, where it is not NULL, lar_fibre_stiffness. */
 LAR_INLINE lar_lane lar_fibre_stress(int kind, const lar_lane F[9], const lar_fibre_lane *c,
@@ -124,7 +150,7 @@ LAR_INLINE lar_lane lar_fibre_stress(int kind, const lar_lane F[9], const lar_fi
     lar_lane J = lar_lane_cofactor(F, cof);
     *length = lar_fibre_push(F, c->direction, g);
     lar_lane square = lar_fibre_square(kind, *length, J);
-    lar_fibre_answer now = lar_fibre_tension(lar_fibre_kind_law(kind), square, c->parameter);
+    lar_fibre_answer now = lar_fibre_straight(lar_fibre_kind_law(kind), square, c->parameter);
     if (stiff)
         *stiff = lar_fibre_stiffness(kind, &now, square, *length, J, lar_lane_square_sum(cof));
     lar_lane along = now.tension / lar_lane_max(*length, lar_lane_set(LAR_LANE_TINY));
@@ -137,6 +163,54 @@ LAR_INLINE lar_lane lar_fibre_stress(int kind, const lar_lane F[9], const lar_fi
             sum = lar_lane_fma(more, more, sum);
         }
     return sum;
+}
+
+/* lar_fibre_stiffness of fibres that spread; `length`: lar_fibre_mean, `I1`: |F|^2. */
+LAR_INLINE lar_lane lar_fibre_spread_stiffness(const lar_fibre_answer *now, lar_lane square,
+                                               lar_lane length, lar_lane I1, lar_lane kappa,
+                                               lar_lane J, lar_lane area) {
+    lar_lane one = lar_lane_set(1),
+             inverse = one / lar_lane_max(length, lar_lane_set(LAR_LANE_TINY));
+    lar_lane mean =
+        lar_lane_fma(kappa * kappa, I1, (one - kappa) * lar_lane_fnma(kappa, I1, length));
+    lar_lane steep =
+        lar_lane_fnma(lar_lane_set(2), now->tension, now->slope * lar_lane_sqrt(square));
+    lar_lane straight =
+        lar_fibre_stiffness(1 + 2 * LAR_FIBRE_HGO + 1, now, square, length, J, area);
+    return straight - steep * inverse * lar_lane_fnma(mean, inverse, one);
+}
+
+/* lar_fibre_stress of fibres that spread; *length becomes the mean. */
+LAR_INLINE lar_lane lar_fibre_hgo_stress(const lar_lane F[9], const lar_fibre_lane *c,
+                                         lar_lane *length, lar_lane *stiff, lar_lane P[9]) {
+    enum { KIND = 1 + 2 * LAR_FIBRE_HGO + 1 };
+    lar_lane g[3], cof[9], sum = lar_lane_set(0), kappa = c->parameter[2];
+    lar_lane J = lar_lane_cofactor(F, cof), tiny = lar_lane_set(LAR_LANE_TINY);
+    *length = lar_fibre_mean(F, lar_fibre_push(F, c->direction, g), kappa);
+    lar_lane square = lar_fibre_square(KIND, *length, J);
+    lar_fibre_answer now = lar_fibre_hgo(square, c->parameter);
+    if (stiff)
+        *stiff = lar_fibre_spread_stiffness(&now, square, *length, lar_lane_square_sum(F), kappa, J,
+                                            lar_lane_square_sum(cof));
+    lar_lane all = now.tension / lar_lane_max(*length, tiny), spread = kappa * all;
+    lar_lane along = lar_lane_fnma(lar_lane_set(3), spread, all);
+    lar_lane pressure = lar_lane_set(-1.0 / 3) * now.tension / J;
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++) {
+            lar_lane more = lar_lane_fma(spread, F[3 * i + j], pressure * cof[3 * i + j]);
+            more = lar_lane_fma(along * g[i], c->direction[j], more);
+            P[3 * i + j] = P[3 * i + j] + more;
+            sum = lar_lane_fma(more, more, sum);
+        }
+    return sum;
+}
+
+/* Either of them, of one family. */
+LAR_INLINE lar_lane lar_fibre_family_stress(int kind, const lar_lane F[9], const lar_fibre_lane *c,
+                                            lar_lane *length, lar_lane *stiff, lar_lane P[9]) {
+    return lar_fibre_kind_law(kind) == LAR_FIBRE_HGO
+               ? lar_fibre_hgo_stress(F, c, length, stiff, P)
+               : lar_fibre_stress(kind, F, c, length, stiff, P);
 }
 
 /* What an active stress has for a potential, 0 at rest. */

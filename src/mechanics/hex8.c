@@ -310,11 +310,13 @@ static bool exceeds_all(const rest_stiffness *rest, double lambda) {
 
 /* The same of fibres where tension begins, and of what is active: V times the slope times the sum
  * over the modes of |D B_m|^2, D = a (x) a, or its deviator where only that is seen. */
-static double fibre_stiffness(const lar_hex8 *element, const lar_material *material) {
+static double family_stiffness(const lar_hex8 *element, const lar_material *material,
+                               const double *a, bool active) {
     const lar_fibre *fibre = &material->fibre;
-    const double *a = element->fibre, third = fibre->isochoric ? 1.0 / 3 : 0;
+    const double third = fibre->isochoric ? 1.0 / 3 : 0;
     double modulus = lar_viscosity_instant(&material->viscosity) * lar_fibre_modulus(fibre);
-    double pull = fmax(fibre->along - fibre->across, 0), sum = 0;
+    double pull = active ? fmax(fibre->along - fibre->across, 0) : 0, sum = 0;
+    double across = active ? fmax(fibre->across, 0) : 0;
     for (int m = 0; m < LAR_HEX8_GRADIENTS; m++) {
         const double *B = element->gradient[m];
         double along = a[0] * B[0] + a[1] * B[1] + a[2] * B[2], square = 0, all = 0;
@@ -323,9 +325,16 @@ static double fibre_stiffness(const lar_hex8 *element, const lar_material *mater
             square += D * D;
             all += B[i] * B[i];
         }
-        sum += modulus * square + pull * along * along + fmax(fibre->across, 0) * all;
+        sum += modulus * square + pull * along * along + across * all;
     }
     return element->volume * sum;
+}
+
+static double fibre_stiffness(const lar_hex8 *element, const lar_material *material) {
+    double first = family_stiffness(element, material, element->fibre, true);
+    return lar_fibre_families(&material->fibre) == 2
+               ? first + family_stiffness(element, material, element->fibre + 3, false)
+               : first;
 }
 
 double lar_hex8_frequency(const lar_hex8 *element, const lar_material *material) {

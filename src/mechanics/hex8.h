@@ -61,7 +61,7 @@ typedef struct lar_hex8 {
     double shape[LAR_HEX8_HOURGLASS][3];    /* X_m, m = 3..6 [m] */
     double stiffness[LAR_HEX8_HOURGLASS];   /* c_m, m = 3..6 [N/m] */
     double volume;                          /* [m^3] */
-    double fibre[3];                        /* unit vector along its fibres; 0: it has none */
+    double fibre[6]; /* unit vectors along its fibres, of a pair two; 0: it has none */
 } lar_hex8;
 
 /* Prepares an element from its reference corners [8][3] and its material; without fibres, which

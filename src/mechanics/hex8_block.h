@@ -102,7 +102,8 @@ typedef struct lar_viscous_block {
 typedef struct lar_fibre_block {
     double direction[3][LAR_BLOCK], parameter[LAR_FIBRE_PARAMETERS][LAR_BLOCK];
     double along[LAR_BLOCK], across[LAR_BLOCK];
-    double limit[LAR_BLOCK]; /* of lar_fibre_stiffness, from where on an element is listed */
+    double limit[LAR_BLOCK]; /* of lar_fibre_stiffness, from where on an element is listed:
+                                lar_fibre_limit */
 } __attribute__((aligned(64))) lar_fibre_block;
 
 /* Where parameter k of a lane stands; `more` is of that block, NULL for laws that fit. */
@@ -135,6 +136,7 @@ typedef struct lar_block_run {
     const lar_viscous_block *relaxing; /* [count] */
     int fibrous;                       /* lar_fibre_kind; 0: no fibres */
     const lar_fibre_block *fibres;     /* [count] where there are any */
+    const lar_fibre_block *second;     /* [count] of the other family where they are pairs */
 } lar_block_run;
 
 /* A step of the viscous elements of a run. */
@@ -163,8 +165,9 @@ typedef struct lar_hex8_limits {
     double hourglass_square; /* sum |c q|^2 must stay below; looked at when watching only */
 } lar_hex8_limits;
 
-/* What a monitor says of an element's strain: det F, |F|^2, |cof F|^2 and along fibres |F a|^2: 1,
- * 3, 3 and 1 at rest, the last one 0 where there are none. */
+/* What a monitor says of an element's strain: det F, |F|^2, |cof F|^2 and along fibres |F a|^2, of
+ * fibres that spread lar_fibre_mean, of two families the larger: 1, 3, 3 and 1 at rest, the last
+ * one 0 where there are none. */
 enum {
     LAR_STRAIN_VOLUME,
     LAR_STRAIN_LENGTH,

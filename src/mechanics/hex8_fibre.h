@@ -7,8 +7,8 @@
 #include "law/fibre_stress.h"
 
 /* Some lanes of a block. Returns those that are beyond the limit; *stiffer, where it is not NULL,
- * becomes those to be looked at more closely. */
-LAR_INLINE unsigned fibre_lanes(const lar_fibre_block *block, int lane, int kind,
+ * becomes those to be looked at more closely. Of fibres that `spread` (law hgo) or do not. */
+LAR_INLINE unsigned fibre_lanes(bool spread, const lar_fibre_block *block, int lane, int kind,
                                 const lar_lane F[9], double limit, lar_lane P[9], lar_lane *length,
                                 unsigned *stiffer) {
     lar_fibre_lane c;
@@ -16,7 +16,8 @@ LAR_INLINE unsigned fibre_lanes(const lar_fibre_block *block, int lane, int kind
     for (int i = 0; i < 3; i++) c.direction[i] = lar_lane_load(&block->direction[i][lane]);
     for (int k = 0; k < LAR_FIBRE_PARAMETERS; k++)
         c.parameter[k] = lar_lane_load(&block->parameter[k][lane]);
-    lar_lane size = lar_fibre_stress(kind, F, &c, length, stiffer ? &stiff : NULL, P);
+    lar_lane size = spread ? lar_fibre_hgo_stress(F, &c, length, stiffer ? &stiff : NULL, P)
+                           : lar_fibre_stress(kind, F, &c, length, stiffer ? &stiff : NULL, P);
     if (stiffer)
         *stiffer = ~lar_lane_not_greater(stiff, lar_lane_load(&block->limit[lane])) &
                    ((1U << LAR_LANES) - 1);

@@ -71,4 +71,17 @@ LAR_INLINE void gather_modes(const lar_block_head *head, int lane, lar_block_row
     }
 }
 
+/* Where the corners of a block are, less whatever `nodes` says. */
+LAR_INLINE void gather_corners(const lar_block_head *head, int lane, lar_block_rows rows,
+                               const double *nodes, lar_lane x[8][3]) {
+    UNROLL4 for (int edge = 0; edge < 4; edge++) {
+        lar_lane left[3], right[3];
+        gather_pair(head, lane, rows, edge, nodes, left, right);
+        UNROLL3 for (int i = 0; i < 3; i++) {
+            x[left_node[edge]][i] = left[i];
+            x[right_node[edge]][i] = right[i];
+        }
+    }
+}
+
 #endif

@@ -205,16 +205,27 @@ double lar_hex8_corner_limit(const lar_hex8 *element, const double rest[8][3]) {
     return 1 / worst;
 }
 
-/* What fibres have become stiffer than where tension begins [Pa]. */
+double lar_fibre_limit(const lar_material *material) {
+    static const double PART = 0.1; /* of the law's modulus, by all families together */
+    double modulus = lar_material_bulk(material) + 4 * lar_material_shear(material) / 3;
+    return lar_fibre_stiffest(&material->fibre) +
+           PART * modulus / lar_fibre_families(&material->fibre);
+}
+
+/* What fibres have become stiffer than where tension begins [Pa]. Stiffness of a pair grows with
+ * the number, so the other family's is not above the one that is known. */
 static double fibre_growth(const lar_fibre *fibre, const float strain[LAR_STRAIN_NUMBERS]) {
-    double p[LAR_FIBRE_PARAMETERS], J = strain[LAR_STRAIN_VOLUME];
+    double p[LAR_FIBRE_PARAMETERS], J = strain[LAR_STRAIN_VOLUME], area = strain[LAR_STRAIN_AREA];
     double length = strain[LAR_STRAIN_FIBRE];
-    int kind = lar_fibre_kind(fibre);
+    int kind = lar_fibre_kind_single(fibre);
     double square = lar_fibre_square(kind, length, J);
     memcpy(p, fibre->parameter, sizeof p);
     lar_fibre_answer now = lar_fibre_tension(fibre->law, square, p);
-    double stiff = lar_fibre_stiffness(kind, &now, square, length, J, strain[LAR_STRAIN_AREA]);
-    return fmax(stiff - lar_fibre_stiffest(fibre), 0);
+    double stiff = fibre->law == LAR_FIBRE_HGO
+                       ? lar_fibre_spread_stiffness(&now, square, length, strain[LAR_STRAIN_LENGTH],
+                                                    p[2], J, area)
+                       : lar_fibre_stiffness(kind, &now, square, length, J, area);
+    return lar_fibre_families(fibre) * fmax(stiff - lar_fibre_stiffest(fibre), 0);
 }
 
 double lar_hex8_growth(const lar_material *material, const float strain[LAR_STRAIN_NUMBERS]) {

@@ -389,26 +389,48 @@ static unsigned relax(const lar_block_run *run, const lar_viscous_step *step, in
     return beyond;
 }
 
-/* And for fibres; where somebody `watches`, *strained gets those that are much stiffer. */
-static unsigned stretch(const lar_block_run *run, int32_t b, size_t count,
-                        const lar_hex8_limits *limits, bool watches, lar_lane gradient[][9],
-                        lane_record *record, lane_strain *strain, unsigned *strained) {
+/* And for fibres; where somebody `watches`, *strained gets those that are much stiffer. Of those
+ * that `spread` and may be a pair the larger number counts. */
+LAR_INLINE unsigned stretch_family(bool spread, const lar_fibre_block *fibres, int kind, int32_t b,
+                                   size_t count, double max, bool watches, lar_lane gradient[][9],
+                                   lane_record *record, lane_strain *strain, unsigned *strained) {
     unsigned beyond = 0;
     size_t part = 0;
-    if (lar_fibre_kind_law(run->fibrous) == LAR_FIBRE_NONE) return 0;
     for (size_t i = (size_t)b; i < (size_t)b + count; i++)
         for (int lane = 0; lane < LAR_BLOCK; lane += LAR_LANES, part++) {
-            lar_lane length;
+            lar_lane length, *number = &strain[part].number[LAR_STRAIN_FIBRE];
             unsigned stiffer = 0;
-            beyond |= fibre_lanes(&run->fibres[i], lane, run->fibrous, gradient[part],
-                                  limits->stress_square, record[part].F, &length,
-                                  watches ? &stiffer : NULL)
+            beyond |= fibre_lanes(spread, &fibres[i], lane, kind, gradient[part], max,
+                                  record[part].F, &length, watches ? &stiffer : NULL)
                       << part * LAR_LANES;
             if (!watches) continue;
-            strain[part].number[LAR_STRAIN_FIBRE] = length;
+            *number = spread ? lar_lane_max(length, *number) : length;
             *strained |= stiffer << part * LAR_LANES;
         }
     return beyond;
+}
+
+/* A function of its own, so that straight fibres do not pay for it. */
+__attribute__((noinline)) static unsigned stretch_spread(const lar_block_run *run, int32_t b,
+                                                         size_t count, double max, bool watches,
+                                                         lar_lane gradient[][9],
+                                                         lane_record *record, lane_strain *strain,
+                                                         unsigned *strained) {
+    unsigned beyond = 0;
+    for (const lar_fibre_block *of = run->fibres; of; of = of == run->second ? NULL : run->second)
+        beyond |=
+            stretch_family(true, of, 0, b, count, max, watches, gradient, record, strain, strained);
+    return beyond;
+}
+
+static unsigned stretch(const lar_block_run *run, int32_t b, size_t count, double max, bool watches,
+                        lar_lane gradient[][9], lane_record *record, lane_strain *strain,
+                        unsigned *strained) {
+    if (lar_fibre_kind_law(run->fibrous) == LAR_FIBRE_NONE) return 0;
+    if (run->fibrous >= LAR_FIBRE_SPREAD)
+        return stretch_spread(run, b, count, max, watches, gradient, record, strain, strained);
+    return stretch_family(false, run->fibres, run->fibrous, b, count, max, watches, gradient,
+                          record, strain, strained);
 }
 
 /* What is active, behind all that relaxes. */
@@ -462,7 +484,8 @@ LAR_INLINE int64_t recover_form(const lar_block_run *run, int fibrous, const lar
         unsigned beyond =
             stress(blocks, more, count, size, record, limits, share, limit, strains, &strained);
         if (fibrous)
-            beyond |= stretch(run, b, count, limits, limit, gradient, record, strains, &strained);
+            beyond |= stretch(run, b, count, limits->stress_square, limit, gradient, record,
+                              strains, &strained);
         if (step) beyond |= relax(run, step, b, count, limits, gradient, record);
         if (fibrous) beyond |= contract(run, active, b, count, limits, gradient, record);
         forces(blocks, count, run->turn, record, force);
@@ -489,19 +512,6 @@ static int64_t recover_more(const lar_block_run *run, const lar_viscous_step *st
 #endif
 
 /* ---- corners ------------------------------------------------------------------------------- */
-
-/* Where the corners of a block are, less whatever `nodes` says. */
-LAR_INLINE void gather_corners(const lar_block_head *head, int lane, lar_block_rows rows,
-                               const double *nodes, lar_lane x[8][3]) {
-    UNROLL4 for (int edge = 0; edge < 4; edge++) {
-        lar_lane left[3], right[3];
-        gather_pair(head, lane, rows, edge, nodes, left, right);
-        UNROLL3 for (int i = 0; i < 3; i++) {
-            x[left_node[edge]][i] = left[i];
-            x[right_node[edge]][i] = right[i];
-        }
-    }
-}
 
 /* The volumes that the edges span in the eight corners. */
 LAR_INLINE void corner_volumes(const lar_lane x[8][3], lar_lane volume[8]) {

@@ -8,7 +8,7 @@
 
 static const double nowhere[3];
 
-static lar_fibre_lane lane_of(const lar_fibre *fibre, const double direction[3]) {
+static lar_fibre_lane lane_of(const lar_fibre *fibre, const double *direction) {
     lar_fibre_lane lane = {.along = fibre->along, .across = fibre->across};
     memcpy(lane.direction, direction, sizeof lane.direction);
     memcpy(lane.parameter, fibre->parameter, sizeof lane.parameter);
@@ -23,8 +23,11 @@ static double relax(const lar_material *material, int terms, double factor, doub
     lar_fibre_lane lane = lane_of(&material->fibre, fibre ? fibre : nowhere);
     lar_law_table[material->law].stress(&F[0][0], &P[0][0], J, I1, material->parameter);
     if (fibre && material->fibre.law != LAR_FIBRE_NONE)
-        (void)lar_fibre_stress(lar_fibre_kind(&material->fibre), &F[0][0], &lane, &length, NULL,
-                               &P[0][0]);
+        for (int k = 0; k < lar_fibre_families(&material->fibre); k++) {
+            const lar_fibre_lane family = lane_of(&material->fibre, fibre + 3 * k);
+            (void)lar_fibre_family_stress(lar_fibre_kind_single(&material->fibre), &F[0][0],
+                                          &family, &length, NULL, &P[0][0]);
+        }
     if (v->terms > 0) {
         lar_viscous_lane c = {.rest = v->rest, .unit = factor, .inverse = 1 / factor};
         for (int i = 0; i < terms; i++) {
@@ -43,14 +46,14 @@ double lar_law_stress(const lar_material *material, const double F[3][3], double
     return relax(material, 0, 1, 0, NULL, F, forgotten, P);
 }
 
-double lar_material_stress(const lar_material *material, const double fibre[3],
-                           const double F[3][3], double P[3][3]) {
+double lar_material_stress(const lar_material *material, const double *fibre, const double F[3][3],
+                           double P[3][3]) {
     double forgotten[LAR_HISTORY_MAX] = {0};
     return relax(material, 0, 1, 0, fibre, F, forgotten, P);
 }
 
 void lar_viscous_stress_at(const lar_material *material, double factor, double past,
-                           const double fibre[3], const double F[3][3], double *history,
+                           const double *fibre, const double F[3][3], double *history,
                            double P[3][3]) {
     relax(material, material->viscosity.terms, factor, past, fibre, F, history, P);
 }
@@ -118,29 +121,37 @@ static double pow_linear_energy(const double *p, double square) {
     return toe + 2 * first * p[1] * beyond + (first + 0.5 * p[0] / p[1]) * beyond * beyond;
 }
 
-static double fibre_energy(const lar_material *material, const double direction[3],
-                           const double F[3][3]) {
-    const lar_fibre *fibre = &material->fibre;
+static double hgo_energy(const double *p, double square) {
+    double x = fmax(square - 1, 0);
+    return 0.5 * p[0] * (p[1] > 0 ? lar_lane_expm1(p[1] * x * x) / p[1] : x * x);
+}
+
+/* Of one family. */
+static double fibre_energy(const lar_fibre *fibre, const double *direction, const double F[3][3]) {
     double g[3], cof[9], J = lar_lane_cofactor(&F[0][0], cof);
     double length = lar_fibre_push(&F[0][0], direction, g);
-    double square = lar_fibre_square(lar_fibre_kind(fibre), length, J);
+    if (fibre->law == LAR_FIBRE_HGO) length = lar_fibre_mean(&F[0][0], length, fibre->parameter[2]);
+    double square = lar_fibre_square(lar_fibre_kind_single(fibre), length, J);
     if (fibre->law == LAR_FIBRE_EXP_POW) return exp_pow_energy(fibre->parameter, square);
+    if (fibre->law == LAR_FIBRE_HGO) return hgo_energy(fibre->parameter, square);
     if (fibre->law == LAR_FIBRE_POW_LINEAR) return pow_linear_energy(fibre->parameter, square);
     return exp_linear_energy(fibre->parameter, sqrt(square));
 }
 
-double lar_active_energy(const lar_material *material, const double fibre[3],
-                         const double F[3][3]) {
+double lar_active_energy(const lar_material *material, const double *fibre, const double F[3][3]) {
     double g[3], length = lar_fibre_push(&F[0][0], fibre, g);
     double along = lar_fibre_directed(&material->fibre) ? length - 1 : 0;
     double pull = material->fibre.along - material->fibre.across;
     return 0.5 * (pull * along + material->fibre.across * (lar_lane_square_sum(&F[0][0]) - 3));
 }
 
-double lar_material_energy(const lar_material *material, const double fibre[3],
+double lar_material_energy(const lar_material *material, const double *fibre,
                            const double F[3][3]) {
     if (!lar_fibre_here(&material->fibre)) return lar_law_energy(material, F);
-    double passive = material->fibre.law == LAR_FIBRE_NONE ? 0 : fibre_energy(material, fibre, F);
+    double passive = 0;
+    for (int k = 0; k < lar_fibre_families(&material->fibre); k++)
+        if (material->fibre.law != LAR_FIBRE_NONE)
+            passive += fibre_energy(&material->fibre, fibre + 3 * k, F);
     return relaxed(material, passive, F) + lar_active_energy(material, fibre, F);
 }
 

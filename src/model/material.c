@@ -2,11 +2,13 @@
 
 #include <math.h>
 
-const char *const lar_fibre_law_name[LAR_FIBRE_LAWS] = {"", "exp-pow", "exp-linear", "pow-linear"};
+const char *const lar_fibre_law_name[LAR_FIBRE_LAWS] = {"", "exp-pow", "exp-linear", "pow-linear",
+                                                        "hgo"};
 const char *const lar_fibre_parameter_name[LAR_FIBRE_LAWS][LAR_FIBRE_PARAMETERS] = {
     [LAR_FIBRE_EXP_POW] = {"ksi", "alpha", "beta"},
     [LAR_FIBRE_EXP_LINEAR] = {"c3", "c4", "c5", "lam_max"},
-    [LAR_FIBRE_POW_LINEAR] = {"E", "lam0", "beta"}};
+    [LAR_FIBRE_POW_LINEAR] = {"E", "lam0", "beta"},
+    [LAR_FIBRE_HGO] = {"k1", "k2", "kappa"}};
 
 double lar_material_shear(const lar_material *material) {
     double shear = lar_law_table[material->law].shear(material->parameter);
@@ -139,6 +141,17 @@ static lar_status check_fibres(const lar_material *material, const char *where, 
         if (!(p[1] > 1 && p[1] <= POWER)) wrong = "lam0 must be above 1, and at most 20";
         if (!(p[2] >= 2 && p[2] <= POWER)) wrong = "beta must be between 2 and 20";
     }
+    if (f->law == LAR_FIBRE_HGO) {
+        if (!(p[0] >= 0 && p[0] <= STIFF * stiff))
+            wrong = "k1, in pascal, must not be negative, nor a million times the law's moduli";
+        if (!(p[1] >= 0 && p[1] <= STEEP)) wrong = "k2 must be between 0 and 10000";
+        if (!(p[2] >= 0 && p[2] <= LAR_FIBRE_EVEN))
+            wrong = "kappa must be between 0, all fibres alike, and 1/3, evenly spread";
+        if (!f->isochoric)
+            wrong = "the law hgo is one of the isochoric part of the stretch; take that part";
+    }
+    if (f->paired && f->law != LAR_FIBRE_HGO)
+        wrong = "only fibres of the law hgo can have a second family; take that one";
     if (!(f->along >= 0 && f->across >= 0 && f->along + f->across <= STIFF * stiff))
         wrong = "the active stress must not be negative, nor a million times the law's moduli";
     if (!wrong && material->viscosity.terms > 0 && material->viscosity.isochoric &&

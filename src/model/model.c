@@ -158,23 +158,34 @@ static bool make_unit(double a[3]) {
     return true;
 }
 
+/* One of the directions of an element, `a` NULL: nobody said. */
+static lar_status check_direction(const lar_model *model, lar_gid e, double *a, bool second,
+                                  lar_error *error) {
+    if (a && make_unit(a)) return LAR_OK;
+    return lar_fail(error, LAR_ERROR_MODEL,
+                    "%s:%d: element %lld has %s and %s; give it a direction, in the mesh as a cell "
+                    "array \"%s\" of three components, or by a rule",
+                    lar_model_source(model), lar_model_material_of(model, e)->fibre.line,
+                    (long long)model->mesh.element_id[e],
+                    second ? "a second family of fibres" : "fibres",
+                    !a           ? "nothing says along what"
+                    : finite3(a) ? "their direction is 0, 0, 0"
+                                 : "their direction is not finite",
+                    second ? "fibre2" : "fibre");
+}
+
 /* A material with fibres needs directions in all of its elements. */
 static lar_status check_fibres(lar_model *model, lar_error *error) {
     lar_mesh *mesh = &model->mesh;
-    for (int32_t e = 0; e < mesh->element_count; e++) {
+    lar_status status = LAR_OK;
+    for (int32_t e = 0; e < mesh->element_count && !status; e++) {
         const lar_fibre *fibre = &lar_model_material_of(model, e)->fibre;
         if (!lar_fibre_directed(fibre)) continue;
-        double *a = mesh->fibre ? mesh->fibre[e] : NULL;
-        if (a && make_unit(a)) continue;
-        return lar_fail(error, LAR_ERROR_MODEL,
-                        "%s:%d: element %lld has fibres and %s; give it a direction, in the mesh "
-                        "as a cell array \"fibre\" of three components, or by a rule",
-                        lar_model_source(model), fibre->line, (long long)mesh->element_id[e],
-                        !a           ? "nothing says along what"
-                        : finite3(a) ? "their direction is 0, 0, 0"
-                                     : "their direction is not finite");
+        status = check_direction(model, e, mesh->fibre ? mesh->fibre[e] : NULL, false, error);
+        if (!status && lar_fibre_families(fibre) == 2)
+            status = check_direction(model, e, mesh->second ? mesh->second[e] : NULL, true, error);
     }
-    return LAR_OK;
+    return status;
 }
 
 static lar_status check_curves(const lar_model *model, lar_error *error) {

@@ -191,6 +191,15 @@ static inline const double *lar_model_fibre(const lar_model *model, lar_gid e) {
     return model->mesh.fibre ? model->mesh.fibre[e] : none;
 }
 
+/* The same of both families of a pair, 0 where there is no second. */
+static inline void lar_model_fibres(const lar_model *model, lar_gid e, double out[6]) {
+    const double *first = lar_model_fibre(model, e);
+    for (int i = 0; i < 3; i++) {
+        out[i] = first[i];
+        out[3 + i] = model->mesh.second ? model->mesh.second[e][i] : 0;
+    }
+}
+
 /* The material of element e. */
 static inline const lar_material *lar_model_material_of(const lar_model *model, lar_gid e) {
     return &model->material[model->element_material[e]];

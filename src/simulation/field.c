@@ -29,8 +29,7 @@ static lar_status plan_create(const lar_domain *whole, lar_field_plan **out, lar
         double corner[8][3];
         lar_mesh_corners(mesh, e, corner);
         lar_hex8_prepare(corner, lar_model_material_of(whole->model, e), &plan->element[e]);
-        memcpy(plan->element[e].fibre, lar_model_fibre(whole->model, e),
-               sizeof plan->element[e].fibre);
+        lar_model_fibres(whole->model, e, plan->element[e].fibre);
     }
     *out = plan;
     return LAR_OK;

@@ -63,7 +63,8 @@ static lar_block_more *more_of(const lar_domain *domain, int32_t r, int32_t b) {
 static lar_beside beside_of(const lar_domain *domain, int32_t r, int32_t b) {
     int32_t at = domain->run_first[r] + b;
     return (lar_beside){.relaxing = domain->run[r].viscous ? domain->relaxing + at : NULL,
-                        .fibres = domain->run[r].fibrous ? domain->fibres + at : NULL};
+                        .fibres = domain->run[r].fibrous ? domain->fibres + at : NULL,
+                        .second = domain->run[r].second ? domain->second + at : NULL};
 }
 
 /* What an element's material says in its lane, and *limit of corner_limit. */
@@ -80,7 +81,7 @@ static void fill_material(const lar_domain *domain, const lar_lane_base *base, l
             lar_law_scales(made->law, k) ? made->parameter[k] * base->volume * domain->scale
                                          : made->parameter[k];
     if (beside.relaxing) lar_fill_viscosity(domain, base, beside.relaxing, lane, made, factor);
-    if (beside.fibres) lar_fill_fibres(domain, base, beside.fibres, lane, made, e);
+    if (beside.fibres) lar_fill_fibres(domain, base, beside, lane, made, e);
     *limit = base->limit * factor * factor;
 }
 
@@ -168,8 +169,6 @@ static lar_status list_runs(lar_domain *domain, int32_t max, lar_error *error) {
         domain->block_bytes += lar_block_size(lanes->shape);
         if (lar_law_has_more(lanes->law))
             domain->more_bytes = (size_t)layout->block_count * sizeof *domain->more;
-        if (lanes->fibrous)
-            domain->fibre_bytes = (size_t)layout->block_count * sizeof *domain->fibres;
     }
     return LAR_OK;
 }
@@ -177,14 +176,12 @@ static lar_status list_runs(lar_domain *domain, int32_t max, lar_error *error) {
 static lar_status allocate_blocks(lar_domain *domain, lar_error *error) {
     domain->blocks = lar_calloc_aligned(domain->block_bytes, 1);
     if (domain->more_bytes) domain->more = lar_calloc_aligned(domain->more_bytes, 1);
-    if (domain->fibre_bytes) domain->fibres = lar_calloc_aligned(domain->fibre_bytes, 1);
     size_t elements = LAR_BLOCK * (size_t)domain->layout.block_count;
     domain->corner_limit = lar_calloc_aligned(elements, sizeof *domain->corner_limit);
     domain->base = lar_calloc(elements, sizeof *domain->base);
     domain->rest = lar_calloc_aligned(4 * (size_t)domain->layout.node_padded, sizeof *domain->rest);
-    if (!domain->blocks || (domain->more_bytes && !domain->more) ||
-        (domain->fibre_bytes && !domain->fibres) || !domain->base || !domain->corner_limit ||
-        !domain->rest)
+    if (!domain->blocks || (domain->more_bytes && !domain->more) || !lar_fibres_plan(domain) ||
+        !domain->base || !domain->corner_limit || !domain->rest)
         return lar_fail_memory(error, domain->block_bytes, "the elements");
     for (lar_lid n = 0; n < domain->layout.node_padded; n++)
         if (domain->layout.global[n] >= 0)
@@ -241,7 +238,6 @@ static bool fill_blocks(lar_domain *domain) {
         run->blocks = memory;
         if (lar_law_has_more(run->law)) run->more = domain->more + domain->run_first[r];
         if (run->viscous) run->relaxing = domain->relaxing + domain->run_first[r];
-        if (run->fibrous) run->fibres = domain->fibres + domain->run_first[r];
         run->streamed = domain->block_bytes > CACHED_BYTES;
         for (int32_t b = 0; b < run->count && same; b++) {
             same = fill_block(domain, r, b, memory, &steepest);
@@ -361,8 +357,7 @@ void lar_domain_element(const lar_domain *domain, int32_t r, int32_t b, int lane
     lar_hex8_block made;
     const lar_box_block *box = block;
     *hex8 = (lar_hex8){.volume = base->volume};
-    memcpy(hex8->fibre, lar_model_fibre(domain->model, domain->layout.block[b].element[lane]),
-           sizeof hex8->fibre);
+    lar_model_fibres(domain->model, domain->layout.block[b].element[lane], hex8->fibre);
     for (int m = 0; m < LAR_HEX8_HOURGLASS; m++)
         hex8->stiffness[m] = general->head.stiffness[m][lane] / domain->scale;
     if (run->shape == LAR_SHAPE_BOX) {
@@ -393,8 +388,8 @@ static void choose_scale(lar_domain *domain) {
         double modulus =
             lar_material_instant_bulk(material) + 4 * lar_material_instant_shear(material) / 3;
         if (lar_fibre_here(&material->fibre))
-            modulus += lar_fibre_modulus(&material->fibre) + fabs(material->fibre.along) +
-                       fabs(material->fibre.across);
+            modulus += lar_fibre_families(&material->fibre) * lar_fibre_modulus(&material->fibre) +
+                       fabs(material->fibre.along) + fabs(material->fibre.across);
         characteristic = fmax(characteristic, modulus * side * side);
     }
     int exponent;
@@ -542,6 +537,7 @@ void lar_domain_destroy(lar_domain *domain) {
     free(domain->blocks);
     free(domain->more);
     free(domain->fibres);
+    free(domain->second);
     lar_viscous_unplan(domain);
     lar_activation_unplan(domain);
     free(domain->material);

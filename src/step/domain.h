@@ -58,6 +58,7 @@ typedef struct lar_domain {
     size_t relaxing_bytes;
     lar_fibre_block *fibres; /* [blocks] of models that have fibres somewhere, or NULL */
     size_t fibre_bytes;
+    lar_fibre_block *second;  /* [blocks] of models with pairs of fibres somewhere, or NULL */
     size_t history_count;     /* values of a state's history, lanes without an element among them */
     size_t *run_history;      /* [run_count] where a viscous run's begin */
     int64_t *element_history; /* [elements of the model] where an element's begin, one in eight;

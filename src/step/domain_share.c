@@ -17,6 +17,7 @@ static void forget_own(lar_domain *domain) {
     domain->more = NULL;
     domain->relaxing = NULL;
     domain->fibres = NULL;
+    domain->second = NULL;
     domain->corner_limit = NULL;
     domain->material = NULL;
 }
@@ -57,6 +58,7 @@ lar_status lar_domain_share(lar_domain *from, lar_domain *copy, lar_error *error
     copy->more = copy_of(from->more, from->more_bytes, &failed);
     copy->relaxing = copy_of(from->relaxing, from->relaxing_bytes, &failed);
     copy->fibres = copy_of(from->fibres, from->fibre_bytes, &failed);
+    copy->second = copy_of(from->second, from->fibre_bytes, &failed);
     copy->corner_limit = copy_of(from->corner_limit, lanes * sizeof *from->corner_limit, &failed);
     copy->material = copy_of(from->material,
                              (size_t)from->model->material_count * sizeof *from->material, &failed);
@@ -72,6 +74,7 @@ lar_status lar_domain_share(lar_domain *from, lar_domain *copy, lar_error *error
         run->more = moved(run->more, from->more, copy->more);
         run->relaxing = moved(run->relaxing, from->relaxing, copy->relaxing);
         run->fibres = moved(run->fibres, from->fibres, copy->fibres);
+        run->second = moved(run->second, from->second, copy->second);
     }
     return LAR_OK;
 }
@@ -87,6 +90,7 @@ void lar_domain_leave(lar_domain *domain) {
     free(domain->more);
     free(domain->relaxing);
     free(domain->fibres);
+    free(domain->second);
     free(domain->corner_limit);
     free(domain->material);
     *domain = (lar_domain){0};

@@ -52,6 +52,9 @@ static uint64_t hash_blocks(uint64_t hash, const lar_domain *domain) {
     word = (const void *)domain->fibres;
     for (size_t i = 0; word && i < domain->fibre_bytes / sizeof *word; i++)
         hash = lar_hash_word(hash, word[i]);
+    word = (const void *)domain->second;
+    for (size_t i = 0; word && i < domain->fibre_bytes / sizeof *word; i++)
+        hash = lar_hash_word(hash, word[i]);
     word = (const void *)domain->relaxing;
     for (size_t i = 0; word && i < domain->relaxing_bytes / sizeof *word; i++)
         hash = lar_hash_word(hash, word[i]);
@@ -94,13 +97,16 @@ static uint64_t hash_fibres(uint64_t hash, const lar_model *model) {
     if (!lar_model_fibrous(model)) return hash;
     for (int i = 0; i < model->material_count; i++) {
         const lar_fibre *f = &model->material[i].fibre;
-        hash = lar_hash_word(hash, (uint64_t)lar_fibre_kind(f));
+        hash = lar_hash_word(hash, (uint64_t)lar_fibre_kind_single(f));
         hash = hash_doubles(hash, f->parameter, LAR_FIBRE_PARAMETERS);
         hash = hash_doubles(hash, (const double[]){f->along, f->across}, 2);
     }
     for (lar_gid e = 0; e < model->mesh.element_count; e++)
         if (lar_fibre_directed(&lar_model_material_of(model, e)->fibre))
             hash = hash_doubles(hash, lar_model_fibre(model, e), 3);
+    for (lar_gid e = 0; e < model->mesh.element_count; e++)
+        if (lar_fibre_families(&lar_model_material_of(model, e)->fibre) == 2)
+            hash = hash_doubles(hash, model->mesh.second[e], 3);
     return hash_activation(hash, model);
 }
 

@@ -18,7 +18,7 @@ static double element_energy(const lar_domain *domain, const lar_state *state, l
         return lar_hex8_full_energy(corner, lar_domain_material(domain, e), u);
     lar_hex8 hex8;
     lar_hex8_prepare(corner, lar_domain_material(domain, e), &hex8);
-    memcpy(hex8.fibre, lar_model_fibre(domain->model, e), sizeof hex8.fibre);
+    lar_model_fibres(domain->model, e, hex8.fibre);
     const lar_material now = lar_activation_material(domain, e, lar_state_time(domain, state));
     return lar_hex8_energy(&hex8, &now, u, hourglass) + lar_guard_energy(domain, state, e);
 }
@@ -38,11 +38,11 @@ static double pending_work(const lar_domain *domain, const lar_state *state, lar
 /* What a viscous element remembers, taken on to the time of the state: returns the stress P. */
 static void look_at_history(const lar_domain *domain, const lar_state *state, lar_gid e,
                             const double F[3][3], double history[LAR_HISTORY_MAX], double P[3][3]) {
-    double factor = domain->factor[lar_factor_of(domain->model->element_material[e])];
+    double factor = domain->factor[lar_factor_of(domain->model->element_material[e])], fibre[6];
+    lar_model_fibres(domain->model, e, fibre);
     lar_viscous_read(domain, state, e, history);
     const lar_material now = lar_activation_material(domain, e, lar_state_time(domain, state));
-    lar_viscous_stress_at(&now, factor, state->past, lar_model_fibre(domain->model, e), F, history,
-                          P);
+    lar_viscous_stress_at(&now, factor, state->past, fibre, F, history, P);
 }
 
 /* What the viscous terms of an element have taken. */
@@ -294,7 +294,8 @@ double lar_measure_stress(const lar_domain *domain, const lar_state *state, lar_
     lar_hex8 hex8;
     lar_hex8_prepare(corner, material, &hex8);
     lar_hex8_gradient(&hex8, u, F);
-    const double *fibre = lar_model_fibre(domain->model, e);
+    double fibre[6];
+    lar_model_fibres(domain->model, e, fibre);
     double J = lar_material_stress(material, fibre, F, P), history[LAR_HISTORY_MAX];
     if (lar_viscous_here(domain, e))
         look_at_history(domain, state, e, (const double(*)[3])F, history, P);

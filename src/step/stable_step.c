@@ -14,7 +14,7 @@ static double element_frequency(const lar_model *model, lar_element_kind kind, l
     const lar_material *material = lar_model_material_of(model, e);
     lar_mesh_corners(&model->mesh, e, corner);
     lar_hex8_prepare(corner, material, hex8);
-    memcpy(hex8->fibre, lar_model_fibre(model, e), sizeof hex8->fibre);
+    lar_model_fibres(model, e, hex8->fibre);
     return kind == LAR_ELEMENT_HEX8 ? lar_hex8_frequency(hex8, material)
                                     : lar_hex8_full_frequency(corner, material);
 }

@@ -49,6 +49,7 @@ static void fault_run(const lar_domain *domain, int32_t r, int64_t found, lar_st
         one.more = domain->run[r].more ? domain->run[r].more + b : NULL;
         one.viscous = 0; /* the elastic stress says enough, and what is remembered has gone on */
         if (one.fibrous) one.fibres = domain->run[r].fibres + b;
+        if (one.second) one.second = domain->run[r].second + b;
         lar_active_step now =
             activates ? (lar_active_step){active.now + LAR_BLOCK * b, active.energy + LAR_BLOCK * b}
                       : (lar_active_step){0};

@@ -1,4 +1,4 @@
-/* The scenes of examples/scenes that contract, beat and squeeze: what they must do. */
+/* The scenes of examples/scenes that contract, beat, squeeze and widen: what they must do. */
 #include "engine/engine_test.h"
 #include "mechanics/stress.h"
 
@@ -167,12 +167,59 @@ static void a_wave_runs_along_a_tube(void **unused) {
     finish(simulation, model);
 }
 
+/* Pressure in a long tube that keeps its volume and its length, whose inner radius has come to
+ * `inside`: the difference of the stresses around it and through it, over the radius, summed. */
+static double pressure_in(double inside) {
+    const double from = 3.1e-3, to = 3.9e-3, G = 3e3, k1 = 2363.2, k2 = 0.8393, kappa = 0.1;
+    const double along = cos(29 * acos(-1) / 180); /* of a fibre's way around */
+    enum { PARTS = 2000 };
+    double sum = 0;
+    for (int i = 0; i < PARTS; i++) {
+        double R = from + (to - from) * (i + 0.5) / PARTS, dR = (to - from) / PARTS;
+        double r = sqrt(inside * inside + R * R - from * from), wide = r * r / (R * R);
+        double around = along * along * wide, I4 = around + 1 - along * along;
+        double E = kappa * (wide + 1 / wide - 2) + (1 - 3 * kappa) * (I4 - 1);
+        double pull = 2 * 2 * k1 * E * exp(k2 * E * E); /* of two families */
+        double difference =
+            (G + pull * kappa) * (wide - 1 / wide) + pull * (1 - 3 * kappa) * around;
+        sum += difference * R / (r * r) * dR; /* dr / r */
+    }
+    return sum;
+}
+
+/* An artery is as wide as the closed form says, the same all around; nothing wrings it. */
+static void an_artery_gets_wide(void **unused) {
+    (void)unused;
+    lar_model *model;
+    lar_simulation *simulation = open_scene("artery", &model);
+    run_to(simulation, model->duration);
+    double low = 3.1e-3, high = 2 * low, least = 1, most = 0, turn = 0;
+    for (int i = 0; i < 60; i++) {
+        double middle = 0.5 * (low + high);
+        *(pressure_in(middle) < 2000 ? &low : &high) = middle;
+    }
+    for (int32_t n = 0; n < model->mesh.node_count; n++) {
+        const double *x = model->mesh.position[n], *u = moved(simulation, n);
+        if (hypot(x[0], x[1]) > 3.11e-3) continue;
+        double y[2] = {x[0] + u[0], x[1] + u[1]}, now = hypot(y[0], y[1]);
+        least = fmin(least, now);
+        most = fmax(most, now);
+        turn = fmax(turn, fabs(x[0] * y[1] - x[1] * y[0]) / (now * 3.1e-3));
+    }
+    print_message("artery: %.4f to %.4f mm, %.4f by the formula, turned by %.2g\n", 1e3 * least,
+                  1e3 * most, 1e3 * low, turn);
+    assert_below(fabs(least / low - 1), 0.01);
+    assert_below(fabs(most / low - 1), 0.01);
+    assert_below(turn, 1e-3);
+    assert_true(low > 1.4 * 3.1e-3);
+    finish(simulation, model);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_muscle_gets_shorter),
-        cmocka_unit_test(a_cup_beats_twice),
-        cmocka_unit_test(a_cup_twists),
-        cmocka_unit_test(a_wave_runs_along_a_tube),
+        cmocka_unit_test(a_muscle_gets_shorter), cmocka_unit_test(a_cup_beats_twice),
+        cmocka_unit_test(a_cup_twists),          cmocka_unit_test(a_wave_runs_along_a_tube),
+        cmocka_unit_test(an_artery_gets_wide),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -20,6 +20,16 @@ static const lar_fibre FIBRES[] = {
     {.law = LAR_FIBRE_POW_LINEAR, .parameter = {900, 1.12, 2.6}},
     {.law = LAR_FIBRE_POW_LINEAR, .parameter = {1500, 1.08, 2}, .isochoric = true},
     {.law = LAR_FIBRE_POW_LINEAR, .parameter = {700, 1.01, 4}, .along = 200},
+    {.law = LAR_FIBRE_HGO, .parameter = {600, 1.2, 0}, .isochoric = true},
+    {.law = LAR_FIBRE_HGO, .parameter = {800, 0, 0.226}, .isochoric = true, .along = 250},
+    {.law = LAR_FIBRE_HGO, .parameter = {500, 3, 1.0 / 3}, .isochoric = true},
+    {.law = LAR_FIBRE_HGO, .parameter = {900, 0.8, 0.1}, .isochoric = true, .paired = true},
+    {.law = LAR_FIBRE_HGO,
+     .parameter = {400, 1.5, 0},
+     .isochoric = true,
+     .paired = true,
+     .along = 150},
+    {.law = LAR_FIBRE_HGO, .parameter = {700, 0, 0.15}, .isochoric = true, .paired = true},
 };
 enum { FAMILIES = sizeof FIBRES / sizeof *FIBRES, STATES = 100 };
 
@@ -35,14 +45,19 @@ static void random_unit(uint64_t *seed, double a[3]) {
     for (int i = 0; i < 3; i++) a[i] = R[i][0];
 }
 
+/* Of two families; the second one is drawn only where there are two. */
+static void random_units(uint64_t *seed, const lar_fibre *fibre, double a[6]) {
+    for (int k = 0; k < lar_fibre_families(fibre); k++) random_unit(seed, a + 3 * k);
+}
+
 static void stress_is_energy_slope(void **state) {
     (void)state;
     uint64_t seed = 5;
     for (int family = 0; family < FAMILIES; family++)
         for (int n = 0; n < STATES; n++) {
             lar_material material = material_with(family, (lar_law)(n % LAR_LAW_COUNT));
-            double F[3][3], P[3][3], a[3], slope[9];
-            random_unit(&seed, a);
+            double F[3][3], P[3][3], a[6], slope[9];
+            random_units(&seed, &material.fibre, a);
             random_deformation(&seed, 0.3, F);
             lar_material_stress(&material, a, (rows)F, P);
             for (int k = 0; k < 9; k++) {
@@ -65,13 +80,15 @@ static void turned_with_the_body(void **state) {
     for (int family = 0; family < FAMILIES; family++)
         for (int n = 0; n < STATES; n++) {
             lar_material material = material_with(family, (lar_law)(n % LAR_LAW_COUNT));
-            double F[3][3], Q[3][3], P[3][3], a[3], b[3], QF[3][3], QP[3][3], FQ[3][3], PQ[3][3];
+            double F[3][3], Q[3][3], P[3][3], a[6] = {0}, b[6], QF[3][3], QP[3][3], FQ[3][3],
+                                              PQ[3][3];
             double found[3][3];
-            random_unit(&seed, a);
+            random_units(&seed, &material.fibre, a);
             random_deformation(&seed, 0.4, F);
             random_rotation(&seed, Q);
-            for (int i = 0; i < 3; i++) {
-                b[i] = Q[i][0] * a[0] + Q[i][1] * a[1] + Q[i][2] * a[2];
+            for (int i = 0; i < 6; i++) {
+                const double *c = a + i / 3 * 3, *row = Q[i % 3];
+                b[i] = row[0] * c[0] + row[1] * c[1] + row[2] * c[2];
             }
             lar_material_stress(&material, a, (rows)F, P);
             for (int i = 0; i < 3; i++)
@@ -95,9 +112,12 @@ static void turned_with_the_body(void **state) {
 /* Not a bit of stress, and no energy. */
 static void pressed_fibres_do_nothing(void **state) {
     (void)state;
-    static const double F[3][3] = {{0.8, 0, 0}, {0, 1.2, 0.1}, {0, 0, 1.1}}, a[3] = {1, 0, 0};
+    static const double F[3][3] = {{0.8, 0, 0}, {0, 1.2, 0.1}, {0, 0, 1.1}};
+    static const double a[6] = {1, 0, 0, 0.96, 0.28, 0};
     for (int family = 0; family < FAMILIES; family++) {
         lar_material material = material_with(family, LAR_LAW_neo_hookean);
+        if (material.fibre.law == LAR_FIBRE_HGO && material.fibre.parameter[2] > 0.3)
+            continue; /* some of them are always pulled */
         double P[3][3], law[3][3];
         material.fibre.along = material.fibre.across = 0;
         lar_material_stress(&material, a, F, P);
@@ -118,7 +138,7 @@ static void pulled_along_and_across(void **state) {
             const double *p = f->parameter;
             double side = 1 / sqrt(L);
             const double F[3][3] = {{L, 0, 0}, {0, side, 0}, {0, 0, side}};
-            double a[3] = {1, 0, 0}, P[3][3], Q[3][3], wanted = 0;
+            double a[6] = {1, 0, 0, 1, 0, 0}, P[3][3], Q[3][3], wanted = 0;
             bare.fibre = (lar_fibre){0};
             lar_material_stress(&material, a, F, P);
             lar_material_stress(&bare, a, F, Q);
@@ -126,6 +146,11 @@ static void pulled_along_and_across(void **state) {
             if (f->law == LAR_FIBRE_EXP_POW && L > 1)
                 wanted =
                     2 * L * L * p[0] * pow(L * L - 1, p[2] - 1) * exp(p[1] * pow(L * L - 1, p[2]));
+            if (f->law == LAR_FIBRE_HGO) {
+                double mean = p[2] * (L * L + 2 / L) + (1 - 3 * p[2]) * L * L;
+                double E = fmax(mean - 1, 0), spread = p[2] * (L * L - 1 / L);
+                wanted = 2 * p[0] * E * exp(p[1] * E * E) * (spread + (1 - 3 * p[2]) * L * L);
+            }
             if (f->law == LAR_FIBRE_EXP_LINEAR && L > 1)
                 wanted = L < p[3] ? p[0] * expm1(p[1] * (L - 1))
                                   : p[2] * L + p[0] * expm1(p[1] * (p[3] - 1)) - p[2] * p[3];
@@ -136,9 +161,34 @@ static void pulled_along_and_across(void **state) {
                 wanted =
                     L < p[1] ? 2 * L * L * xi * pow(L * L - 1, p[2] - 1) : 2 * B * L * L - p[0] * L;
             }
-            wanted += f->along * L * L - f->across / L;
+            wanted = lar_fibre_families(f) * wanted + f->along * L * L - f->across / L;
             assert_below(fabs(found - wanted), 1e-12 * (fabs(wanted) + 1000));
         }
+}
+
+/* Without spread hgo is exp-pow with beta = 2, and spread evenly it knows no direction. */
+static void the_limits_of_spread(void **state) {
+    (void)state;
+    uint64_t seed = 9;
+    for (int n = 0; n < STATES; n++) {
+        double F[3][3], P[3][3], Q[3][3], a[6], b[6];
+        lar_material m = material_with(0, LAR_LAW_neo_hookean), power = m;
+        m.fibre = (lar_fibre){LAR_FIBRE_HGO, .isochoric = true, .parameter = {700, 0.9, 0}};
+        power.fibre = (lar_fibre){LAR_FIBRE_EXP_POW, .isochoric = true, .parameter = {700, 0.9, 2}};
+        m.fibre.paired = power.fibre.paired = n % 2 == 1;
+        for (int k = 0; k < 6; k += 3) random_unit(&seed, a + k), random_unit(&seed, b + k);
+        random_deformation(&seed, 0.3, F);
+        lar_material_stress(&m, a, (rows)F, P);
+        lar_material_stress(&power, a, (rows)F, Q);
+        double size = largest(&P[0][0], 9);
+        assert_below(largest_difference(&P[0][0], &Q[0][0], 9) / size, 1e-12);
+        double energy = lar_material_energy(&m, a, (rows)F);
+        assert_below(fabs(energy / lar_material_energy(&power, a, (rows)F) - 1), 1e-12);
+        m.fibre.parameter[2] = 1.0 / 3;
+        lar_material_stress(&m, a, (rows)F, P);
+        lar_material_stress(&m, b, (rows)F, Q);
+        assert_below(largest_difference(&P[0][0], &Q[0][0], 9) / size, 1e-12);
+    }
 }
 
 /* Where the straight part of a law begins, stress and modulus go on; and the answer of fibres says
@@ -208,19 +258,28 @@ static void the_bound_of_stiffness_holds(void **state) {
         material.fibre.along = material.fibre.across = 0;
         if (material.fibre.law == LAR_FIBRE_NONE) continue;
         for (int n = 0; n < STATES; n++) {
-            double F[3][3], a[3], g[3], p[4], cof[9];
-            random_unit(&seed, a);
+            double F[3][3], a[6], g[3], p[4], cof[9], bound = 0, pulled = 0;
+            random_units(&seed, &material.fibre, a);
             random_deformation(&seed, 0.25, F);
-            int kind = lar_fibre_kind(&material.fibre);
-            double J = lar_lane_cofactor((const double *)F, cof),
-                   length = lar_fibre_push((const double *)F, a, g);
-            double square = lar_fibre_square(kind, length, J);
+            int kind = lar_fibre_kind_single(&material.fibre);
+            double J = lar_lane_cofactor((const double *)F, cof);
             memcpy(p, material.fibre.parameter, sizeof p);
-            lar_fibre_answer now = lar_fibre_tension(material.fibre.law, square, p);
-            double bound =
-                lar_fibre_stiffness(kind, &now, square, length, J, lar_lane_square_sum(cof));
+            for (int k = 0; k < lar_fibre_families(&material.fibre); k++) {
+                double length = lar_fibre_push((const double *)F, a + 3 * k, g);
+                if (material.fibre.law == LAR_FIBRE_HGO)
+                    length = lar_fibre_mean((const double *)F, length, p[2]);
+                double square = lar_fibre_square(kind, length, J);
+                lar_fibre_answer now = lar_fibre_tension(material.fibre.law, square, p);
+                double area = lar_lane_square_sum(cof);
+                bound += material.fibre.law == LAR_FIBRE_HGO
+                             ? lar_fibre_spread_stiffness(&now, square, length,
+                                                          lar_lane_square_sum((const double *)F),
+                                                          p[2], J, area)
+                             : lar_fibre_stiffness(kind, &now, square, length, J, area);
+                pulled = fmax(pulled, square);
+            }
             double found = stiffest(&material, a, F, bound);
-            if (square < 1.0001) continue;
+            if (pulled < 1.0001) continue;
             assert_below(found, bound * (1 + 1e-4));
             closest = fmax(closest, found / bound);
         }
@@ -244,7 +303,7 @@ static void frequency_counts_fibres(void **state) {
             for (int k = 0; k < LAR_FIBRE_PARAMETERS; k++)
                 if (lar_fibre_scales(material.fibre.law, k)) material.fibre.parameter[k] *= 5;
             lar_hex8_prepare((rows)corner, &material, &element);
-            random_unit(&seed, element.fibre);
+            random_units(&seed, &material.fibre, element.fibre);
             for (int k = 0; k < 24; k++) way[k] = 1 + 0.3 * k - 0.05 * k * (k % 5);
             double mass = material.density * element.volume / 8, edge = cbrt(element.volume);
             for (int round = 0; round < 200; round++) {
@@ -254,10 +313,12 @@ static void frequency_counts_fibres(void **state) {
                     double(*force)[3] = sign < 0 ? below : above;
                     for (int b = 0; b < 8; b++)
                         for (int i = 0; i < 3; i++) {
-                            double along = 0;
-                            for (int j = 0; j < 3; j++) along += element.fibre[j] * corner[b][j];
-                            u[b][i] = 1e-4 * along * element.fibre[i] +
-                                      sign * 1e-6 * edge * way[3 * b + i] / sqrt(norm);
+                            u[b][i] = sign * 1e-6 * edge * way[3 * b + i] / sqrt(norm);
+                            for (int k = 0; k < 6; k += 3) {
+                                double along = 0, *a = element.fibre + k;
+                                for (int j = 0; j < 3; j++) along += a[j] * corner[b][j];
+                                u[b][i] += 1e-4 * along * a[i];
+                            }
                         }
                     lar_hex8_force(&element, &material, (rows)u, force);
                 }
@@ -281,7 +342,7 @@ int main(void) {
         cmocka_unit_test(stress_is_energy_slope),    cmocka_unit_test(turned_with_the_body),
         cmocka_unit_test(pressed_fibres_do_nothing), cmocka_unit_test(pulled_along_and_across),
         cmocka_unit_test(toes_end_smoothly),         cmocka_unit_test(the_bound_of_stiffness_holds),
-        cmocka_unit_test(frequency_counts_fibres),
+        cmocka_unit_test(frequency_counts_fibres),   cmocka_unit_test(the_limits_of_spread),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -61,6 +61,32 @@ static void scenes_say_laws_and_directions(void **state) {
     lar_model_destroy(model);
 }
 
+#define HGO "law: hgo, part: isochoric, k1: 2e3, k2: 1.5, kappa: 0.2, "
+
+static void scenes_say_a_second_family(void **state) {
+    (void)state;
+    lar_model *model = scene(SCENE(HGO "direction: {axis: [0, 3, 4]}, second: {axis: [0, 3, -4]}"));
+    const lar_fibre *f = &model->material[0].fibre;
+    double both[6];
+    assert_true(f->law == LAR_FIBRE_HGO && f->isochoric && f->paired);
+    assert_true(f->parameter[0] == 2e3 && f->parameter[1] == 1.5 && f->parameter[2] == 0.2);
+    for (int32_t e = 0; e < model->mesh.element_count; e++) {
+        lar_model_fibres(model, e, both);
+        near(both, 0, 0.6, 0.8);
+        near(both + 3, 0, 0.6, -0.8);
+    }
+    lar_model_destroy(model);
+    model = scene(SCENE(HGO "direction: {axis: [1, 0, 0]}, active: {along: 50}, second: {around: "
+                            "{point: [0.01, 0.01, 0], axis: [0, 0, 2]}}"));
+    assert_true(model->material[0].fibre.paired && model->material[0].fibre.along == 50);
+    const double s = sqrt(0.5);
+    near(model->mesh.second[0], s, -s, 0);
+    lar_model_destroy(model);
+    model = scene(SCENE(HGO "direction: {axis: [1, 0, 0]}"));
+    assert_true(!model->material[0].fibre.paired && !model->mesh.second);
+    lar_model_destroy(model);
+}
+
 static void scenes_say_what_is_active(void **state) {
     (void)state;
     lar_model *model = scene(SCENE("active: {along: 2e3}, direction: {axis: [0, 0, 1]}"));
@@ -163,6 +189,27 @@ static void scenes_say_what_is_wrong(void **state) {
                "length: 1}}"),
          "direction"},
         {SCENE(POW "twist: 1, direction: mesh"), "twist"},
+        {SCENE(HGO "kappa: 0.1, direction: mesh"), "kappa"},
+        {SCENE("law: hgo, part: isochoric, k1: 1, k2: 1, direction: mesh"), "need kappa; add it"},
+        {SCENE("law: hgo, part: whole, k1: 1, k2: 1, kappa: 0, direction: {axis: [1, 0, 0]}"),
+         "one of the isochoric part of the stretch"},
+        {SCENE("law: hgo, part: isochoric, k1: 1, k2: 1, kappa: 0.4, direction: {axis: [1, 0, 0]}"),
+         "kappa must be between 0"},
+        {SCENE("law: hgo, part: isochoric, k1: -1, k2: 1, kappa: 0, direction: {axis: [1, 0, 0]}"),
+         "k1 is -1"},
+        {SCENE("law: hgo, part: isochoric, k1: 1, k2: 2e4, kappa: 0, direction: {axis: [1, 0, 0]}"),
+         "k2 must be between 0 and 10000"},
+        {SCENE(POW "k2: 1, direction: mesh"), "k2 is no parameter of the law exp-pow"},
+        {SCENE(HGO "direction: {axis: [1, 0, 0]}, second: mesh"), "cell array \"fibre2\""},
+        {SCENE(HGO "direction: {axis: [1, 0, 0]}, second: {}"), "second: expected mesh, {axis"},
+        {SCENE(HGO "direction: {axis: [1, 0, 0]}, second: {axis: [0, 0, 0]}"), "axis"},
+        {SCENE(HGO "direction: {axis: [1, 0, 0]}, second: {around: {point: [0.005, 0.005, 0], "
+                   "axis: [0, 0, 1]}}"),
+         "element 101 has a second family of fibres and their direction is 0, 0, 0"},
+        {SCENE("active: {along: 1}, direction: mesh, second: mesh"),
+         "only fibres of the law hgo can have a second family"},
+        {SCENE(POW "direction: {axis: [1, 0, 0]}, second: {axis: [0, 1, 0]}"),
+         "only fibres of the law hgo can have a second family"},
         {SCENE(POW "direction: mesh"), "no mesh has directions"},
         {SCENE(POW "direction: {}"), "direction: expected mesh, {axis: [x, y, z]}"},
         {SCENE(POW "direction: {axis: [0, 0, 0]}"), "axis"},
@@ -229,6 +276,37 @@ static void meshes_bring_directions(void **state) {
         assert_non_null(strstr(error.message, i ? "direction is not finite" : "is 0, 0, 0"));
         assert_non_null(strstr(error.message, "element 3 "));
     }
+    lar_bytes_free(&bytes);
+}
+
+/* Two meshes, of which the second one has no second family, written and read once more. */
+static void meshes_bring_second_families(void **state) {
+    (void)state;
+    lar_mesh mesh = {0}, back = {0};
+    lar_error error;
+    assert_int_equal(brick_read("brick.vtu", 1, &mesh, &error), LAR_OK);
+    size_t count = (size_t)mesh.element_count;
+    mesh.fibre = lar_calloc(count, sizeof *mesh.fibre);
+    mesh.second = lar_calloc(count, sizeof *mesh.second);
+    for (size_t e = 0; e < count; e++) mesh.fibre[e][2] = mesh.second[e][1] = 1 + (double)e;
+    const lar_vtu_frame frame = {.mesh = &mesh};
+    if (lar_vtu_write(FILE_NAME, &frame, &error)) fail_msg("%s", error.message);
+    if (lar_mesh_read(FILE_NAME, 1, &back, &error)) fail_msg("%s", error.message);
+    for (size_t e = 0; e < count; e++) {
+        near(back.fibre[e], 0, 0, 1 + (double)e);
+        near(back.second[e], 0, 1 + (double)e, 0);
+    }
+    lar_mesh_clear(&mesh);
+    lar_mesh_clear(&back);
+    static const char text[] =
+        "lariat: 1\nmesh: [" FILE_NAME ", " FILE_NAME "]\nmaterials:\n  - {" TISSUE
+        ", fibres: {" HGO "direction: mesh, second: mesh}}\n";
+    lar_bytes bytes = {(unsigned char *)lar_strdup(text), strlen(text)};
+    lar_model *model = NULL;
+    if (lar_scene_parse("s.yaml", &bytes, &model, &error)) fail_msg("%s", error.message);
+    assert_int_equal(model->mesh.element_count, 2 * count);
+    near(model->mesh.second[2 * count - 1], 0, 1, 0);
+    lar_model_destroy(model);
     lar_bytes_free(&bytes);
 }
 
@@ -324,6 +402,59 @@ static void decks_say_laws_and_directions(void **state) {
     lar_model_destroy(model);
 }
 
+#define HGO_DECK "<c>800</c><k1>2500</k1><k2>1.4</k2><kappa>0.1</kappa><gamma>30</gamma><k>9e4</k>"
+#define HGO_TYPE "Holzapfel-Gasser-Ogden"
+
+static bool says(const lar_model *model, const char *words) {
+    for (int i = 0; i < model->notice_count; i++)
+        if (strstr(model->notice[i], words)) return true;
+    return false;
+}
+
+/* Both families, at +30 and -30 degrees. */
+static void hold_pair(const lar_model *model, int32_t e, const double e1[3], const double e2[3]) {
+    const double c = sqrt(0.75), s = 0.5;
+    const double *first = lar_model_fibre(model, e), *second = model->mesh.second[e];
+    near(first, c * e1[0] + s * e2[0], c * e1[1] + s * e2[1], c * e1[2] + s * e2[2]);
+    near(second, c * e1[0] - s * e2[0], c * e1[1] - s * e2[1], c * e1[2] - s * e2[2]);
+}
+
+static void decks_say_two_families(void **state) {
+    (void)state;
+    const double x[3] = {1, 0, 0}, y[3] = {0, 1, 0}, z[3] = {0, 0, 1};
+    lar_model *model = deck(DECK(HGO_TYPE, HGO_DECK, ""));
+    const lar_material *m = &model->material[0];
+    const lar_fibre *f = &m->fibre;
+    assert_true(m->law == LAR_LAW_neo_hookean && lar_material_shear(m) == 800);
+    assert_true(lar_material_bulk(m) == 9e4);
+    assert_true(f->law == LAR_FIBRE_HGO && f->isochoric && f->paired);
+    assert_true(f->parameter[0] == 2500 && f->parameter[1] == 1.4 && f->parameter[2] == 0.1);
+    hold_pair(model, 1, x, y);
+    assert_true(says(model, "answers a change of volume by K/2 (J - 1)^2"));
+    lar_model_destroy(model);
+    model = deck(DECK(HGO_TYPE,
+                      HGO_DECK "<mat_axis type=\"vector\"><a>0,0,3</a><d>1,0,7</d></mat_axis>"
+                               "<pressure_model>Abaqus</pressure_model>",
+                      ""));
+    hold_pair(model, 0, z, x);
+    assert_false(says(model, "a change of volume"));
+    lar_model_destroy(model);
+    model = deck(DECK(HGO_TYPE,
+                      HGO_DECK "<mat_axis type=\"local\">1,5,2</mat_axis>"
+                               "<pressure_model>default</pressure_model>",
+                      ""));
+    assert_true(model->material[0].law == LAR_LAW_mooney_rivlin);
+    assert_true(fabs(lar_material_shear(&model->material[0]) - 800) < 1e-9);
+    hold_pair(model, 1, z, x);
+    lar_model_destroy(model);
+    model = deck(DECK(HGO_TYPE, HGO_DECK "<mat_axis type=\"user\"/>",
+                      "<ElementData type=\"mat_axis\" elem_set=\"back\"><e lid=\"1\"><a>0,2,0</a>"
+                      "<d>0,0,1</d></e><e lid=\"2\"><a>0,0,1</a><d>0,3,0</d></e></ElementData>"));
+    hold_pair(model, 0, z, y);
+    hold_pair(model, 1, y, z);
+    lar_model_destroy(model);
+}
+
 #define CONTRACTS(lc)                                                                              \
     SOLID "<solid type=\"prescribed uniaxial active contraction\"><T0" lc ">200</T0>" ALONG        \
           "</solid>"
@@ -381,6 +512,26 @@ static void decks_say_what_is_wrong(void **state) {
         {MIX(SOLID "<solid type=\"fiber-exp-pow\">" EXP ALONG "<lam0>1.1</lam0></solid>"),
          "<lam0> of a material with fibres is not read"},
         {MIX(SOLID "<solid type=\"ellipsoidal fiber distribution\"/>"), "is not read"},
+        {MIX(SOLID "<solid type=\"" HGO_TYPE "\"/>"), "is read where it stands alone"},
+        {DECK(HGO_TYPE, "<c>800</c><k1>2500</k1><k2>1.4</k2><kappa>0.1</kappa><k>9e4</k>", ""),
+         "no parameter <gamma>"},
+        {DECK(HGO_TYPE, HGO_DECK "<pressure_model>NIKE3D</pressure_model>", ""),
+         "pressure_model 'NIKE3D' of a material"},
+        {DECK(HGO_TYPE, HGO_DECK ALONG, ""), "give it a <mat_axis>"},
+        {DECK(HGO_TYPE, HGO_DECK "<mat_axis type=\"vector\"><a>1,0,0</a></mat_axis>", ""),
+         "needs <a> and <d>"},
+        {DECK(HGO_TYPE, HGO_DECK "<mat_axis type=\"vector\"><a>1,0,0</a><d>2,0,0</d></mat_axis>",
+              ""),
+         "span no plane"},
+        {DECK(HGO_TYPE, HGO_DECK "<mat_axis type=\"local\">1,2,9</mat_axis>", ""),
+         "names three corners"},
+        {DECK(HGO_TYPE, HGO_DECK "<mat_axis type=\"cylindrical\"/>", ""), "is not read"},
+        {DECK(HGO_TYPE, HGO_DECK "<mat_axis type=\"user\"/>", ""), "direction is 0, 0, 0"},
+        {DECK(HGO_TYPE, HGO_DECK "<mat_axis type=\"user\"/>",
+              "<ElementData type=\"fiber\" elem_set=\"back\"><e lid=\"1\">0,0,5</e>"
+              "</ElementData>"),
+         "give it <a> and <d>"},
+        {DECK(HGO_TYPE " unconstrained", HGO_DECK, ""), "is not read; of FEBio's, Lariat has"},
     };
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
         lar_model *model = NULL;
@@ -394,12 +545,15 @@ static void decks_say_what_is_wrong(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(scenes_say_laws_and_directions),
+        cmocka_unit_test(scenes_say_a_second_family),
         cmocka_unit_test(scenes_say_what_is_active),
         cmocka_unit_test(scenes_say_when_it_is_active),
         cmocka_unit_test(the_last_material_has_its_own_rule),
         cmocka_unit_test(scenes_say_what_is_wrong),
         cmocka_unit_test(meshes_bring_directions),
+        cmocka_unit_test(meshes_bring_second_families),
         cmocka_unit_test(decks_say_laws_and_directions),
+        cmocka_unit_test(decks_say_two_families),
         cmocka_unit_test(decks_say_when_it_is_active),
         cmocka_unit_test(decks_say_what_is_wrong),
     };

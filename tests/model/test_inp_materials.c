@@ -57,6 +57,50 @@ static void test_yeoh(void **state) {
     lar_model_destroy(model);
 }
 
+#define HOLZAPFEL                                                                                  \
+    "*MATERIAL, NAME=a\n*ANISOTROPIC HYPERELASTIC, HOLZAPFEL, LOCAL DIRECTIONS=2\n"                \
+    "400, 2e-5, 2500, 1.4, 0.1\n*DENSITY\n1000\n"
+#define HELIX                                                                                      \
+    "*ORIENTATION, NAME=helix, SYSTEM=RECTANGULAR, LOCAL DIRECTIONS=2\n1., 0., 0., 1., 1., 0.\n"   \
+    "3, 90.\n0.8, 0.6, 0.\n0.8, -0.6\n"
+#define OF_HELIX "*SOLID SECTION, ELSET=BOTH, MATERIAL=a, ORIENTATION=Helix\n"
+
+static void near3(const double a[3], double x, double y, double z) {
+    if (!(fabs(a[0] - x) + fabs(a[1] - y) + fabs(a[2] - z) < 1e-12))
+        fail_msg("%g %g %g instead of %g %g %g", a[0], a[1], a[2], x, y, z);
+}
+
+/* Axes that are turned by a right angle: the first one runs along y. */
+static void test_two_families(void **state) {
+    (void)state;
+    lar_model *model = read_deck(MESH HELIX HOLZAPFEL OF_HELIX);
+    const lar_material *m = &model->material[0];
+    assert_int_equal(m->law, LAR_LAW_neo_hookean);
+    near(lar_material_shear(m), 800);
+    near(lar_material_bulk(m), 1e5);
+    assert_true(m->fibre.law == LAR_FIBRE_HGO && m->fibre.isochoric && m->fibre.paired);
+    assert_memory_equal(m->fibre.parameter, ((double[]){2500, 1.4, 0.1, 0}), 32);
+    for (int32_t e = 0; e < model->mesh.element_count; e++) {
+        near3(model->mesh.fibre[e], -0.6, 0.8, 0);
+        near3(model->mesh.second[e], 0.6, 0.8, 0);
+    }
+    assert_int_equal(notices_with(model, "instead of ((J^2 - 1)/2 - ln J) / D"), 1);
+    lar_model_destroy(model);
+    /* Without directions of its own the axes are. */
+    model = read_deck(MESH HOLZAPFEL "*Orientation, name=helix\n0, 0, 2, 0, 3, 3\n1, 0\n" OF_HELIX);
+    near3(model->mesh.fibre[0], 0, 0, 1);
+    near3(model->mesh.second[1], 0, 1, 0);
+    lar_model_destroy(model);
+    model =
+        read_deck(MESH "*ORIENTATION, NAME=helix\n1, 0, 0, 0, 1, 0, 0, 0, 0\n*MATERIAL, NAME=a\n"
+                       "*ANISOTROPIC HYPERELASTIC, HOLZAPFEL, LOCAL DIRECTIONS=1\n"
+                       "400, 2e-5, 2500, 1.4, 0\n*DENSITY\n1000\n" OF_HELIX);
+    assert_false(model->material[0].fibre.paired);
+    near3(model->mesh.fibre[0], 1, 0, 0);
+    assert_null(model->mesh.second);
+    lar_model_destroy(model);
+}
+
 static lar_model *of_two(const char *left, const char *right) {
     char deck[4000];
     snprintf(deck, sizeof deck,
@@ -175,6 +219,46 @@ static void test_static_without_density(void **state) {
         LAR_ERROR_MODEL, AFTER_MESH + 1, "has no density");
 }
 
+static void test_bad_families(void **state) {
+    (void)state;
+    const int one = AFTER_MESH, two = one + 1, three = one + 2;
+#define WITH(option, numbers)                                                                      \
+    MESH "*MATERIAL, NAME=a\n*ANISOTROPIC HYPERELASTIC" option "\n" numbers
+#define GOOD "400, 2e-5, 2500, 1.4, 0.1\n"
+    refused(WITH(", FUNG-ANISOTROPIC", GOOD), LAR_ERROR_UNSUPPORTED, two, "Lariat has HOLZAPFEL");
+    refused(WITH(", HOLZAPFEL", GOOD), LAR_ERROR_FORMAT, two, "needs LOCAL DIRECTIONS");
+    refused(WITH(", HOLZAPFEL, LOCAL DIRECTIONS=3", GOOD), LAR_ERROR_UNSUPPORTED, two,
+            "LOCAL DIRECTIONS=3; Lariat has one family of fibres or two");
+    refused(WITH(", HOLZAPFEL, LOCAL DIRECTIONS=2, PROPERTIES=3", GOOD), LAR_ERROR_UNSUPPORTED, two,
+            "PROPERTIES");
+    refused(WITH(", HOLZAPFEL, LOCAL DIRECTIONS=2", "400, 2e-5, 2500, 1.4\n"), LAR_ERROR_FORMAT,
+            three, "expected kappa");
+    refused(WITH(", HOLZAPFEL, LOCAL DIRECTIONS=2", "400, 0, 2500, 1.4, 0.1\n"),
+            LAR_ERROR_UNSUPPORTED, two, "D is 0, which asks for a material");
+    refused(WITH(", HOLZAPFEL, LOCAL DIRECTIONS=2", "400, 2e-5, 2500, 1.4, 0.4\n"), LAR_ERROR_MODEL,
+            two, "kappa must be between 0");
+    refused(MESH HOLZAPFEL "*SOLID SECTION, ELSET=BOTH, MATERIAL=a\n", LAR_ERROR_MODEL, one + 5,
+            "need 2 directions; give the section an ORIENTATION");
+    refused(MESH HOLZAPFEL OF_HELIX, LAR_ERROR_FORMAT, one + 5,
+            "there is no *ORIENTATION called 'Helix'");
+    refused(MESH
+            "*ORIENTATION, NAME=helix, LOCAL DIRECTIONS=1\n1, 0, 0, 0, 1, 0\n3, 0\n1\n" HOLZAPFEL
+                OF_HELIX,
+            LAR_ERROR_MODEL, one + 9, "need 2 directions");
+    refused(MESH "*ORIENTATION, NAME=h, SYSTEM=CYLINDRICAL\n", LAR_ERROR_UNSUPPORTED, one,
+            "SYSTEM=CYLINDRICAL of *ORIENTATION is not read");
+    refused(MESH "*ORIENTATION, NAME=h\n", LAR_ERROR_FORMAT, one, "no line of numbers");
+    refused(MESH "*ORIENTATION, NAME=h\n1, 0, 0\n", LAR_ERROR_FORMAT, two, "points a and b");
+    refused(MESH "*ORIENTATION, NAME=h\n1, 0, 0, 2, 0, 0\n", LAR_ERROR_MODEL, two, "span no plane");
+    refused(MESH "*ORIENTATION, NAME=h\n1, 0, 0, 0, 1, 0\n4, 0\n", LAR_ERROR_FORMAT, three,
+            "about axis 4");
+    refused(MESH "*ORIENTATION, NAME=h, LOCAL DIRECTIONS=2\n1, 0, 0, 0, 1, 0\n3, 0\n1\n",
+            LAR_ERROR_FORMAT, three + 1, "promises 2 directions");
+    refused(MESH HELIX HELIX, LAR_ERROR_FORMAT, one + 5, "a second *ORIENTATION");
+#undef WITH
+#undef GOOD
+}
+
 static void test_bad_materials(void **state) {
     (void)state;
     const int one = AFTER_MESH, two = one + 1, three = one + 2;
@@ -260,6 +344,7 @@ int main(void) {
         cmocka_unit_test(test_materials),     cmocka_unit_test(test_yeoh),
         cmocka_unit_test(test_series),        cmocka_unit_test(test_static_without_density),
         cmocka_unit_test(test_bad_materials), cmocka_unit_test(test_viscosity),
+        cmocka_unit_test(test_two_families),  cmocka_unit_test(test_bad_families),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

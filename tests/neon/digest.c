@@ -42,6 +42,7 @@ typedef struct world {
     lar_block_more more[BLOCKS];
     lar_box_block box[BLOCKS];
     lar_fibre_block fibres[BLOCKS];
+    lar_fibre_block second[BLOCKS];
     double position[NODES][3];
     double u[NODES][4] __attribute__((aligned(64)));
     double v[NODES][4] __attribute__((aligned(64)));
@@ -113,6 +114,11 @@ static void pack_element(world *w, int e, int turn, const lar_material *material
             fibre->parameter[k] * (lar_fibre_scales(fibre->law, k) ? unit : 1);
     fibres->along[lane] = fibre->along * unit;
     fibres->across[lane] = fibre->across * unit;
+    lar_fibre_block *second = &w->second[e / LAR_BLOCK];
+    for (int k = 0; k < LAR_FIBRE_PARAMETERS; k++)
+        second->parameter[k][lane] = fibres->parameter[k][lane];
+    second->direction[e % 3][lane] = 0.6;
+    second->direction[(e + 2) % 3][lane] = 0.8;
 }
 
 static uint64_t digest(uint64_t hash, const void *data, size_t size) {
@@ -146,7 +152,8 @@ static bool shake(const lar_kernels *kernels, lar_law law, const lar_fibre *fibr
                                .blocks = boxes ? (const void *)w->box : w->general,
                                .more = lar_law_has_more(law) ? w->more : NULL,
                                .fibrous = lar_fibre_kind(fibre),
-                               .fibres = w->fibres};
+                               .fibres = w->fibres,
+                               .second = lar_fibre_families(fibre) == 2 ? w->second : NULL};
     static int32_t lane[BLOCKS * LAR_BLOCK];
     static double limit[BLOCKS * LAR_BLOCK] __attribute__((aligned(64)));
     static float strain[BLOCKS * LAR_BLOCK][LAR_STRAIN_NUMBERS];
@@ -181,8 +188,12 @@ static int print_digest(const lar_kernels *kernels, lar_law law, const lar_fibre
                                          "+exp-linear",
                                          "+exp-linear~",
                                          "+pow-linear",
-                                         "+pow-linear~"};
-    const char *with = fibres[lar_fibre_kind(fibre)];
+                                         "+pow-linear~",
+                                         "+hgo",
+                                         "+hgo~"};
+    char with[40];
+    snprintf(with, sizeof with, "%s%s", fibres[lar_fibre_kind_single(fibre)],
+             lar_fibre_families(fibre) == 2 ? "x2" : "");
     static const char *const body[] = {"crooked", "box0", "box1", "box2"};
     static const char *const shape[] = {"general", "box"};
     static const char *const rows[] = {"loose", "rows-of-four", "rows-of-eight"};
@@ -206,6 +217,7 @@ int main(void) {
             {.law = LAR_FIBRE_EXP_LINEAR, .parameter = {300, 9, 5e3, 1.1}, .isochoric = true},
             {.law = LAR_FIBRE_POW_LINEAR, .parameter = {4e3, 1.05, 3}},
             {.law = LAR_FIBRE_POW_LINEAR, .parameter = {3e3, 1.1, 2}, .isochoric = true},
+            {.law = LAR_FIBRE_HGO, .parameter = {2e3, 1, 0.1}, .isochoric = true, .paired = true},
             {.along = 400}};
     int failures = 0;
     for (lar_isa isa = LAR_ISA_C; isa <= LAR_ISA_AVX512; isa++) {

@@ -44,8 +44,9 @@ typedef struct lar_mesh {
     int32_t (*element)[8]; /* node indices */
     int64_t *element_id;   /* the file's ids */
     int32_t *element_tag;  /* the file's integer cell tag (physical group, label), 0 when none */
-    double (*fibre)[3]; /* [element_count] along the fibres, of any length until the model has been
-                           checked, then one; 0 where there are none. NULL: nobody said */
+    double (*fibre)[3];  /* [element_count] along the fibres, of any length until the model has been
+                            checked, then one; 0 where there are none. NULL: nobody said */
+    double (*second)[3]; /* the same of a second family */
     int32_t set_count;
     lar_set *set;
     int32_t dropped_node_count; /* nodes of the file that no element uses and that were left out */

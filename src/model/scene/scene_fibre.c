@@ -72,28 +72,43 @@ static lar_status read_passive(const lar_scene *scene, const lar_yaml *node, lar
     return status ? status : read_parameters(scene, node, fibre);
 }
 
-/* In a tissue file all but the direction, in an entry with such fibres nothing else. */
+/* Along what they run is the scene's to say: of a tissue file's fibres too. */
+static lar_status check_directions(const lar_scene *scene, const lar_yaml *node,
+                                   const lar_fibre *fibre) {
+    const lar_yaml *direction = lar_yaml_get(node, "direction");
+    const lar_yaml *second = lar_yaml_get(node, "second");
+    const lar_yaml *either = direction ? direction : second;
+    if (lar_scene_is_tissue(scene))
+        return !either ? LAR_OK
+                       : lar_scene_fail(scene, either, LAR_ERROR_FORMAT,
+                                        "%s: along what fibres run is not the tissue's but the "
+                                        "body's; say it in the scene, beside tissue",
+                                        direction ? "direction" : "second");
+    lar_status status = lar_scene_need(scene, node, "fibres", "direction",
+                                       "direction: {axis: [1, 0, 0]}", &direction);
+    if (!status && second && fibre->law != LAR_FIBRE_HGO)
+        status = lar_scene_fail(scene, second, LAR_ERROR_FORMAT,
+                                "second: only fibres of the law hgo can have a second family; take "
+                                "that one, or remove it");
+    return status;
+}
+
+/* In a tissue file all but the directions, in an entry with such fibres nothing else. */
 lar_status lar_scene_read_fibres(const lar_scene *scene, const lar_yaml *node,
                                  lar_material *material) {
-    static const char *const keys[] = {"law",     "part", "direction", "active", "ksi",
-                                       "alpha",   "beta", "c3",        "c4",     "c5",
-                                       "lam_max", "E",    "lam0",      NULL};
-    static const char *const beside[] = {"direction", "active", NULL};
-    const lar_yaml *direction = NULL;
+    static const char *const keys[] = {"law",  "part", "direction", "active", "ksi",     "alpha",
+                                       "beta", "c3",   "c4",        "c5",     "lam_max", "E",
+                                       "lam0", "k1",   "k2",        "kappa",  "second",  NULL};
+    static const char *const beside[] = {"direction", "second", "active", NULL};
     lar_fibre *fibre = &material->fibre;
-    const bool given = lar_fibre_here(fibre), file = lar_scene_is_tissue(scene);
+    const bool given = lar_fibre_here(fibre);
     lar_status status =
         given ? lar_scene_keys(scene, node, "fibres whose law the tissue file has", beside)
               : lar_scene_keys(scene, node, "fibres", keys);
     const lar_yaml *active = status ? NULL : lar_yaml_get(node, "active");
     if (!status && !given) status = read_passive(scene, node, fibre);
-    if (!status && !file)
-        status = lar_scene_need(scene, node, "fibres", "direction", "direction: {axis: [1, 0, 0]}",
-                                &direction);
-    else if (!status && lar_yaml_get(node, "direction"))
-        status = lar_scene_fail(scene, lar_yaml_get(node, "direction"), LAR_ERROR_FORMAT,
-                                "direction: along what fibres run is not the tissue's but the "
-                                "body's; say it in the scene, beside tissue");
+    if (!status) status = check_directions(scene, node, fibre);
+    fibre->paired = lar_yaml_get(node, "second") != NULL;
     fibre->line = node->line;
     return status || !active ? status : lar_scene_read_active(scene, active, material);
 }

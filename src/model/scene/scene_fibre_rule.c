@@ -1,4 +1,4 @@
-/* The key `direction` of fibres: along what those of a material's elements run.
+/* The keys `direction` and `second` of fibres: along what those of a material's elements run.
  *
  *     axis      the same everywhere
  *     around    around a line
@@ -442,33 +442,45 @@ static lar_status rule_create(lar_scene *scene, int material, rule *r) {
     return LAR_OK;
 }
 
-lar_status lar_scene_lay_fibres(lar_scene *scene, const lar_yaml *node, int material) {
+/* The directions of one family, in `fibre`, which is made where it is not there yet. */
+static lar_status lay_family(lar_scene *scene, const lar_yaml *direction, int material,
+                             double (**fibre)[3]) {
     static const char *const keys[] = {"axis", "around", "path", "wall", NULL};
-    lar_mesh *mesh = &scene->model->mesh;
-    const lar_yaml *direction = lar_yaml_get(node, "direction");
+    const char *key = direction->key->text;
+    const bool second = strcmp(key, "second") == 0;
     if (lar_scene_is_word(direction, "mesh")) {
-        if (mesh->fibre) return LAR_OK;
+        if (*fibre) return LAR_OK;
         return lar_scene_fail(scene, direction, LAR_ERROR_MODEL,
-                              "direction: mesh, but no mesh has directions; they stand in a .vtu "
-                              "file as a cell array \"fibre\" of three components, or in the "
-                              "arrays of lar_model_from_arrays");
+                              "%.9s: mesh, but no mesh has directions; they stand in a .vtu file "
+                              "as a cell array \"%s\" of three components%s",
+                              key, second ? "fibre2" : "fibre",
+                              second ? "" : ", or in the arrays of lar_model_from_arrays");
     }
-    lar_status status = lar_scene_keys(scene, direction, "direction", keys);
+    lar_status status = lar_scene_keys(scene, direction, key, keys);
     if (!status && direction->count != 1)
         status = lar_scene_fail(scene, direction, LAR_ERROR_FORMAT,
-                                "direction: expected mesh, {axis: [x, y, z]}, {around: {point: [x, "
-                                "y, z], axis: [x, y, z]}}, {path: {from: FACES, to: FACES}} or "
-                                "{wall: {...}}");
+                                "%.9s: expected mesh, {axis: [x, y, z]}, {around: {point: [x, y, "
+                                "z], axis: [x, y, z]}}, {path: {from: FACES, to: FACES}} or "
+                                "{wall: {...}}",
+                                key);
     if (status) return status;
-    size_t elements = (size_t)mesh->element_count;
-    if (!mesh->fibre) mesh->fibre = lar_calloc(elements, sizeof *mesh->fibre);
-    if (!mesh->fibre) return lar_scene_no_memory(scene, elements * sizeof *mesh->fibre);
+    size_t elements = (size_t)scene->model->mesh.element_count;
+    if (!*fibre) *fibre = lar_calloc(elements, sizeof **fibre);
+    if (!*fibre) return lar_scene_no_memory(scene, elements * sizeof **fibre);
     rule r;
     status = rule_create(scene, material, &r);
-    if (!status) status = lay(&r, direction->first, mesh->fibre);
+    if (!status) status = lay(&r, direction->first, *fibre);
     free(r.element);
     free(r.held);
     return status;
+}
+
+lar_status lar_scene_lay_fibres(lar_scene *scene, const lar_yaml *node, int material) {
+    lar_mesh *mesh = &scene->model->mesh;
+    const lar_yaml *direction = lar_yaml_get(node, "direction"),
+                   *second = lar_yaml_get(node, "second");
+    lar_status status = lay_family(scene, direction, material, &mesh->fibre);
+    return !status && second ? lay_family(scene, second, material, &mesh->second) : status;
 }
 
 /* ---- without a scene ------------------------------------------------------------------------ */

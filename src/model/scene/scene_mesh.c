@@ -40,19 +40,25 @@ static bool grow_mesh(lar_mesh *mesh, int32_t nodes, int32_t elements) {
            grow(&mesh->element, e, sizeof *mesh->element) &&
            grow(&mesh->element_id, e, sizeof *mesh->element_id) &&
            grow(&mesh->element_tag, e, sizeof *mesh->element_tag) &&
-           (!mesh->fibre || grow(&mesh->fibre, e, sizeof *mesh->fibre));
+           (!mesh->fibre || grow(&mesh->fibre, e, sizeof *mesh->fibre)) &&
+           (!mesh->second || grow(&mesh->second, e, sizeof *mesh->second));
 }
 
-/* Directions of fibres, where one of the two has some. */
-static bool append_fibres(lar_mesh *mesh, int32_t elements, const lar_mesh *more) {
-    size_t all = (size_t)elements + (size_t)more->element_count;
-    if (!mesh->fibre && !more->fibre) return true;
-    if (!mesh->fibre) mesh->fibre = lar_calloc(all, sizeof *mesh->fibre);
-    if (!mesh->fibre) return false;
-    for (int32_t e = 0; e < more->element_count; e++)
-        for (int i = 0; i < 3; i++)
-            mesh->fibre[elements + e][i] = more->fibre ? more->fibre[e][i] : 0;
+/* Directions of one family of fibres, where one of the two meshes has some. */
+static bool append_family(double (**fibre)[3], int32_t elements, const double (*more)[3],
+                          int32_t count) {
+    if (!*fibre && !more) return true;
+    if (!*fibre) *fibre = lar_calloc((size_t)elements + (size_t)count, sizeof **fibre);
+    if (!*fibre) return false;
+    for (int32_t e = 0; e < count; e++)
+        for (int i = 0; i < 3; i++) (*fibre)[elements + e][i] = more ? more[e][i] : 0;
     return true;
+}
+
+static bool append_fibres(lar_mesh *mesh, int32_t elements, const lar_mesh *more) {
+    const int32_t count = more->element_count;
+    return append_family(&mesh->fibre, elements, (const double(*)[3])more->fibre, count) &&
+           append_family(&mesh->second, elements, (const double(*)[3])more->second, count);
 }
 
 /* Adds a set of the second mesh, or its entries to the set of that name. */

@@ -153,6 +153,17 @@ lar_status lar_feb_lay_fibres(lar_feb *feb);
 /* Whether an entry of <MeshData> says directions. */
 bool lar_feb_is_direction(lar_feb *feb, const xmlNode *data);
 
+/* ---- hgo.c ----------------------------------------------------------------------------------- */
+
+/* "Holzapfel-Gasser-Ogden", which has two families of fibres; and their directions, in one element
+ * by vectors a and d, and in those of a material by its <mat_axis>, NULL: by the axes x and y. The
+ * arrays of the mesh are there. */
+bool lar_feb_is_hgo(const char *type);
+lar_status lar_feb_read_hgo(lar_feb *feb, const xmlNode *node, lar_material *material);
+lar_status lar_feb_lay_pair(lar_feb *feb, const xmlNode *at, int32_t e, const double a[3],
+                            const double d[3]);
+lar_status lar_feb_lay_pairs(lar_feb *feb, const xmlNode *node, const xmlNode *rule, int material);
+
 /* ---- curve.c --------------------------------------------------------------------------------- */
 
 /* Reads <LoadData>; the model's duration must be known. */

@@ -207,7 +207,7 @@ static lar_status find_rule(lar_feb *feb, const xmlNode *node, const xmlNode **r
     const xmlNode *own = own_rule(node);
     if (own && *rule)
         return lar_feb_fail(feb, own, LAR_ERROR_UNSUPPORTED,
-                            "a second direction within one material; Lariat has one family of "
+                            "a second direction within one material; it has one family of "
                             "fibres, keep the first (line %d)",
                             lar_feb_line(*rule));
     if (own) *rule = own;
@@ -256,8 +256,15 @@ static lar_status read_corners(lar_feb *feb, const xmlNode *rule, int corner[2])
 
 static lar_status need_directions(lar_feb *feb) {
     lar_mesh *mesh = feb->mesh;
+    bool paired = false;
+    for (int i = 0; i < feb->model->material_count; i++)
+        paired = paired || feb->model->material[i].fibre.paired;
     if (!mesh->fibre) mesh->fibre = lar_calloc((size_t)mesh->element_count, sizeof *mesh->fibre);
-    return mesh->fibre ? LAR_OK : lar_feb_no_memory(feb, "the directions of fibres");
+    if (!mesh->second && paired)
+        mesh->second = lar_calloc((size_t)mesh->element_count, sizeof *mesh->second);
+    return mesh->fibre && (mesh->second || !paired)
+               ? LAR_OK
+               : lar_feb_no_memory(feb, "the directions of fibres");
 }
 
 /* The directions of one material's elements. */
@@ -330,8 +337,8 @@ static lar_status read_entries(lar_feb *feb, const xmlNode *data, const id_list 
     lar_status status = LAR_OK;
     for (xmlNode *entry = lar_feb_first(data); entry && !status; entry = lar_feb_next(entry)) {
         int64_t lid;
-        double a[3];
-        const xmlNode *first = lar_feb_child(entry, "a");
+        double a[3], d[3];
+        const xmlNode *first = lar_feb_child(entry, "a"), *second = lar_feb_child(entry, "d");
         status = lar_feb_id_attribute(feb, entry, "lid", &lid);
         if (!status) status = lar_feb_doubles(feb, first ? first : entry, a, 3);
         if (status) return status;
@@ -341,7 +348,16 @@ static lar_status read_entries(lar_feb *feb, const xmlNode *data, const id_list 
             return lar_feb_fail(feb, entry, LAR_ERROR_FORMAT,
                                 "lid %lld is no element of its set, which has %zu", (long long)lid,
                                 list->count);
-        memcpy(feb->mesh->fibre[e], a, sizeof a);
+        if (!lar_model_material_of(feb->model, e)->fibre.paired) {
+            memcpy(feb->mesh->fibre[e], a, sizeof a);
+            continue;
+        }
+        if (!second)
+            return lar_feb_fail(feb, entry, LAR_ERROR_FORMAT,
+                                "element %lld has two families of fibres; give it <a> and <d>",
+                                (long long)feb->mesh->element_id[e]);
+        status = lar_feb_doubles(feb, second, d, 3);
+        if (!status) status = lar_feb_lay_pair(feb, entry, e, a, d);
     }
     return status;
 }
@@ -390,7 +406,12 @@ lar_status lar_feb_lay_fibres(lar_feb *feb) {
         if (entry->index < 0 || !lar_fibre_directed(&feb->model->material[entry->index].fibre))
             continue;
         status = find_rule(feb, entry->node, &rule);
-        if (!status && rule) status = lay(feb, rule, entry->index);
+        if (!status && feb->model->material[entry->index].fibre.paired) {
+            status = need_directions(feb);
+            if (!status) status = lar_feb_lay_pairs(feb, entry->node, rule, entry->index);
+        } else if (!status && rule) {
+            status = lay(feb, rule, entry->index);
+        }
     }
     const xmlNode *section = lar_feb_child(feb->root, "MeshData");
     xmlNode *data = section ? lar_feb_first(section) : NULL;

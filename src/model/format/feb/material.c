@@ -4,7 +4,8 @@
  * laws (law/law.h). "viscoelastic" and "uncoupled viscoelastic" have a law inside of them, as
  * <elastic>, and the terms of their relaxation; the second one the bulk modulus as well, in place
  * of that of the law. "solid mixture" and "uncoupled solid mixture" are one law and fibres, as
- * <solid>; "trans iso Mooney-Rivlin" and "trans iso Veronda-Westmann" have them built in.
+ * <solid>; "Holzapfel-Gasser-Ogden" is a law with two families (hgo.c), "trans iso Mooney-Rivlin"
+ * and "trans iso Veronda-Westmann" have them built in.
  */
 #include "model/format/feb/feb.h"
 
@@ -179,8 +180,15 @@ static lar_status refuse_type(lar_feb *feb, const xmlNode *node, const char *typ
     for (int law = 0; law < LAR_LAW_COUNT; law++)
         if (lar_law_table[law].febio->name) name[count++] = lar_law_table[law].febio->name;
     lar_text_list(name, count, list, sizeof list);
+    if (lar_feb_is_hgo(type))
+        return lar_feb_fail(feb, node, LAR_ERROR_UNSUPPORTED,
+                            "the material %s is read where it stands alone, not within another "
+                            "one; take it out, or write the model as a scene",
+                            type);
     return lar_feb_fail(feb, node, LAR_ERROR_UNSUPPORTED,
-                        "material type '%.60s' is not read; of FEBio's, Lariat has %s", type, list);
+                        "material type '%.60s' is not read; of FEBio's, Lariat has %s; and "
+                        "Holzapfel-Gasser-Ogden",
+                        type, list);
 }
 
 /* ---- fibres ---------------------------------------------------------------------------------- */
@@ -201,7 +209,7 @@ static bool is_mixture(const char *type, bool *isochoric) {
 /* Parts that only one of can be. */
 static lar_status refuse_second(lar_feb *feb, const xmlNode *node, const char *what) {
     return lar_feb_fail(feb, node, LAR_ERROR_UNSUPPORTED,
-                        "a second %s in a solid mixture; Lariat has one law, one family of "
+                        "a second %s in a solid mixture; Lariat's have one law, one family of "
                         "fibres and one contraction, leave it out or put the two together",
                         what);
 }
@@ -332,6 +340,8 @@ static lar_status read_material(lar_feb *feb, lar_feb_material *entry) {
         status = read_viscous(feb, entry->node, material);
     else if (is_mixture(type, &isochoric))
         status = read_mixture(feb, entry->node, isochoric, material);
+    else if (lar_feb_is_hgo(type))
+        status = lar_feb_read_hgo(feb, entry->node, material);
     else if (within != LAR_LAW_COUNT)
         status = read_trans_iso(feb, entry->node, within, material);
     else if (law == LAR_LAW_COUNT)

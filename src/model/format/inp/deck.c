@@ -124,10 +124,12 @@ static const keyword_row keywords[] = {
     {"MATERIAL", inp_read_material, NULL, OF_MATERIAL},
     {"ELASTIC", inp_read_elastic, NULL, OF_MATERIAL},
     {"HYPERELASTIC", inp_read_hyperelastic, NULL, OF_MATERIAL},
+    {"ANISOTROPIC HYPERELASTIC", inp_read_anisotropic, NULL, OF_MATERIAL},
     {"DENSITY", inp_read_density, NULL, OF_MATERIAL},
     {"DAMPING", inp_read_damping, NULL, OF_MATERIAL},
     {"VISCOELASTIC", inp_read_viscoelastic, NULL, OF_MATERIAL},
     {"AMPLITUDE", inp_read_amplitude, NULL, OF_DECK},
+    {"ORIENTATION", inp_read_orientation, NULL, OF_DECK},
     {"STEP", read_step, enter_step, OF_DECK},
     {"STATIC", read_static, NULL, OF_DECK},
     {"DYNAMIC", read_dynamic, NULL, OF_DECK},
@@ -312,7 +314,9 @@ static void clear(inp_deck *deck) {
     for (size_t i = 0; i < deck->material_count; i++) free(deck->material[i].name);
     for (size_t i = 0; i < deck->amplitude_count; i++) free(deck->amplitude[i].name);
     for (size_t i = 0; i < deck->forces_count; i++) free(deck->forces[i].force);
+    for (size_t i = 0; i < deck->orientation_count; i++) free(deck->orientation[i].name);
     free(deck->material);
+    free(deck->orientation);
     free(deck->amplitude);
     free(deck->forces);
     free(deck->prescribed);

@@ -31,6 +31,13 @@ typedef struct inp_material {
     int index;          /* in lar_model.material, -1 until a section uses it */
 } inp_material;
 
+/* Along what fibres run where a section says so. */
+typedef struct inp_orientation {
+    char *name;
+    int directions;
+    double direction[2][3];
+} inp_orientation;
+
 typedef struct inp_amplitude {
     char *name;
     int curve;
@@ -82,6 +89,8 @@ typedef struct inp_deck {
     size_t material_count, material_room;
     inp_material *material;
     int64_t current; /* material that options belong to, -1: none */
+    size_t orientation_count, orientation_room;
+    inp_orientation *orientation;
     size_t amplitude_count, amplitude_room;
     inp_amplitude *amplitude;
 
@@ -152,6 +161,21 @@ lar_status inp_read_damping(inp_deck *deck, const inp_card *card);
 lar_status inp_read_section(inp_deck *deck, const inp_card *card);
 /* Densities, notices and the damping of what sections use. */
 lar_status inp_finish_materials(inp_deck *deck);
+
+/* The material that an option belongs to, and its one line of numbers; its law; whether that makes
+ * sense. */
+lar_status inp_read_option(inp_deck *deck, const inp_card *card, lar_span *field, int max,
+                           int *count, inp_material **material);
+lar_status inp_take_law(inp_deck *deck, const inp_card *card, inp_material *material, lar_law law);
+lar_status inp_check_law(const inp_deck *deck, const inp_material *material);
+
+/* ---- fibre.c ----------------------------------------------------------------------------- */
+
+lar_status inp_read_anisotropic(inp_deck *deck, const inp_card *card);
+lar_status inp_read_orientation(inp_deck *deck, const inp_card *card);
+/* The directions of a section's elements. */
+lar_status inp_lay_fibres(inp_deck *deck, const inp_card *card, const lar_fibre *fibre,
+                          const int32_t *element, int32_t count);
 
 /* ---- viscous.c --------------------------------------------------------------------------- */
 

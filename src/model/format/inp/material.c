@@ -46,8 +46,8 @@ lar_status inp_read_material(inp_deck *deck, const inp_card *card) {
 
 /* The material that an option belongs to, and its one line of numbers, or two where there are more
  * than eight. More lines are values at other temperatures. */
-static lar_status read_option(inp_deck *deck, const inp_card *card, lar_span *field, int max,
-                              int *count, inp_material **material) {
+lar_status inp_read_option(inp_deck *deck, const inp_card *card, lar_span *field, int max,
+                           int *count, inp_material **material) {
     enum { LINE = 8 };
     lar_span line;
     int more;
@@ -72,8 +72,7 @@ static lar_status read_option(inp_deck *deck, const inp_card *card, lar_span *fi
     return status;
 }
 
-static lar_status take_law(inp_deck *deck, const inp_card *card, inp_material *material,
-                           lar_law law) {
+lar_status inp_take_law(inp_deck *deck, const inp_card *card, inp_material *material, lar_law law) {
     if (material->has_law)
         return inp_fail(deck, card->line, LAR_ERROR_FORMAT,
                         "the material '%.60s' has a second law; keep one of the two",
@@ -85,7 +84,7 @@ static lar_status take_law(inp_deck *deck, const inp_card *card, inp_material *m
 }
 
 /* The law as a whole: moduli that are positive. The density is not known yet. */
-static lar_status check_law(const inp_deck *deck, const inp_material *material) {
+lar_status inp_check_law(const inp_deck *deck, const inp_material *material) {
     char where[300];
     lar_material tried = material->value;
     tried.density = 1.0;
@@ -108,10 +107,10 @@ lar_status inp_read_elastic(inp_deck *deck, const inp_card *card) {
                         "*ELASTIC of type '%.*s' is not read; Lariat's tissue is isotropic "
                         "(TYPE=ISO)",
                         inp_shown(type), type.at);
-    status = read_option(deck, card, field, 3, &count, &material);
+    status = inp_read_option(deck, card, field, 3, &count, &material);
     if (!status) status = inp_number(deck, field, count, 0, "Young's modulus", &young);
     if (!status) status = inp_number(deck, field, count, 1, "Poisson's ratio", &poisson);
-    if (!status) status = take_law(deck, card, material, LAR_LAW_neo_hookean);
+    if (!status) status = inp_take_law(deck, card, material, LAR_LAW_neo_hookean);
     if (!status) status = inp_read_moduli(deck, card, material);
     if (status) return status;
     if (!(poisson > -1.0 && poisson < 0.5))
@@ -119,7 +118,7 @@ lar_status inp_read_elastic(inp_deck *deck, const inp_card *card) {
                         "Poisson's ratio %g is not between -1 and 0.5; correct it", poisson);
     material->linear = true;
     lar_material_from_young(&material->value, young, poisson);
-    return check_law(deck, material);
+    return inp_check_law(deck, material);
 }
 
 /* What a constant may be. */
@@ -261,7 +260,7 @@ static lar_status read_card(inp_deck *deck, const inp_card *card, asked_law aske
     lar_span field[LAR_LAW_GIVEN + 1]; /* and a temperature */
     int fields, count = law->abaqus->count;
     if (asked.terms) count = asked.terms * (law->abaqus->per_term + 1);
-    lar_status status = read_option(deck, card, field, count + 1, &fields, material);
+    lar_status status = inp_read_option(deck, card, field, count + 1, &fields, material);
     if (status) return status;
     if (asked.terms) spread(law->abaqus, asked.terms, field, &fields);
     return read_constants(deck, card, law, field, fields, given);
@@ -284,11 +283,11 @@ lar_status inp_read_hyperelastic(inp_deck *deck, const inp_card *card) {
     if (status) return status;
     while (!has_constants(lar_law_table[law].abaqus, lar_law_table[asked.law].abaqus, given, own))
         law++; /* as far as the one that is asked for */
-    status = take_law(deck, card, material, law);
+    status = inp_take_law(deck, card, material, law);
     if (!status) status = inp_read_moduli(deck, card, material);
     if (status) return status;
     lar_law_table[law].abaqus->read(own, material->value.parameter);
-    return check_law(deck, material);
+    return inp_check_law(deck, material);
 }
 
 lar_status inp_read_density(inp_deck *deck, const inp_card *card) {
@@ -297,7 +296,7 @@ lar_status inp_read_density(inp_deck *deck, const inp_card *card) {
     int count;
     inp_material *material;
     lar_status status = inp_only(deck, card, known);
-    if (!status) status = read_option(deck, card, field, 2, &count, &material);
+    if (!status) status = inp_read_option(deck, card, field, 2, &count, &material);
     if (!status) status = inp_number(deck, field, count, 0, "a density", &material->value.density);
     if (status) return status;
     if (!(material->value.density > 0.0))
@@ -337,7 +336,8 @@ static lar_status use_material(inp_deck *deck, inp_material *material) {
     if (material->index >= 0) return LAR_OK;
     if (!material->has_law)
         return inp_fail(deck, material->line, LAR_ERROR_MODEL,
-                        "the material '%.60s' has no law; give it *ELASTIC or *HYPERELASTIC",
+                        "the material '%.60s' has no law; give it *ELASTIC, *HYPERELASTIC "
+                        "or *ANISOTROPIC HYPERELASTIC",
                         material->name);
     int index = deck->model->material_count;
     lar_material *made = LAR_MODEL_APPEND(deck->model, material);
@@ -350,7 +350,7 @@ static lar_status use_material(inp_deck *deck, inp_material *material) {
 }
 
 lar_status inp_read_section(inp_deck *deck, const inp_card *card) {
-    static const char *const known[] = {"ELSET", "MATERIAL", "CONTROLS", NULL};
+    static const char *const known[] = {"ELSET", "MATERIAL", "CONTROLS", "ORIENTATION", NULL};
     lar_span name, elements, ignored;
     const int32_t *index;
     int32_t own, count;
@@ -364,10 +364,17 @@ lar_status inp_read_section(inp_deck *deck, const inp_card *card) {
         return inp_fail(deck, card->line, LAR_ERROR_FORMAT,
                         "there is no *MATERIAL called '%.*s'; define it or correct the name",
                         inp_shown(name), name.at);
+    if (material->value.fibre.law == LAR_FIBRE_NONE && inp_parameter(card, "ORIENTATION", &ignored))
+        return inp_fail(
+            deck, card->line, LAR_ERROR_UNSUPPORTED,
+            "ORIENTATION of *SOLID SECTION is not read where the material has no fibres; "
+            "remove it");
     status = inp_elements(deck, elements, &own, &index, &count);
     if (!status) status = use_material(deck, material);
     if (!status && inp_parameter(card, "CONTROLS", &ignored))
         status = inp_notice(deck, card->line, "CONTROLS of *SOLID SECTION was left out");
+    if (!status && material->value.fibre.law != LAR_FIBRE_NONE)
+        status = inp_lay_fibres(deck, card, &material->value.fibre, index, count);
     for (int32_t i = 0; i < count && !status; i++) {
         int32_t *assigned = &deck->model->element_material[index[i]];
         if (*assigned >= 0 && *assigned != material->index)
@@ -392,6 +399,12 @@ static lar_status notice_law(inp_deck *deck, const inp_material *material) {
                           "with the same moduli, which is equal at small strain only",
                           material->name);
     const lar_law_row *law = &lar_law_table[material->value.law];
+    if (material->value.fibre.law != LAR_FIBRE_NONE)
+        return inp_notice(deck, material->line,
+                          "material '%.60s': Lariat answers a change of volume by (J - 1)^2 / D "
+                          "instead of ((J^2 - 1)/2 - ln J) / D, which is equal where the volume "
+                          "changes little",
+                          material->name);
     if (law->abaqus->volume)
         return inp_notice(deck, material->line,
                           "material '%.60s': Lariat's %s law answers a change of volume by %s "

@@ -94,7 +94,7 @@ void lar_vtk_grid_clear(lar_vtk_grid *grid) {
     free(grid->cell_end);
     free(grid->cell_type);
     free(grid->corner);
-    free(grid->fibre);
+    for (int family = 0; family < 2; family++) free(grid->fibre[family]);
     for (size_t i = 0; i < grid->array_count; i++) {
         free(grid->array[i].name);
         free(grid->array[i].value);
@@ -119,8 +119,11 @@ bool lar_vtk_wants(lar_vtk_place place, const char *name) {
     return begins_with(name, mask_prefix) && name[strlen(mask_prefix)] != '\0';
 }
 
-bool lar_vtk_is_fibre(lar_vtk_place place, const char *name) {
-    return place == LAR_VTK_CELL_DATA && (strcmp(name, "fibre") == 0 || strcmp(name, "fiber") == 0);
+int lar_vtk_family(lar_vtk_place place, const char *name) {
+    static const char *const names[] = {"fibre", "fiber", "fibre2", "fiber2"};
+    for (int i = 0; i < 4 && place == LAR_VTK_CELL_DATA; i++)
+        if (strcmp(name, names[i]) == 0) return i / 2;
+    return -1;
 }
 
 lar_status lar_vtk_grid_add(lar_vtk_grid *grid, lar_vtk_place place, const char *name,
@@ -309,14 +312,13 @@ static lar_status fill_tags(const char *path, const lar_vtk_grid *grid, lar_mesh
     return LAR_OK;
 }
 
-static lar_status fill_fibres(const char *path, const lar_vtk_grid *grid, lar_mesh *mesh,
-                              lar_error *error) {
-    if (!grid->fibre) return LAR_OK;
-    mesh->fibre = lar_calloc((size_t)mesh->element_count, sizeof *mesh->fibre);
-    if (!mesh->fibre)
-        return lar_fail_memory(error, (size_t)mesh->element_count * sizeof *mesh->fibre, path);
+static lar_status fill_fibres(const char *path, const double *value, const lar_mesh *mesh,
+                              double (**fibre)[3], lar_error *error) {
+    if (!value) return LAR_OK;
+    *fibre = lar_calloc((size_t)mesh->element_count, sizeof **fibre);
+    if (!*fibre) return lar_fail_memory(error, (size_t)mesh->element_count * sizeof **fibre, path);
     for (int32_t e = 0; e < mesh->element_count; e++)
-        memcpy(mesh->fibre[e], grid->fibre + 3 * mesh->element_id[e], sizeof *mesh->fibre);
+        memcpy((*fibre)[e], value + 3 * mesh->element_id[e], sizeof **fibre);
     return LAR_OK;
 }
 
@@ -446,7 +448,8 @@ lar_status lar_vtk_grid_to_mesh(const char *path, lar_vtk_grid *grid, lar_mesh *
         compact_nodes(grid, mesh, node_of);
         status = fill_tags(path, grid, mesh, error);
     }
-    if (!status) status = fill_fibres(path, grid, mesh, error);
+    if (!status) status = fill_fibres(path, grid->fibre[0], mesh, &mesh->fibre, error);
+    if (!status) status = fill_fibres(path, grid->fibre[1], mesh, &mesh->second, error);
     const index_maps maps = {grid->point_count, grid->cell_count, node_of, element_of};
     if (!status) status = fill_sets(path, grid, &maps, mesh, error);
     free(node_of);

@@ -13,7 +13,8 @@
  *     count too);
  *   - points that no element uses are dropped, so that every node has mass;
  *   - the first of the well-known integer cell arrays (lar_vtk_wants) is the element tag;
- *   - the cell array "fibre" of three components says along what fibres run;
+ *   - the cell array "fibre" of three components says along what fibres run, "fibre2" those of a
+ *     second family;
  *   - named sets: field arrays "set:nodes:NAME", "set:elements:NAME" and "set:faces:NAME" hold
  *     0-based point indices, cell indices and cell * 6 + face (lar_mesh's face order); integer
  *     point and cell arrays "set_NAME" of zeros and ones are sets as well.
@@ -55,8 +56,8 @@ typedef struct lar_vtk_grid {
     int64_t *cell_end; /* [cell_count]: where the corners of a cell end in `corner` */
     int64_t *cell_type;
     int64_t corner_count;
-    int64_t *corner; /* point indices */
-    double *fibre; /* [cell_count][3] along fibres, NULL: nobody says */
+    int64_t *corner;  /* point indices */
+    double *fibre[2]; /* [cell_count][3] along fibres of both families, NULL: nobody says */
     size_t array_count, array_capacity;
     lar_vtk_integers *array;
 } lar_vtk_grid;
@@ -69,8 +70,8 @@ void lar_vtk_grid_set_cells(lar_vtk_grid *grid, lar_vtk_cells *cells);
 /* Whether an integer array of that name in that place says something about the mesh. */
 bool lar_vtk_wants(lar_vtk_place place, const char *name);
 
-/* Whether a cell array of three components is that of fibres. */
-bool lar_vtk_is_fibre(lar_vtk_place place, const char *name);
+/* Of which family of fibres a cell array of three components is; -1: of none. */
+int lar_vtk_family(lar_vtk_place place, const char *name);
 
 /* The array of cell tags, or NULL when there is none. */
 const lar_vtk_integers *lar_vtk_grid_tags(const lar_vtk_grid *grid);

@@ -278,15 +278,15 @@ lar_status lar_vtk_xml_cells(const lar_vtk_xml *file, xmlNode *parent, lar_vtk_c
 
 /* The directions of fibres, a cell array of three numbers; the last one counts. */
 static lar_status read_fibres(const lar_vtk_xml *file, xmlNode *node, int64_t cells,
-                              lar_vtk_grid *grid) {
+                              double **fibre) {
     lar_vtu_array_text array;
     lar_status status = describe_array(file, node, &array);
     if (status) return status;
     double *value = NULL;
     status = lar_vtu_array_doubles(&array, 3 * (size_t)cells, &value, file->error);
     if (status) return status;
-    free(grid->fibre);
-    grid->fibre = value;
+    free(*fibre);
+    *fibre = value;
     return LAR_OK;
 }
 
@@ -296,8 +296,9 @@ lar_status lar_vtk_xml_data(const lar_vtk_xml *file, xmlNode *parent, lar_vtk_pl
          node = find_element(node->next, "DataArray")) {
         const char *name = attribute(node, "Name"), *type = attribute(node, "type");
         lar_vtk_scalar scalar;
-        if (name && count >= 0 && lar_vtk_is_fibre(place, name) && components(node) == 3) {
-            lar_status status = read_fibres(file, node, count, grid);
+        int family = name && count >= 0 ? lar_vtk_family(place, name) : -1;
+        if (family >= 0 && components(node) == 3) {
+            lar_status status = read_fibres(file, node, count, &grid->fibre[family]);
             if (status) return status;
             continue;
         }

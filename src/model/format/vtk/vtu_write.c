@@ -73,6 +73,10 @@ static lar_status collect_frame(lar_vtk_writer *w, const lar_vtu_frame *frame) {
         const lar_vtu_array fibre = {"fibre", 3, &mesh->fibre[0][0]};
         status = collect_results(w, cell_data, &fibre, 1, mesh->element_count);
     }
+    if (!status && mesh->second) {
+        const lar_vtu_array second = {"fibre2", 3, &mesh->second[0][0]};
+        status = collect_results(w, cell_data, &second, 1, mesh->element_count);
+    }
     if (!status)
         status = collect_results(w, cell_data, frame->cell_array, frame->cell_array_count,
                                  mesh->element_count);
