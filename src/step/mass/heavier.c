@@ -9,8 +9,7 @@
 static const double FACTOR_MAX = 4;
 static const double NEARLY = 1.0625; /* that is not held any more */
 
-/* ---- who is heavier ---------------------------------------------------------------------------
- */
+/* ---- who is heavier ------------------------------------------------------------------------- */
 
 static double larger(double a, double b) {
     return a > b ? a : b;
@@ -176,7 +175,7 @@ bool lar_heavier_good(const lar_domain *whole, const lar_heavy_list *list) {
     return lar_heavier_now_good(whole, &now);
 }
 
-/* ---- masses -----------------------------------------------------------------------------------
+/* ---- masses --------------------------------------------------------------------------------- */
 
 /* Node n has so much mass; what follows from it follows. Velocities stay, so the kinetic energy
  * changes by as much as is returned [J], where this domain accounts for the node. */

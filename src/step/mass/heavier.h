@@ -22,8 +22,7 @@
 #include "step/domain.h"
 #include "step/mass/needs.h"
 
-/* ---- who is heavier: decided by processor zero ------------------------------------------------
- */
+/* ---- who is heavier: decided by processor zero ---------------------------------------------- */
 
 /* What was needed in an interval. */
 void lar_heavier_harvest(const lar_needs *needs, lar_heavy_list *list);
@@ -49,8 +48,7 @@ bool lar_heavier_now_good(const lar_domain *whole, const lar_heavy_now *now);
 /* What they have more than they weigh [kg]. */
 double lar_heavier_added(const lar_domain *whole, const lar_heavy_now *now);
 
-/* ---- what follows for masses ------------------------------------------------------------------
- */
+/* ---- what follows for masses ---------------------------------------------------------------- */
 
 /* Between steps: the masses of those that are heavier from now on. What that does to the kinetic
  * energy goes to state->external; NULL: the state belongs to these masses already. True when
