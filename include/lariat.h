@@ -112,16 +112,18 @@ LAR_API lar_status lar_model_from_arrays(const lar_mesh_arrays *mesh, const char
  * `mass_scaling`); what it takes is the scene's to say. */
 typedef struct lar_mass_scaling {
     double time_step; /* that all elements are to be stable up to [s]; 0: nothing is asked for */
-    double largest_share; /* of the model's mass that may be added */
-    int32_t elements;     /* that have added mass */
-    int32_t worst;        /* the one that has the most for its own */
-    double factor;        /* how many times as much mass this one moves with as it weighs */
-    double added;         /* [kg] */
-    double share;         /* the same as a part of the model's mass */
-    double stable_step;   /* without added mass [s] */
-    double possible_step; /* the longest stable step that largest_share allows [s] */
-    double slowing;       /* by which part of themselves frequencies of slow motions fall at most:
-                             of those that are polynomials of second degree of the place */
+    double largest_share;  /* of the model's mass that may be added */
+    int32_t elements;      /* that have added mass */
+    int32_t worst;         /* the one that has the most for its own */
+    double factor;         /* how many times as much mass this one moves with as it weighs */
+    double added;          /* [kg] */
+    double share;          /* the same as a part of the model's mass */
+    double stable_step;    /* without added mass [s] */
+    double possible_step;  /* the longest stable step that largest_share allows [s] */
+    double slowing;        /* by which part of themselves frequencies of slow motions fall at most:
+                              of those that are polynomials of second degree of the place */
+    double strained_share; /* of the model's mass that strained elements may have more for a while
+                              (lar_heavier); 0: none */
 } lar_mass_scaling;
 
 /* What `lariat info` prints. */
@@ -800,6 +802,17 @@ LAR_API int32_t lar_simulation_step_parts(const lar_simulation *simulation);
  * (`max`; may be NULL). Going back, loading and a reset do not change these. */
 LAR_API uint64_t lar_simulation_divided_steps(const lar_simulation *simulation, int32_t *max);
 
+/* Where the scene allows it (mass_scaling: {strained: SHARE}) the elements that are strained most
+ * move with more mass for a while, so that steps are divided into fewer parts, or none. */
+typedef struct lar_heavier {
+    int32_t elements;     /* that are heavier now */
+    double share;         /* what they have more now, as a part of the model's mass */
+    double mean_share;    /* the same over all steps since the simulation was created, */
+    double largest_share; /* and at most */
+} lar_heavier;
+
+LAR_API void lar_simulation_heavier(const lar_simulation *simulation, lar_heavier *heavier);
+
 /* What the search for contact did since the start, in pairs of a node and a face. */
 typedef struct lar_contact_info {
     uint64_t possible; /* every node against every face in every step */
@@ -1166,6 +1179,8 @@ typedef struct lar_session_status {
                                           seconds that were computed [s] */
     int32_t step_parts;                /* lar_simulation_step_parts at the end of the last tick */
     uint64_t divided_steps;            /* steps that were divided, since the session was opened */
+    int32_t heavier;                   /* lar_heavier.elements, */
+    double heavier_share;              /* and .share, at the end of the last tick */
     double step_min; /* the least processor time of a step in the last second [s]; 0: none */
     lar_slow_cause slow_cause; /* of the slow motion that is now */
     char slow_advice[256];     /* the same as a sentence, with what to do about it; "" */

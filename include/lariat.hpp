@@ -470,6 +470,11 @@ class Simulation : public detail::Handle<lar_simulation, lar_simulation_destroy>
     std::uint64_t divided_steps(std::int32_t *max = nullptr) const {
         return lar_simulation_divided_steps(get(), max);
     }
+    lar_heavier heavier() const {
+        lar_heavier heavier;
+        lar_simulation_heavier(get(), &heavier);
+        return heavier;
+    }
     lar_contact_info contact() const {
         lar_contact_info info;
         lar_simulation_contact(get(), &info);

@@ -160,11 +160,11 @@ static PyObject *get_notices(PyObject *me, void *unused) {
 }
 
 static PyObject *make_mass_scaling(const lar_mass_scaling *m) {
-    return Py_BuildValue("{s:d,s:d,s:i,s:i,s:d,s:d,s:d,s:d,s:d,s:d}", "time_step", m->time_step,
+    return Py_BuildValue("{s:d,s:d,s:i,s:i,s:d,s:d,s:d,s:d,s:d,s:d,s:d}", "time_step", m->time_step,
                          "largest_share", m->largest_share, "elements", (int)m->elements, "worst",
                          (int)m->worst, "factor", m->factor, "added", m->added, "share", m->share,
                          "stable_step", m->stable_step, "possible_step", m->possible_step,
-                         "slowing", m->slowing);
+                         "slowing", m->slowing, "strained_share", m->strained_share);
 }
 
 static PyObject *get_info(PyObject *me, void *unused) {

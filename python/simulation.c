@@ -393,13 +393,16 @@ static PyObject *get_info(PyObject *me, void *unused) {
     lar_simulation_inspect(simulation, &i);
     int32_t most = 0;
     unsigned long long divided = lar_simulation_divided_steps(simulation, &most);
+    lar_heavier heavier;
+    lar_simulation_heavier(simulation, &heavier);
     return Py_BuildValue(
-        "{s:s,s:i,s:i,s:d,s:i,s:i,s:s,s:i,s:K,s:i}", "element", elements[i.element], "tools",
-        (int)i.tools, "spares", (int)i.spares, "time_step", i.time_step, "processors",
-        (int)lar_simulation_processors(simulation), "threads",
+        "{s:s,s:i,s:i,s:d,s:i,s:i,s:s,s:i,s:K,s:i,s:{s:i,s:d,s:d,s:d}}", "element",
+        elements[i.element], "tools", (int)i.tools, "spares", (int)i.spares, "time_step",
+        i.time_step, "processors", (int)lar_simulation_processors(simulation), "threads",
         (int)lar_simulation_threads(simulation), "isa", lar_simulation_isa(simulation),
         "step_parts", (int)lar_simulation_step_parts(simulation), "divided_steps", divided,
-        "most_parts", (int)most);
+        "most_parts", (int)most, "heavier", "elements", (int)heavier.elements, "share",
+        heavier.share, "mean_share", heavier.mean_share, "largest_share", heavier.largest_share);
 }
 
 static PyGetSetDef simulation_properties[] = {
@@ -411,7 +414,9 @@ static PyGetSetDef simulation_properties[] = {
     {"options", get_options, NULL, "dict: the keyword arguments that it was made with.", NULL},
     {"info", get_info, NULL,
      "dict: element, tools, spares, time_step [s], processors, threads, isa, step_parts (parts of "
-     "a step now), divided_steps, most_parts.",
+     "a step now), divided_steps, most_parts, heavier (a dict: strained elements that are, and "
+     "what "
+     "they have more, as a share of the model's mass).",
      NULL},
     {NULL, NULL, NULL, NULL, NULL}};
 

@@ -79,6 +79,7 @@ typedef struct lar_condition_context {
     double hardness;              /* of tools: lar_step_division */
     int32_t shares;               /* of LAR_STEP_SHARES, that the part of the step is */
     double stable_step;           /* the elements' bound at rest [s] */
+    const double *springs;        /* the masses that springs of contact are fitted to */
     const double *mass;           /* by local node */
     const double *weight;         /* the same, 0 for nodes that another processor accounts for */
     const double *added;          /* of `mass`, what gravity does not pull at; NULL: nothing */

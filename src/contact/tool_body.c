@@ -265,10 +265,10 @@ static hardness_change change_for(double depth, double load) {
 }
 
 /* Not at once: what is already in the tool is driven out by that. */
-static double harden(const lar_tool_list *list, const lar_tools *tools, double hardness,
-                     double fading, double seconds, double unit) {
+double lar_tools_harden(const lar_tool_list *list, const lar_tools *tools, double fading,
+                        double seconds, double unit) {
     static const double RISE = 1e-3; /* [s] */
-    double factor = 1 + seconds / RISE;
+    double factor = 1 + seconds / RISE, hardness = tools->division.hardness;
     hardness_change change = FADES;
     for (int32_t i = 0; i < tools->count; i++) {
         const lar_tool_felt *felt = &tools->follower[i].felt;
@@ -281,31 +281,6 @@ static double harden(const lar_tool_list *list, const lar_tools *tools, double h
     if (change == HARDENS) return fmin(factor * hardness, LAR_HARDNESS_MAX);
     if (change == YIELDS) return fmax(1, hardness / factor);
     return change == FADES ? fmax(1, fading * hardness) : hardness;
-}
-
-bool lar_tools_divide(const lar_tool_list *list, lar_tools *tools, uint64_t step, double seconds,
-                      const lar_step_room *room, double unit) {
-    /* What was needed lately counts for some time: strained tissue trembles [s]. */
-    static const double MEMORY = 0.05;
-    lar_step_division *d = &tools->division;
-    double fading = fmax(0.5, 1 - seconds / MEMORY);
-    double hardness = harden(list, tools, d->hardness, fading, seconds, unit);
-    bool close = lar_division_is_close(d);
-    d->lately = fmax(fmin(d->need, LAR_NEED_MAX), fading * d->lately);
-    d->need = 0;
-    double asked = d->lately + room->springs * hardness;
-    int32_t wanted = d->base;
-    while (wanted < LAR_PARTS_MAX &&
-           (asked > room->max * wanted * wanted || hardness > wanted * wanted))
-        wanted = lar_more_parts(wanted);
-    bool changed =
-        hardness != d->hardness || wanted != d->parts || close != lar_division_is_close(d);
-    d->hardness = hardness;
-    if (wanted == d->parts) return changed;
-    d->before = d->parts;
-    d->parts = wanted;
-    d->since = step;
-    return true;
 }
 
 bool lar_tools_follow(const lar_tool_list *list, lar_tools *tools, uint64_t step, uint64_t until,

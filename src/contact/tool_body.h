@@ -46,19 +46,11 @@ uint64_t lar_tool_interval(double time_step);
 /* Asks a tool to go where `motion` says; it does when nothing keeps it. */
 void lar_tool_ask(lar_tools *tools, int32_t tool, const lar_tool_motion *motion);
 
-/* What an undivided step bears of elements and springs together, (omega dt / 2)^2, and what the
- * springs of tools take of it that are as hard as at rest: nothing where no tool touches. Parts of
- * a step bear their square times as much; springs do not become stiffer with them. */
-typedef struct lar_step_room {
-    double max, springs;
-} lar_step_room;
-
-/* Divides steps, or no longer, at the beginning of an interval. Elements: `division->need`, which
- * with the tools' springs has to find room. Tools: where tissue is deep in one, all become harder,
- * which takes parts of a step. `seconds`: of an interval; `unit`: newtons of a force unit. True
- * when something changes. */
-bool lar_tools_divide(const lar_tool_list *list, lar_tools *tools, uint64_t step, double seconds,
-                      const lar_step_room *room, double unit);
+/* At the beginning of an interval: how hard tools are from now on. Where tissue is deep in one, all
+ * become harder, which takes parts of a step. `fading`: what is left of something over the time
+ * since the last decision, `seconds`; `unit`: newtons of a force unit. */
+double lar_tools_harden(const lar_tool_list *list, const lar_tools *tools, double fading,
+                        double seconds, double unit);
 
 /* At the beginning of an interval that ends at step `until`: decides where tools go in it, and
  * forgets what they have felt. `unit`: newtons of a force unit. True when a tool does not go where

@@ -293,7 +293,8 @@ static void touch_near(lar_tool_contact *contact, const lar_condition_context *c
         contact->seen.tested++;
         vicinity->look[i] = vicinity->path + lar_tool_contact_clear(gap, patch.radius);
         if (gap > 0) continue;
-        lar_tool_contact_push_face(&patch, law, state->v, context->mass, contact->faces->weights);
+        lar_tool_contact_push_face(&patch, law, state->v, context->springs,
+                                   contact->faces->weights);
         vicinity->look[i] = vicinity->path + lar_tool_contact_clear(patch.closest, patch.radius);
         if (patch.touching == 0) continue;
         lar_tool_sum *sum = &contact->sum[tool];
@@ -346,7 +347,7 @@ static void grasp_point(lar_tool_contact *contact, const lar_condition_context *
     for (int a = 0; a < 4; a++) memcpy(v[a], state->v + face->value[a], sizeof v[a]);
     lar_face_mean((const double(*)[3])x, grasp->weight, point);
     lar_face_mean((const double(*)[3])v, grasp->weight, speed);
-    double max = lar_grasp_stiffness_limit(face, tool->radius, law, context->mass);
+    double max = lar_grasp_stiffness_limit(face, tool->radius, law, context->springs);
     double stiffness = fmin(grasp->stiffness, max), damping = sqrt(stiffness * max) * dt;
     for (int i = 0; i < 3; i++) {
         pull[i] = stiffness * (now[i] - point[i]) + damping * ((next[i] - now[i]) / dt - speed[i]);

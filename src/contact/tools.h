@@ -64,6 +64,32 @@ typedef struct lar_step_division {
     int32_t due;      /* to be decided before the next step, wherever an interval begins */
 } lar_step_division;
 
+/* An element that is strained, and may move with more mass for that (step/mass/heavier.h). */
+typedef struct lar_heavy {
+    int32_t element, padding;
+    double factor;       /* its mass is so many times what it is otherwise; 1: not heavier */
+    double need, lately; /* as in lar_step_division, of this element */
+    double held;         /* the factor, fading */
+} lar_heavy;
+
+/* More of them would be looked after than need it: those that need it most are, and until it is
+ * decided again those of the next interval, too. */
+enum { LAR_HEAVIER_MAX = 64, LAR_HEAVY_LIST = 2 * LAR_HEAVIER_MAX };
+
+/* All zero where the scene does not ask for them. */
+typedef struct lar_heavy_list {
+    int32_t count, padding;
+    double beyond_need, beyond;   /* the same, the largest of those that did not find room */
+    lar_heavy of[LAR_HEAVY_LIST]; /* by element */
+} lar_heavy_list;
+
+/* What of it all processors have to know: the elements that are heavier now. Zero behind them. */
+typedef struct lar_heavy_now {
+    int32_t count, padding;
+    int32_t element[LAR_HEAVIER_MAX];
+    uint8_t quarters[LAR_HEAVIER_MAX]; /* of their mass */
+} lar_heavy_now;
+
 /* The next larger number of parts that there is: powers of two, and three halves of them. */
 static inline int32_t lar_more_parts(int32_t parts) {
     return (parts & (parts - 1)) != 0 ? parts / 3 * 4 : parts == 1 ? 2 : parts / 2 * 3;
@@ -103,10 +129,12 @@ typedef struct lar_tools {
     lar_step_division division;
     lar_settings settings;
     lar_forces forces;
+    lar_heavy_now heavier;
     lar_spare_tool spare[LAR_SPARES_MAX];
     lar_tool_motion motion[LAR_TOOLS_MAX]; /* where tools really go */
     lar_grasp grasps[LAR_GRASPS_MAX];
-    lar_tool_follower follower[LAR_TOOLS_MAX]; /* of processor zero only */
+    lar_tool_follower follower[LAR_TOOLS_MAX]; /* of processor zero only, */
+    lar_heavy_list strained;                   /* as this */
 } lar_tools;
 
 /* What a tool may bear before it stays behind its hand, and how it then moves. */

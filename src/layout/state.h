@@ -50,6 +50,7 @@ enum { LAR_NODE_VALUES = 0 LAR_STATE_ROWS(LAR_STATE_COUNT) };
 #undef LAR_STATE_COUNT
 
 typedef struct lar_strained lar_strained; /* step/guard.h */
+typedef struct lar_needs lar_needs;       /* step/mass/needs.h */
 
 typedef struct lar_state {
     uint64_t step;   /* steps done */
@@ -65,6 +66,7 @@ typedef struct lar_state {
     bool listed;     /* the strained elements are listed; false: they are looked for anew */
     double past;     /* since the forces before [s], as the step was entered; no state */
     lar_strained *strained; /* the list, lent; no state */
+    lar_needs *needs;       /* whose `need` that is, lent; NULL: nobody asks. No state */
     int32_t node_count;
     size_t history_count; /* values; 0: nothing is viscous */
 #define LAR_STATE_MEMBER(type, name, of_node, of_history, kept) type *name;

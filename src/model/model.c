@@ -377,6 +377,8 @@ static lar_status check_numbers(const lar_model *model, lar_error *error) {
     if (!(model->mass_step >= 0.0 && model->mass_step <= 1.0) ||
         !(model->mass_share > 0.0 && model->mass_share <= 1.0))
         wrong = "mass scaling needs a step up to a second and a share above 0 and up to 1";
+    if (!(model->strained_share >= 0.0 && model->strained_share <= 0.2))
+        wrong = "strained elements may have at most 0.2 of the model's mass more";
     if (!isfinite(model->duration) || model->duration < 0.0)
         wrong = "the duration must be finite and not negative, in seconds";
     if (!isfinite(model->output.every) || model->output.every < 0.0)

@@ -124,14 +124,16 @@ struct lar_model {
 
     double gravity[3]; /* m/s^2, times gravity_curve[axis] where that is >= 0 */
     int gravity_curve[3];
-    double damping;    /* 1/s, mass-proportional */
-    double time_step;  /* seconds, 0: automatic */
-    double mass_step;  /* seconds that all elements' steps shall be stable up to, with more mass
-                          where they need it (step/mass_scaling.h); 0: nothing is added */
-    double mass_share; /* at most so much, as a part of the model's mass */
-    double view[3];    /* where viewers look from at first, a unit vector; 0 0 0: they choose */
-    double duration;   /* seconds that the description lasts, 0: open */
-    bool until_rest;   /* a run goes on until the body is at rest, see model/rest.h */
+    double damping;        /* 1/s, mass-proportional */
+    double time_step;      /* seconds, 0: automatic */
+    double mass_step;      /* seconds that all elements' steps shall be stable up to, with more mass
+                              where they need it (step/mass_scaling.h); 0: nothing is added */
+    double mass_share;     /* at most so much, as a part of the model's mass */
+    double strained_share; /* strained elements may have so much more in place of steps in parts, as
+                              a part of the model's mass (step/heavier.h); 0: nothing */
+    double view[3];        /* where viewers look from at first, a unit vector; 0 0 0: they choose */
+    double duration;       /* seconds that the description lasts, 0: open */
+    bool until_rest;       /* a run goes on until the body is at rest, see model/rest.h */
 
     int fix_count, move_count, load_count, pressure_count, initial_count;
     lar_fix *fix;

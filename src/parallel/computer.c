@@ -9,6 +9,7 @@
 #include "base/hash.h"
 #include "base/pin.h"
 #include "step/identity.h"
+#include "step/mass/heavier.h"
 
 static int32_t all_threads(const lar_computer *computer) {
     return computer->hosted * computer->threads;
@@ -318,14 +319,23 @@ static void stiffen_on_thread(void *context, int32_t number) {
         lar_domain_stiffen(&processor_of(computer, number)->domain, &computer->tools->settings);
 }
 
+/* What strained elements have more is accounted for by the first thread of each processor. */
+static void take_masses(lar_processor *p, const lar_tools *tools) {
+    if (!lar_burden_take(&p->domain, &tools->heavier, &p->worker[0].state)) return;
+    for (int32_t t = 0; t < p->thread_count; t++) /* with what they weigh */
+        p->worker[t].interactions.tool_contact.plane_contact.known = false;
+}
+
 /* What has been set since the last stretch: gravity and damping are read in every step, materials
  * are made anew. */
 static void take_settings(lar_computer *computer) {
     const lar_settings *settings = &computer->tools->settings;
     const lar_domain *domain = &computer->processor[0].domain;
     uint64_t interval = lar_interval_length(computer->whole, computer->tools);
-    for (int32_t i = 0; i < computer->hosted; i++)
+    for (int32_t i = 0; i < computer->hosted; i++) {
         computer->processor[i].domain.interval = interval;
+        take_masses(&computer->processor[i], computer->tools);
+    }
     if (memcmp(domain->factor, settings->factor, sizeof domain->factor) != 0 ||
         memcmp(domain->activation, settings->activation, sizeof domain->activation) != 0)
         lar_thread_pool_run(computer->pool, stiffen_on_thread, computer);
@@ -342,6 +352,7 @@ static lar_status advance_here(lar_computer *computer, uint64_t until, bool firs
         if (first) lar_report_begin(interactions);
         lar_tool_contact_forget_depths(&interactions->tool_contact);
         processor_of(computer, i)->worker[i % computer->threads].state.need = 0;
+        lar_needs_clear(&processor_of(computer, i)->worker[i % computer->threads].needs);
     }
     for (int32_t i = 0; i < computer->hosted; i++) lar_contact_begin(&computer->processor[i]);
     lar_thread_pool_run(computer->pool, advance_thread, computer);
@@ -418,7 +429,7 @@ lar_status lar_computer_advance(lar_computer *computer, uint64_t steps, bool fir
         if (lar_interval_decide(computer->whole, begin, computer->tools))
             computer->tools_sent = false;
         status = advance_all(computer, next_stop(computer, begin, end), first, fault, error);
-        lar_interval_harvest(&computer->interval, &computer->report, *step - begin,
+        lar_interval_harvest(&computer->interval, computer->whole, &computer->report, *step - begin,
                              computer->tools);
         lar_contact_count(computer, *step - begin);
         if (status || fault->kind || computer->called_off) break;
@@ -468,7 +479,8 @@ static lar_status take_tools(lar_computer *computer, const void *payload, size_t
                 lar_settings_good(&tools->settings, computer->whole->time_step) &&
                 lar_forces_good(&tools->forces, computer->whole->model,
                                 lar_domain_force_max(computer->whole)) &&
-                lar_spares_good(tools->spare, computer->list->spares);
+                lar_spares_good(tools->spare, computer->list->spares) &&
+                lar_heavier_now_good(computer->whole, &tools->heavier);
     if (!fits) return refuse_order(error);
     lar_spares_take(tools, computer->list);
     return LAR_OK;

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "parallel/computer.h"
+#include "step/mass/heavier.h"
 #include "step/viscous_history.h"
 
 /* What travels for a node: the rows of the state's table. */
@@ -194,20 +195,29 @@ lar_status lar_computer_answer_nodes(lar_computer *computer, uint64_t round, lar
 /* ---- scattering ---------------------------------------------------------------------------- */
 
 static void scatter_here(lar_computer *computer) {
-    for (int32_t i = 0; i < computer->hosted; i++)
+    for (int32_t i = 0; i < computer->hosted; i++) {
+        lar_burden_take(&computer->processor[i].domain, &computer->tools->heavier, NULL);
         lar_processor_scatter(&computer->processor[i], computer->whole, computer->state);
+    }
+}
+
+/* Which elements are heavier belongs to a state, where it can be. */
+static size_t heavier_bytes(const lar_computer *computer) {
+    return computer->whole->burden ? sizeof(lar_heavy_now) : 0;
 }
 
 /* All nodes to everyone, and behind them what is remembered: each keeps what it has. */
 static lar_status scatter_others(lar_computer *computer, lar_error *error) {
     const lar_domain *whole = computer->whole;
     size_t nodes = (size_t)whole->model->mesh.node_count;
-    size_t bytes = nodes * sizeof(node_values) + lar_viscous_total(whole) * sizeof(double);
+    size_t values = lar_viscous_total(whole), heavier = heavier_bytes(computer);
+    size_t bytes = nodes * sizeof(node_values) + values * sizeof(double) + heavier;
     node_values *value = lar_calloc(bytes, 1);
     if (!value) return lar_fail_memory(error, bytes, "the state");
     for (size_t node = 0; node < nodes; node++)
         lar_state_read(computer->state, whole->layout.local[node], value[node]);
     lar_viscous_gather(whole, computer->state, (double *)(value + nodes));
+    memcpy((double *)(value + nodes) + values, &computer->tools->heavier, heavier);
     const lar_order order = {LAR_ORDER_SCATTER, computer->state->step};
     lar_status status = lar_control_order(computer->control, &order, value, bytes, error);
     for (int32_t p = 1; p < computer->division.grid.count && !status; p++) {
@@ -223,8 +233,8 @@ lar_status lar_computer_take_state(lar_computer *computer, uint64_t step, const 
     const node_values *value = payload;
     const lar_model *model = computer->whole->model;
     lar_gid nodes = model->mesh.node_count;
-    if (bytes !=
-        (size_t)nodes * sizeof *value + lar_viscous_total(computer->whole) * sizeof(double))
+    size_t values = lar_viscous_total(computer->whole), heavier = heavier_bytes(computer);
+    if (bytes != (size_t)nodes * sizeof *value + values * sizeof(double) + heavier)
         return lar_fail(error, LAR_ERROR_PEER,
                         "processor 0 sends a state of %zu bytes for %d nodes; start all processors "
                         "again, from the same installation",
@@ -232,6 +242,11 @@ lar_status lar_computer_take_state(lar_computer *computer, uint64_t step, const 
     for (lar_gid node = 0; node < nodes; node++)
         lar_state_write(computer->state, computer->whole->layout.local[node], value[node]);
     lar_viscous_scatter(computer->whole, computer->state, (const double *)(value + nodes));
+    memcpy(&computer->tools->heavier, (const double *)(value + nodes) + values, heavier);
+    if (!lar_heavier_now_good(computer->whole, &computer->tools->heavier))
+        return lar_fail(error, LAR_ERROR_PEER,
+                        "processor 0 sends a state of another model; start all processors again, "
+                        "from the same installation");
     computer->state->step = step;
     scatter_here(computer);
     return LAR_OK;

@@ -15,6 +15,7 @@
 #include "comm/comm.h"
 #include "divide/schedule/schedule.h"
 #include "step/guard.h"
+#include "step/mass/needs.h"
 #include "step/step.h"
 #include "parallel/verification.h"
 
@@ -71,6 +72,7 @@ typedef struct lar_worker {
     lar_fault fault;
     unsigned char *gather; /* for packets to peers whose memory cannot be written from here */
     uint64_t random;       /* of the delays; 0: none */
+    lar_needs needs;       /* of its elements, where strained ones may be heavier */
     bool follows;          /* it failed because another thread of the processor had */
 } __attribute__((aligned(64))) lar_worker;
 

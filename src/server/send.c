@@ -219,6 +219,8 @@ static void write_progress(lar_json *json, const lar_session_status *s) {
     lar_json_integer(json, "placed", (int64_t)s->placed);
     lar_json_integer(json, "step_parts", s->step_parts);
     lar_json_integer(json, "divided_steps", (int64_t)s->divided_steps);
+    lar_json_integer(json, "heavier", s->heavier);
+    lar_json_number(json, "heavier_share", s->heavier_share);
 }
 
 /* As it is now. */

@@ -24,6 +24,10 @@ void lar_session_publish(lar_session *session, bool quantiles) {
     status->step_parts = parts;
     status->divided_steps =
         lar_simulation_divided_steps(session->simulation, NULL) - session->divided;
+    lar_heavier heavier;
+    lar_simulation_heavier(session->simulation, &heavier);
+    status->heavier = heavier.elements;
+    status->heavier_share = heavier.share;
     lar_pace_report(&session->pace, quantiles, lar_clock_ns(), status);
     session->advice.stiffer = session->simulation->tools.division.base;
     if (quantiles) lar_advise(&session->advice, session->pace.pace, status);

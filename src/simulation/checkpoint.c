@@ -15,6 +15,7 @@
 #include "contact/tool_body.h"
 #include "simulation/checkpoint_rows.h"
 #include "step/identity.h"
+#include "step/mass/heavier.h"
 #include "step/viscous_history.h"
 
 /* ---- what stands in a file ------------------------------------------------------------------ */
@@ -22,8 +23,10 @@
 /* Version 3 had no settings: neither them nor what they take of a step. Up to version 5 a step had
  * 32 shares. A state with added tools has an odd version from 5 on, any other one an even one. One
  * with forces that were set on nodes has version 8 or 9, one with an activation that was set 10 or
- * 11, with forces or without; others are written as they always were. */
-enum { BEFORE_SETTINGS = 3, BEFORE_THIRDS = 5, VERSION = 6, FORCES = 8, ACTIVE = 10, NEWEST = 11 };
+ * 11, with forces or without, one with strained elements that are heavier, or may soon be, 12 or
+ * 13, with all of that; others are written as they always were. */
+enum { BEFORE_SETTINGS = 3, BEFORE_THIRDS = 5, VERSION = 6, FORCES = 8, ACTIVE = 10 };
+enum { HEAVIER = 12, NEWEST = 13 };
 enum { BYTE_ORDER_MARK = 0x01020304 };
 
 typedef struct file_head {
@@ -48,14 +51,16 @@ _Static_assert(sizeof(lar_tool_motion) == 152 && sizeof(lar_grasp) == 72, "the f
 _Static_assert(sizeof(lar_tool_follower) == 240, "the format");
 _Static_assert(LAR_NODE_VALUES == 7, "the format");
 _Static_assert(sizeof(lar_force_entry) == 32 && offsetof(lar_forces, entry) == 8, "the format");
+_Static_assert(sizeof(lar_heavy) == 40 && offsetof(lar_heavy_list, of) == 24, "the format");
 _Static_assert(sizeof(lar_spare_tool) == 104 && LAR_SPARES_MAX == 4, "the format");
 
 /* What its size follows from, besides the nodes. */
 typedef struct file_shape {
     uint32_t version;
     int32_t tools, grasps;
-    size_t history; /* values that viscous elements remember: as many as the model says */
-    int32_t forces; /* that were set; of versions that have them */
+    size_t history;  /* values that viscous elements remember: as many as the model says */
+    int32_t forces;  /* that were set; of versions that have them */
+    int32_t heavier; /* strained elements that stand in it, likewise */
 } file_shape;
 
 static bool has_added(uint32_t version) {
@@ -80,10 +85,16 @@ static size_t forces_bytes(const file_shape *shape) {
     return offsetof(lar_forces, entry) + (size_t)shape->forces * sizeof(lar_force_entry);
 }
 
+/* The same of strained elements. */
+static size_t heavier_bytes(const file_shape *shape) {
+    if (shape->version < HEAVIER) return 0;
+    return offsetof(lar_heavy_list, of) + (size_t)shape->heavier * sizeof(lar_heavy);
+}
+
 static size_t file_bytes(const file_shape *shape, size_t nodes) {
     size_t tools = (size_t)shape->tools, grasps = (size_t)shape->grasps;
     return sizeof(file_head) + settings_bytes(shape->version) + forces_bytes(shape) +
-           tools * (sizeof(lar_tool_motion) + sizeof(lar_tool_follower)) +
+           heavier_bytes(shape) + tools * (sizeof(lar_tool_motion) + sizeof(lar_tool_follower)) +
            grasps * sizeof(lar_grasp) + nodes * LAR_NODE_VALUES * sizeof(double) +
            shape->history * sizeof(double) + sizeof(uint64_t);
 }
@@ -133,11 +144,15 @@ static unsigned char *append(unsigned char *at, const void *from, size_t bytes) 
 static file_shape shape_of(const lar_domain *whole, const lar_tools *tools) {
     const lar_tool_list *list = whole->surroundings.list;
     int32_t spares = lar_spares_needed(tools->spare);
-    uint32_t version = lar_settings_activate(&tools->settings) ? ACTIVE
-                       : tools->forces.count > 0               ? FORCES
-                                                               : VERSION;
+    const lar_heavy_list *heavier = &tools->strained;
+    bool heavy = heavier->count > 0 || heavier->beyond > 0 || heavier->beyond_need > 0;
+    uint32_t version = heavy                                     ? HEAVIER
+                       : lar_settings_activate(&tools->settings) ? ACTIVE
+                       : tools->forces.count > 0                 ? FORCES
+                                                                 : VERSION;
     return (file_shape){.version = version + (spares > 0),
                         .forces = tools->forces.count,
+                        .heavier = heavier->count,
                         .tools = (list ? lar_spares_first(list) : 0) + spares,
                         .grasps = tools->grasp_count,
                         .history = lar_viscous_total(whole)};
@@ -151,6 +166,7 @@ static unsigned char *fill_tools(unsigned char *at, const file_shape *shape,
     at = append(at, &tools->settings, set_bytes(shape->version));
     if (has_added(shape->version)) at = append(at, tools->spare, sizeof tools->spare);
     at = append(at, &tools->forces, forces_bytes(shape));
+    at = append(at, &tools->strained, heavier_bytes(shape));
     at = append(at, tools->motion, count * sizeof tools->motion[0]);
     at = append(at, tools->follower, count * sizeof tools->follower[0]);
     return append(at, tools->grasps, grasps * sizeof tools->grasps[0]);
@@ -424,6 +440,16 @@ static int32_t forces_in(const file_head *head, const lar_bytes *bytes) {
     return count <= LAR_FORCES_MAX ? count : -1;
 }
 
+/* The same of strained elements, which stand behind the forces. */
+static int32_t heavier_in(const file_head *head, const file_shape *before, const lar_bytes *bytes) {
+    int32_t count;
+    size_t at = sizeof *head + settings_bytes(head->version) + forces_bytes(before);
+    if (head->version < HEAVIER) return 0;
+    if (before->forces < 0 || bytes->size < at + sizeof count) return -1;
+    memcpy(&count, bytes->data + at, sizeof count);
+    return count <= LAR_HEAVY_LIST ? count : -1;
+}
+
 /* What fill_tools writes; *at moves behind it. */
 static bool take_tools(const file_head *head, const file_shape *shape, const lar_domain *whole,
                        const unsigned char **at, lar_tools *tools) {
@@ -438,6 +464,7 @@ static bool take_tools(const file_head *head, const file_shape *shape, const lar
     *at = extract(*at, &tools->settings, set_bytes(head->version));
     if (has_added(head->version)) *at = extract(*at, tools->spare, sizeof tools->spare);
     *at = extract(*at, &tools->forces, forces_bytes(shape));
+    *at = extract(*at, &tools->strained, heavier_bytes(shape));
     *at = extract(*at, tools->motion, count * sizeof tools->motion[0]);
     *at = extract(*at, tools->follower, count * sizeof tools->follower[0]);
     for (size_t i = 0; i < count && head->version <= BEFORE_THIRDS; i++)
@@ -446,7 +473,8 @@ static bool take_tools(const file_head *head, const file_shape *shape, const lar
     bool good = good_division(&tools->division, head) &&
                 lar_settings_good(&tools->settings, whole->time_step) &&
                 lar_forces_good(&tools->forces, whole->model, lar_domain_force_max(whole)) &&
-                lar_spares_good(tools->spare, list ? list->spares : 0);
+                lar_spares_good(tools->spare, list ? list->spares : 0) &&
+                lar_heavier_good(whole, &tools->strained);
     for (int32_t i = 0; good && i < tools->count; i++) {
         const lar_tool tool = lar_spare_tool_of(list, tools->spare, i);
         good = good_motion(&tools->motion[i]) && near_enough(&tool, &tools->motion[i]) &&
@@ -455,6 +483,7 @@ static bool take_tools(const file_head *head, const file_shape *shape, const lar
     for (int32_t i = 0; good && i < tools->grasp_count; i++)
         good = good_grasp(&tools->grasps[i], head, whole->model) &&
                lar_spare_tool_of(list, tools->spare, tools->grasps[i].tool).shape != LAR_TOOL_NONE;
+    if (good) lar_heavier_name(&tools->strained, &tools->heavier);
     fill_up(list, tools);
     return good;
 }
@@ -468,14 +497,15 @@ lar_status lar_checkpoint_parse(const char *path, const lar_bytes *bytes, const 
     lar_status status = check_file(path, bytes, &head, error);
     if (!status) status = check_model(path, &head, whole, error);
     if (status) return status;
-    const file_shape shape = {.version = head.version,
-                              .tools = head.tools,
-                              .grasps = head.grasps,
-                              .history = lar_viscous_total(whole),
-                              .forces = forces_in(&head, bytes)};
+    file_shape shape = {.version = head.version,
+                        .tools = head.tools,
+                        .grasps = head.grasps,
+                        .history = lar_viscous_total(whole),
+                        .forces = forces_in(&head, bytes)};
+    shape.heavier = heavier_in(&head, &shape, bytes);
     int32_t constant = list ? lar_spares_first(list) : 0, spares = head.tools - constant;
     if (spares < 0 || spares > (has_added(head.version) ? LAR_SPARES_MAX : 0) || head.grasps < 0 ||
-        head.grasps > LAR_GRASPS_MAX || shape.forces < 0 ||
+        head.grasps > LAR_GRASPS_MAX || shape.forces < 0 || shape.heavier < 0 ||
         bytes->size != file_bytes(&shape, nodes))
         return refuse(error, path, "its parts have sizes that do not fit; take another checkpoint");
     if (spares > 0 && spares > list->spares)

@@ -10,6 +10,7 @@
 #include "contact/tool_body.h"
 #include "simulation/field.h"
 #include "step/domain_share.h"
+#include "step/mass/heavier.h"
 #include "step/viscous_history.h"
 #include "step/measure.h"
 
@@ -98,7 +99,7 @@ static void set_tool_limits(const lar_domain *domain, lar_tool_list *list) {
             int32_t node = surface->corner[f][a], next = surface->corner[f][(a + 1) % 4];
             lar_minus(model->mesh.position[next], model->mesh.position[node], edge);
             edges += lar_length(edge);
-            mass += domain->mass[domain->layout.local[node]];
+            mass += lar_domain_springs(domain)[domain->layout.local[node]];
         }
     }
     if (surface->face_count > 0) {
@@ -124,6 +125,7 @@ void lar_simulation_settle(lar_simulation *simulation) {
     bool tissue = lar_domain_stiffen(&simulation->domain, &simulation->tools.settings);
     bool tools = lar_spares_take(&simulation->tools, &simulation->list);
     if (tissue || tools) lar_simulation_limit_tools(simulation);
+    lar_burden_take(&simulation->domain, &simulation->tools.heavier, NULL);
 }
 
 void lar_simulation_set_start(lar_simulation *simulation) {
@@ -154,6 +156,7 @@ lar_status lar_simulation_create_state(lar_simulation *simulation, bool search_a
                                          domain->history_count, error);
     if (!status) status = lar_strained_create(domain, &simulation->strained, error);
     simulation->state.strained = &simulation->strained;
+    simulation->state.needs = domain->burden ? &simulation->needs : NULL;
     if (!status)
         status = lar_interactions_create(&domain->surroundings, &simulation->tools, search_always,
                                          interactions, error);
@@ -254,6 +257,7 @@ static bool advance_stretch(lar_simulation *simulation, uint64_t end, lar_step_c
     bool goes_on = true;
     lar_tool_contact_forget_depths(&interactions->tool_contact);
     state->need = 0;
+    lar_needs_clear(&simulation->needs);
     while (state->step < end && goes_on) {
         lar_step(domain, interactions, state, fault);
         if (fault->kind) lar_fault_examine(domain, state, 0, domain->layout.node_count, fault);
@@ -262,9 +266,16 @@ static bool advance_stretch(lar_simulation *simulation, uint64_t end, lar_step_c
     }
     simulation->report = (lar_report){0};
     lar_report_add(&simulation->report, interactions, state);
-    lar_interval_harvest(&simulation->interval, &simulation->report, state->step - begin,
+    lar_interval_harvest(&simulation->interval, domain, &simulation->report, state->step - begin,
                          &simulation->tools);
     return goes_on;
+}
+
+/* What strained elements have more now. `state`: NULL where the change has been accounted for. */
+static void take_masses(lar_simulation *simulation, lar_state *state) {
+    bool taken = lar_burden_take(&simulation->domain, &simulation->tools.heavier, state);
+    /* Those near planes stand in a list with what they weigh. */
+    if (taken) simulation->interactions.tool_contact.plane_contact.known = false;
 }
 
 /* `first`: of the portions of an advance. False when the watch has stopped it. */
@@ -275,7 +286,8 @@ static bool advance_alone(lar_simulation *simulation, uint64_t end, bool first,
     if (first) lar_report_begin(&simulation->interactions);
     if (first) lar_interval_restart(&simulation->interval);
     while (*step < end && goes_on) {
-        lar_interval_decide(&simulation->domain, *step, &simulation->tools);
+        if (lar_interval_decide(&simulation->domain, *step, &simulation->tools))
+            take_masses(simulation, &simulation->state);
         uint64_t until = lar_interval_end(&simulation->domain, &simulation->tools.division, *step);
         goes_on = advance_stretch(simulation, until < end ? until : end, callback, context);
     }
@@ -321,6 +333,7 @@ static lar_status advance_portion(lar_simulation *simulation, uint64_t end, bool
         status = lar_computer_advance(computer, steps, first, callback, context, &simulation->fault,
                                       error);
         simulation->report = computer->report;
+        lar_burden_take(&simulation->domain, &simulation->tools.heavier, NULL);
         *goes_on = !computer->called_off;
     } else {
         *goes_on = advance_alone(simulation, end, first, callback, context);

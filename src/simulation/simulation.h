@@ -22,6 +22,7 @@ struct lar_simulation {
     lar_state state;
     lar_interactions interactions; /* of an advance without a computer */
     lar_strained strained;         /* the same */
+    lar_needs needs;               /* the same */
     lar_simulation_scratch *scratch;
     lar_fault fault;
     lar_tool_list list;

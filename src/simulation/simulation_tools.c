@@ -8,6 +8,7 @@
 #include "contact/tool_body.h"
 #include "contact/touch_list.h"
 #include "step/grasp.h"
+#include "step/mass/heavier.h"
 #include "simulation/simulation.h"
 
 /* The simulation that this thread computes for a session. */
@@ -292,4 +293,19 @@ uint64_t lar_simulation_divided_steps(const lar_simulation *simulation, int32_t 
     const lar_interval *interval = interval_of(simulation);
     if (max) *max = interval->parts > 1 ? interval->parts : 1;
     return interval->divided;
+}
+
+/* What may be added is the share that the scene says, of the model's mass. */
+void lar_simulation_heavier(const lar_simulation *simulation, lar_heavier *heavier) {
+    if (!heavier) return;
+    *heavier = (lar_heavier){0};
+    const lar_domain *domain = simulation ? &simulation->domain : NULL;
+    if (!domain || !domain->burden) return;
+    const lar_interval *interval = interval_of(simulation);
+    double mass = domain->burden->most / domain->model->strained_share;
+    heavier->elements = simulation->tools.heavier.count;
+    heavier->share = lar_heavier_added(domain, &simulation->tools.heavier) / mass;
+    if (interval->steps > 0)
+        heavier->mean_share = interval->heavy_steps / (double)interval->steps / mass;
+    heavier->largest_share = interval->heaviest / mass;
 }

@@ -397,27 +397,32 @@ static void choose_scale(lar_domain *domain) {
     domain->scale = ldexp(1, 46 - exponent);
 }
 
-static lar_status spread_mass(lar_domain *domain, lar_error *error) {
-    const lar_model *model = domain->model;
+static lar_status allocate_masses(lar_domain *domain, lar_error *error) {
     size_t nodes = (size_t)domain->layout.node_padded;
-    domain->mass = lar_calloc_aligned(nodes, sizeof *domain->mass);
+    domain->weight = domain->mass = lar_calloc_aligned(nodes, sizeof *domain->mass);
     domain->push = lar_calloc_aligned(nodes, sizeof *domain->push);
     if (domain->adds) domain->added = lar_calloc_aligned(nodes, sizeof *domain->added);
-    domain->weight = domain->mass;
-    if (!domain->mass || !domain->push || (domain->adds && !domain->added))
-        return lar_fail_memory(error, 3 * nodes * sizeof *domain->mass, "the masses");
-    for (lar_gid e = 0; e < model->mesh.element_count; e++) {
-        double corner[8][3];
-        lar_mesh_corners(&model->mesh, e, corner);
-        double share = lar_model_material_of(model, e)->density * lar_hexahedron_volume(corner) / 8;
-        for (int a = 0; a < 8; a++) {
-            lar_lid n = domain->layout.local[model->mesh.element[e][a]];
-            domain->mass[n] += share;
-            if (domain->added) domain->added[n] += domain->rate[e].added;
-        }
-    }
-    for (size_t n = 0; domain->added && n < nodes; n++) domain->mass[n] += domain->added[n];
-    return LAR_OK;
+    bool made = domain->mass && domain->push && (!domain->adds || domain->added);
+    return made ? LAR_OK : lar_fail_memory(error, 24 * nodes, "the masses");
+}
+
+/* After the masses: beside them what they are without what strained elements have more. */
+static lar_status create_burden(lar_domain *domain, lar_error *error) {
+    size_t nodes = (size_t)domain->layout.node_padded;
+    if (!(domain->model->strained_share > 0) || domain->kind != LAR_ELEMENT_HEX8) return LAR_OK;
+    lar_step_room room = lar_step_room_of(domain->time_step, domain->stable_step, true);
+    domain->burden = lar_burden_create(domain->mass, domain->added, nodes, room.least);
+    if (domain->burden) domain->burden->most = lar_burden_most(domain->model, domain->rate);
+    if (!domain->added) domain->added = lar_calloc_aligned(nodes, sizeof *domain->added);
+    if (domain->burden && domain->added) return LAR_OK;
+    return lar_fail_memory(error, 24 * nodes, "the masses");
+}
+
+static lar_status spread_mass(lar_domain *domain, lar_error *error) {
+    lar_status status = allocate_masses(domain, error);
+    if (status) return status;
+    lar_masses_spread(domain->model, &domain->layout, domain->rate, domain->mass, domain->added);
+    return create_burden(domain, error);
 }
 
 /* Constants of v' = keep v - push f + drift (docs/theory.md): central differences with damping c,
@@ -430,8 +435,7 @@ static void prepare_motion(lar_domain *domain) {
     domain->leapfrog = (lar_leapfrog){.keep = (1 - half) / (1 + half), .dt = dt, .push = 1};
     for (int i = 0; i < 3; i++) domain->leapfrog.drift[i] = gravity[i] * dt / (1 + half);
     for (int32_t n = 0; n < domain->layout.node_count; n++)
-        if (domain->mass[n] > 0)
-            domain->push[n] = dt / (domain->mass[n] * (1 + half) * domain->scale);
+        if (domain->mass[n] > 0) domain->push[n] = lar_domain_push_of(domain, domain->mass[n]);
     for (lar_gid e = 0; e < model->mesh.element_count; e++) {
         double corner[8][3];
         lar_mesh_corners(&model->mesh, e, corner);
@@ -482,12 +486,10 @@ lar_status lar_domain_create_styled(const lar_model *model, const lar_options *o
 static lar_status copy_nodes(const lar_domain *whole, const bool *counted, lar_domain *domain,
                              lar_error *error) {
     size_t nodes = (size_t)domain->layout.node_padded;
-    domain->mass = lar_calloc_aligned(nodes, sizeof *domain->mass);
+    lar_status status = allocate_masses(domain, error);
+    if (status) return status;
     domain->weight = lar_calloc_aligned(nodes, sizeof *domain->weight);
-    domain->push = lar_calloc_aligned(nodes, sizeof *domain->push);
-    if (domain->adds) domain->added = lar_calloc_aligned(nodes, sizeof *domain->added);
-    if (!domain->mass || !domain->weight || !domain->push || (domain->adds && !domain->added))
-        return lar_fail_memory(error, 4 * nodes * sizeof *domain->mass, "the masses");
+    if (!domain->weight) return lar_fail_memory(error, 8 * nodes, "the masses");
     for (size_t n = 0; n < nodes; n++) {
         lar_gid g = domain->layout.global[n];
         if (g < 0) continue;
@@ -497,7 +499,7 @@ static lar_status copy_nodes(const lar_domain *whole, const bool *counted, lar_d
         if (domain->added) domain->added[n] = whole->added[there];
         if (counted[g]) domain->weight[n] = domain->mass[n];
     }
-    return LAR_OK;
+    return create_burden(domain, error);
 }
 
 lar_status lar_domain_create_part(const lar_domain *whole, const lar_part *part,
@@ -546,6 +548,7 @@ void lar_domain_destroy(lar_domain *domain) {
     free(domain->rest);
     if (!domain->rate_lent) free(domain->rate);
     free(domain->spare);
+    lar_burden_destroy(domain->burden);
     if (domain->weight != domain->mass) free(domain->weight);
     free(domain->mass);
     free(domain->added);

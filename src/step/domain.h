@@ -17,6 +17,7 @@
 #include "layout/part_layout.h"
 #include "mechanics/hex8_block.h"
 #include "model/model.h"
+#include "step/mass/masses.h"
 #include "step/stable_step.h"
 
 /* What a lane follows from besides gradients and shape, with the model's material. */
@@ -71,6 +72,8 @@ typedef struct lar_domain {
                        `mass` itself */
     double *added;  /* [layout.node_padded] of `mass`, what has no weight; NULL: nothing */
     double *push;   /* [layout.node_padded] see lar_node_update */
+    lar_burden *burden; /* what strained elements may have more (step/mass/heavier.h); NULL:
+                                  nothing, and the four above never change */
 
     double scale;       /* force units per newton, a power of two */
     double time_step;   /* [s] */
@@ -112,6 +115,17 @@ static inline double lar_domain_force_max(const lar_domain *domain) {
 /* What gravity pulls at, of a node's mass [kg]. */
 static inline double lar_domain_weighs(const lar_domain *domain, lar_lid n) {
     return domain->added ? domain->mass[n] - domain->added[n] : domain->mass[n];
+}
+
+/* The masses that springs of contact are fitted to: a spring must not become harder on the way. */
+static inline const double *lar_domain_springs(const lar_domain *domain) {
+    return domain->burden ? domain->burden->mass : domain->mass;
+}
+
+/* How a node of so much mass is pushed by a force: see lar_node_update. */
+static inline double lar_domain_push_of(const lar_domain *domain, double mass) {
+    double dt = domain->time_step;
+    return dt / (mass * (1 + 0.5 * domain->model->damping * dt) * domain->scale);
 }
 
 /* The material of element e as stiff as it is now. */

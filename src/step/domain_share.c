@@ -10,8 +10,10 @@ struct lar_domain_shared {
     lar_domain constant; /* what belongs to all of them; NULL where each has its own */
 };
 
-/* The arrays that lar_domain_stiffen writes, and what points into them. */
+/* The arrays that lar_domain_stiffen and lar_burden_take write, and what points into them. */
 static void forget_own(lar_domain *domain) {
+    if (domain->burden) domain->mass = domain->weight = domain->push = domain->added = NULL;
+    domain->burden = NULL;
     domain->run = NULL;
     domain->blocks = NULL;
     domain->more = NULL;
@@ -64,6 +66,15 @@ lar_status lar_domain_share(lar_domain *from, lar_domain *copy, lar_error *error
                              (size_t)from->model->material_count * sizeof *from->material, &failed);
     copy->surroundings.list = NULL;
     if (from->rubbing) copy->rubbing = &copy->surroundings.bodies.surface;
+    copy->burden = NULL;
+    if (from->burden) {
+        size_t bytes = (size_t)from->layout.node_padded * sizeof(double);
+        copy->weight = copy->mass = copy_of(from->mass, bytes, &failed);
+        copy->push = copy_of(from->push, bytes, &failed);
+        copy->added = copy_of(from->added, bytes, &failed);
+        copy->burden = lar_burden_copy(from->burden, bytes / sizeof(double));
+        failed = failed || !copy->burden;
+    }
     if (failed) {
         lar_domain_leave(copy);
         return lar_fail_memory(error, from->block_bytes, "a clone");
@@ -93,6 +104,12 @@ void lar_domain_leave(lar_domain *domain) {
     free(domain->second);
     free(domain->corner_limit);
     free(domain->material);
+    lar_burden_destroy(domain->burden);
+    if (!shared->constant.mass) {
+        free(domain->mass);
+        free(domain->push);
+        free(domain->added);
+    }
     *domain = (lar_domain){0};
     if (__atomic_sub_fetch(&shared->users, 1, __ATOMIC_ACQ_REL) > 0) return;
     lar_domain_destroy(&shared->constant);

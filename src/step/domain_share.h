@@ -1,6 +1,7 @@
 /* Domains of several simulations of one model: what no call changes is there once.
  *
- *     simulation   domain ---- own: blocks, materials (lar_domain_stiffen compiles them anew)
+ *     simulation   domain ---- own: blocks, materials (lar_domain_stiffen compiles them anew),
+ *                        \    masses where strained elements may be heavier (lar_burden_take)
  *                        \
  *     its clone    domain ---- shared, counted: layout, masses, conditions, faces, planes, bodies
  *

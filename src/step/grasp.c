@@ -156,8 +156,9 @@ void lar_grasp_ease(const lar_domain *whole, const lar_tool_list *list, int32_t 
         lar_grasp *grasp = &tools->grasps[i];
         if (grasp->tool != tool) continue;
         /* Of what it really has, or softening would begin unseen. */
-        double max = lar_grasp_stiffness_limit(&faces->face[faces->face_of[grasp->face]],
-                                               list->tool[tool].radius, &law, whole->mass);
+        double max =
+            lar_grasp_stiffness_limit(&faces->face[faces->face_of[grasp->face]],
+                                      list->tool[tool].radius, &law, lar_domain_springs(whole));
         grasp->stiffness = share * fmin(wanted, max);
     }
 }

@@ -5,6 +5,7 @@
 
 #include "base/vector.h"
 #include "mechanics/hex8_guard.h"
+#include "step/mass/heavier.h"
 
 /* Elements are listed when a corner is no farther from its barrier than twice START. That no corner
  * comes there before the next list is made is no theorem: in fast pushes with tools at 1.6 m/s the
@@ -96,7 +97,7 @@ static double barriers_of(const lar_domain *domain, const lar_state *state, lar_
     return fmax(guard.stiffness, then.stiffness);
 }
 
-/* (omega dt / 2)^2 of an element as it is strained. */
+/* (omega dt / 2)^2 of an element as it is strained, if it is not heavier for a while. */
 static double need_of(const lar_domain *domain, const lar_state *state, lar_gid e, bool pressed,
                       double volume, const float strain[LAR_STRAIN_NUMBERS]) {
     const lar_element_rate *rate = &domain->rate[e];
@@ -145,7 +146,8 @@ static void add(const lar_domain *domain, lar_gid e, const double force[8][3], l
 static double soften(const lar_domain *domain, lar_gid e, double stiffness, double step,
                      double mean, double force[8][3]) {
     static const double ROOM = 1; /* of (omega dt / 2)^2 */
-    double rate = (1 + 2 * LEAD) * stiffness / domain->rate[e].mass;
+    double rate =
+        (1 + 2 * LEAD) * stiffness / (domain->rate[e].mass * lar_burden_factor(domain, e));
     double takes = 0.25 * mean * fmax(mean, step) * rate;
     if (!(takes > ROOM)) return 1;
     for (int a = 0; a < 8; a++)
@@ -251,6 +253,8 @@ void lar_guard_select_and_apply(const lar_domain *domain, int32_t r,
             double need =
                 need_of(domain, state, element[lane], pressed, volume, monitor->strain[i]);
             if (!(need <= state->need)) state->need = need;
+            if (state->needs && need > domain->burden->least)
+                lar_needs_add(state->needs, element[lane], need);
         }
         lanes &= below >> LAR_BLOCK;
         if (lanes) list[count++] = (int32_t)((unsigned)block << LAR_BLOCK | lanes);

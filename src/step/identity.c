@@ -127,6 +127,7 @@ static uint64_t hash_materials(const lar_model *model) {
     }
     hash = hash_fibres(hash, model);
     if (model->mass_step > 0) hash = lar_hash_double(hash, model->mass_step);
+    if (model->strained_share > 0) hash = lar_hash_double(hash, -model->strained_share);
     return hash_indices(hash, model->element_material, model->mesh.element_count);
 }
 

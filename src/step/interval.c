@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "contact/tool_body.h"
+#include "step/mass/heavier.h"
 
 void lar_interval_restart(lar_interval *interval) {
     memset(interval->seen, 0, sizeof interval->seen);
@@ -21,12 +22,17 @@ static double larger(double a, double b) {
     return b <= a ? a : b;
 }
 
-void lar_interval_harvest(lar_interval *interval, const lar_report *report, uint64_t steps,
-                          lar_tools *tools) {
+void lar_interval_harvest(lar_interval *interval, const lar_domain *whole, const lar_report *report,
+                          uint64_t steps, lar_tools *tools) {
     int32_t parts = tools->division.parts;
+    double heavier = lar_heavier_added(whole, &tools->heavier);
+    interval->steps += steps;
+    interval->heavy_steps += (double)steps * heavier;
+    if (steps > 0) interval->heaviest = fmax(interval->heaviest, heavier);
     if (parts > 1) interval->divided += steps;
     if (steps > 0 && parts > interval->parts) interval->parts = parts;
     tools->division.need = larger(tools->division.need, report->need);
+    lar_heavier_harvest(&report->needs, &tools->strained);
     for (int32_t t = 0; t < tools->count; t++) {
         const lar_tool_sum *now = &report->tool[t];
         lar_tool_sum *before = &interval->seen[t];
@@ -56,12 +62,10 @@ uint64_t lar_interval_end(const lar_domain *whole, const lar_step_division *divi
 
 /* At least what the step takes at rest; tools that touch take their own part (theory.md 10). */
 static lar_step_room room_of(const lar_domain *whole, const lar_tools *tools) {
-    static const double MAX = 0.9, SPRINGS = 0.25;
-    double share = whole->time_step / whole->stable_step, rest = 1.02 * share * share;
-    lar_step_room room = {.max = fmax(MAX, rest)};
+    bool touched = false;
     for (int32_t i = 0; i < tools->count; i++)
-        if (tools->follower[i].felt.depth > 0) room.springs = fmin(SPRINGS, room.max - rest);
-    return room;
+        touched = touched || tools->follower[i].felt.depth > 0;
+    return lar_step_room_of(whole->time_step, whole->stable_step, touched);
 }
 
 /* Parts that stiffer materials need. Elements take s^2 of a step, times their factor, and contact
@@ -81,6 +85,46 @@ static int32_t base_of(const lar_domain *whole, const lar_settings *settings) {
     return base;
 }
 
+/* Whether so many parts bear elements as they have been lately, and springs; where elements may be
+ * heavier, with what they may. */
+static bool bears(const lar_domain *whole, const lar_tools *tools, const lar_step_room *room,
+                  double hardness, int32_t parts) {
+    double max = room->max * parts * parts, springs = room->springs * hardness;
+    if (hardness > parts * parts) return false;
+    if (tools->division.lately + springs <= max) return true;
+    return whole->burden && lar_heavier_bears(whole, &tools->strained, max - springs);
+}
+
+bool lar_interval_divide(const lar_domain *whole, uint64_t step, double seconds, lar_tools *tools) {
+    /* What was needed lately counts for some time: strained tissue trembles [s]. */
+    static const double MEMORY = 0.05;
+    const lar_step_room room = room_of(whole, tools);
+    lar_step_division *d = &tools->division;
+    double fading = fmax(0.5, 1 - seconds / MEMORY);
+    double hardness =
+        lar_tools_harden(whole->surroundings.list, tools, fading, seconds, 1 / whole->scale);
+    bool close = lar_division_is_close(d);
+    d->lately = fmax(fmin(d->need, LAR_NEED_MAX), fading * d->lately);
+    d->need = 0;
+    if (whole->burden) lar_heavier_fade(fading, &tools->strained);
+    int32_t wanted = d->base;
+    while (wanted < LAR_PARTS_MAX && !bears(whole, tools, &room, hardness, wanted))
+        wanted = lar_more_parts(wanted);
+    bool changed =
+        hardness != d->hardness || wanted != d->parts || close != lar_division_is_close(d);
+    if (whole->burden) {
+        double left = room.max * wanted * wanted - room.springs * hardness;
+        lar_heavier_settle(whole, left, fading, &tools->strained);
+        changed = lar_heavier_name(&tools->strained, &tools->heavier) || changed;
+    }
+    d->hardness = hardness;
+    if (wanted == d->parts) return changed;
+    d->before = d->parts;
+    d->parts = wanted;
+    d->since = step;
+    return true;
+}
+
 bool lar_interval_decide(const lar_domain *whole, uint64_t step, lar_tools *tools) {
     const lar_tool_list *list = whole->surroundings.list;
     lar_step_division *division = &tools->division;
@@ -90,9 +134,8 @@ bool lar_interval_decide(const lar_domain *whole, uint64_t step, lar_tools *tool
     if (division->due) division->base = base_of(whole, &tools->settings);
     division->due = 0;
     double seconds = (double)(step - division->decided) * whole->time_step;
-    const lar_step_room room = room_of(whole, tools);
     division->decided = step;
-    bool changed = lar_tools_divide(list, tools, step, seconds, &room, 1 / whole->scale);
+    bool changed = lar_interval_divide(whole, step, seconds, tools);
     return lar_tools_follow(list, tools, step, lar_interval_end(whole, division, step),
                             whole->time_step, 1 / whole->scale) ||
            changed;

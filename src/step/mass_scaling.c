@@ -179,6 +179,7 @@ lar_status lar_mass_scaling_tell(const lar_model *model, const lar_element_rate 
                                  lar_mass_scaling *told, lar_error *error) {
     sum_up(model, rate, told);
     told->stable_step = bound->without;
+    told->strained_share = model->strained_share;
     told->possible_step = step_for(model, rate, bound->without, model->mass_share);
     return told->elements > 0 ? find_slowing(model, rate, box, &told->slowing, error) : LAR_OK;
 }

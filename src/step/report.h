@@ -5,6 +5,7 @@
 #define LAR_STEP_REPORT_H
 
 #include "contact/interactions.h"
+#include "step/mass/needs.h"
 
 typedef struct lar_report {
     lar_tool_sum tool[LAR_TOOLS_MAX];
@@ -12,6 +13,7 @@ typedef struct lar_report {
     double moved, way; /* for contact of bodies: since the search, and in the last step [m] */
     double need;       /* of the elements: lar_state.need */
     double taken;      /* by contact, as lar_state.contact: since the start [J] */
+    lar_needs needs;   /* of single elements, where strained ones may be heavier */
 } lar_report;
 
 static inline void lar_report_contact(lar_contact_info *sum, const lar_contact_info *other) {
@@ -51,6 +53,7 @@ static inline void lar_report_join(lar_report *sum, const lar_report *other) {
     sum->way = lar_larger(sum->way, other->way);
     sum->need = lar_larger(sum->need, other->need);
     sum->taken += other->taken;
+    lar_needs_join(&sum->needs, &other->needs);
 }
 
 /* Adds what one thread has felt since lar_report_begin. */
@@ -64,7 +67,9 @@ static inline void lar_report_add(lar_report *sum, const lar_interactions *inter
     own.way = interactions->body_contact.way;
     own.need = state->need;
     own.taken = state->contact;
+    lar_needs_clear(&own.needs);
     lar_report_join(sum, &own);
+    if (state->needs) lar_needs_join(&sum->needs, state->needs);
 }
 
 #endif

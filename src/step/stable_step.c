@@ -72,3 +72,13 @@ double lar_auto_step(const lar_model *model, double stable_step) {
     double step = 0.8 * stable_step;
     return model->duration > 0 ? fmin(step, model->duration / 200) : step;
 }
+
+lar_step_room lar_step_room_of(double time_step, double stable_step, bool touched) {
+    static const double MAX = 0.9, SPRINGS = 0.25;
+    double share = time_step / stable_step, rest = 1.02 * share * share;
+    lar_step_room room = {.max = fmax(MAX, rest)};
+    double springs = fmin(SPRINGS, room.max - rest);
+    room.springs = touched ? springs : 0;
+    room.least = room.max - springs;
+    return room;
+}

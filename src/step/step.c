@@ -275,22 +275,30 @@ static void add_body_contact(lar_body_contact *contact, const lar_condition_cont
         *fault = (lar_fault){.kind = LAR_FAULT_TOO_MANY_PAIRS, .element = -1, .step = state->step};
 }
 
+static inline void hold_up_node(const lar_domain *domain, lar_lid n, int axis, double pull,
+                                lar_state *state) {
+    double units = domain->added[n] * pull;
+    int64_t *force = state->force + 4 * (int64_t)n + axis;
+    if (units != 0 && fabs(units) < 0x1p56)
+        *force = (int64_t)((uint64_t)*force + (uint64_t)llrint(units));
+}
+
 /* Drift is gravity's for all that moves: mass without weight is held up, in whole units. A force
  * beyond these is of a run that is about to break. */
 static void hold_up_added(const lar_domain *domain, const lar_interactions *interactions,
                           const lar_condition_context *context, lar_state *state) {
+    const lar_burden *burden = domain->burden;
     double gravity[3];
     if (!domain->added) return;
     lar_gravity_at(domain->model, lar_settings_of(interactions), lar_state_time(domain, state),
                    gravity);
     for (int axis = 0; axis < 3; axis++) {
         double pull = gravity[axis] * domain->scale;
-        for (int32_t n = context->first; n < context->end && pull != 0; n++) {
-            double units = domain->added[n] * pull;
-            int64_t *force = state->force + 4 * (int64_t)n + axis;
-            if (units != 0 && fabs(units) < 0x1p56)
-                *force = (int64_t)((uint64_t)*force + (uint64_t)llrint(units));
-        }
+        for (lar_lid n = context->first; domain->adds && n < context->end && pull != 0; n++)
+            hold_up_node(domain, n, axis, pull, state);
+        for (int32_t i = 0; !domain->adds && i < burden->node_count && pull != 0; i++)
+            if (burden->node[i] >= context->first && burden->node[i] < context->end)
+                hold_up_node(domain, burden->node[i], axis, pull, state);
     }
 }
 

@@ -113,6 +113,7 @@ static inline lar_condition_context lar_domain_context_of(const lar_domain *doma
                                    .shares = LAR_STEP_SHARES,
                                    .stable_step = domain->stable_step,
                                    .mass = domain->mass,
+                                   .springs = lar_domain_springs(domain),
                                    .weight = domain->weight,
                                    .added = domain->added,
                                    .first = first,

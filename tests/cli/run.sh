@@ -25,7 +25,8 @@ has_keys title file lower upper sets.0.name sets.0.kind materials.0.law contacts
     output_interval sets.0.count materials.0.shear_modulus mass_scaling.time_step \
     mass_scaling.largest_share mass_scaling.elements mass_scaling.added mass_scaling.share \
     mass_scaling.largest_factor mass_scaling.largest_factor_element \
-    mass_scaling.stable_step_without mass_scaling.possible_step mass_scaling.slowing
+    mass_scaling.stable_step_without mass_scaling.possible_step mass_scaling.slowing \
+    mass_scaling.strained_share
 [ "$(value_of elements)" = 1840 ] || fail "the organ has $(value_of elements) elements"
 
 expect 0 "$LARIAT" run "$scene" --steps 200 --json --out "$SCRATCH/results"

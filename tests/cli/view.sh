@@ -43,7 +43,7 @@ complains 'a watch token needs a token beside it'
 expect 0 "$LARIAT" view $scene --port 0 --seconds 0.5 --json --grid 2x1x1 --pace 0
 complains '^http://127.0.0.1:[0-9]*/$'
 has_keys title url state message steps time real_time_factor ticks deadline_misses slow_motion \
-    skipped recoveries recovery divided_steps most_parts tools viewers state_hash devices wall_per_tick_us.p999 wall_per_step_us.p50
+    skipped recoveries recovery divided_steps most_parts heavier.elements heavier.largest_share tools viewers state_hash devices wall_per_tick_us.p999 wall_per_step_us.p50
 [ "$(value_of grid)" = '"2x1x1"' ] || fail "the grid is $(value_of grid)"
 [ "$(value_of steps)" -gt 0 ] || fail "nothing was simulated"
 expect 0 "$LARIAT" view $scene --port 0 --seconds 0.3 --json --paused --device probe=udp:127.0.0.1:0

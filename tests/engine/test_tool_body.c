@@ -127,16 +127,15 @@ static void what_is_said_does_not_depend_on_the_grid(void **unused) {
 /* Hardness grows with time, not with the number of intervals, and is gone some time after. */
 static void hardness_grows_with_time(void **unused) {
     (void)unused;
-    static const double SECONDS = 1e-4, UNIT = 1e-12;
-    const lar_step_room room = {.max = 0.9};
+    static const double SECONDS = 1e-4;
     lar_model *model = pressed_model();
     lar_simulation *simulation = start(model);
-    const lar_tool_list *list = simulation->domain.surroundings.list;
+    const lar_domain *whole = &simulation->domain;
     lar_tools tools = simulation->tools;
     for (int n = 1; n <= 100; n++) {
         double before = tools.division.hardness;
         tools.follower[0].felt = (lar_tool_felt){.depth = 0.6 * ball.radius, .steps = 1};
-        lar_tools_divide(list, &tools, (uint64_t)n, SECONDS, &room, UNIT);
+        lar_interval_divide(whole, (uint64_t)n, SECONDS, &tools);
         assert_below(tools.division.hardness, exp(n * SECONDS / 1e-3) * 1.001);
         assert_true(tools.division.hardness > before || before == LAR_HARDNESS_MAX);
         assert_true(tools.division.parts * tools.division.parts >= tools.division.hardness);
@@ -144,7 +143,7 @@ static void hardness_grows_with_time(void **unused) {
     assert_true(tools.division.hardness == LAR_HARDNESS_MAX);
     for (int n = 0; n < 10000; n++) {
         tools.follower[0].felt = (lar_tool_felt){.steps = 1};
-        lar_tools_divide(list, &tools, (uint64_t)n, SECONDS, &room, UNIT);
+        lar_interval_divide(whole, (uint64_t)n, SECONDS, &tools);
     }
     assert_true(tools.division.hardness == 1 && tools.division.parts == 1);
     lar_simulation_destroy(simulation);
@@ -155,16 +154,16 @@ static void hardness_grows_with_time(void **unused) {
  * times its limit. */
 static double hardness_of(const lar_simulation *simulation, double from, double depth, double load,
                           int decisions) {
-    static const double SECONDS = 1e-4, UNIT = 1e-12;
-    const lar_step_room room = {.max = 0.9};
-    const lar_tool_list *list = simulation->domain.surroundings.list;
+    static const double SECONDS = 1e-4;
+    const lar_domain *whole = &simulation->domain;
+    const lar_tool_limits *limits = whole->surroundings.list->limits;
     lar_tools tools = simulation->tools;
-    int64_t force = (int64_t)(load * list->limits[0].force * LAR_STEP_SHARES / UNIT);
+    int64_t force = (int64_t)(load * limits->force * LAR_STEP_SHARES * whole->scale);
     tools.division.hardness = from;
     for (int n = 1; n <= decisions; n++) {
         tools.follower[0].felt =
             (lar_tool_felt){.depth = depth * ball.radius, .steps = 1, .force = {0, 0, force}};
-        lar_tools_divide(list, &tools, (uint64_t)n, SECONDS, &room, UNIT);
+        lar_interval_divide(whole, (uint64_t)n, SECONDS, &tools);
     }
     return tools.division.hardness;
 }

@@ -302,6 +302,7 @@ static void test_scenes(void **state) {
         assert_int_equal(model->load_count, i == 0);
         assert_int_equal(model->notice_count, 0);
         assert_int_equal(model->contact_count, i);
+        assert_true(model->strained_share == (i ? 0.02 : 0));
         if (i > 0) {
             assert_int_equal(model->contact[0].kind, LAR_CONTACT_SELF);
             assert_int_equal(model->contact[0].face_count, model->surface.face_count);

@@ -117,8 +117,13 @@ static void test_plain_values(void **state) {
     same(model->mass_step, 1e-3);
     same(model->mass_share, 0.5);
     lar_model_destroy(model);
+    model = scene(HEAD MATERIAL "mass_scaling: {strained: 0.02}\n");
+    same(model->mass_step, 0.0);
+    same(model->strained_share, 0.02);
+    lar_model_destroy(model);
     model = scene(HEAD MATERIAL "time_step: auto\n");
     same(model->mass_step, 0.0);
+    same(model->strained_share, 0.0);
     assert_string_equal(model->title, "s.yaml");
     same(model->time_step, 0.0);
     same(model->gravity[2], 0.0);

@@ -61,6 +61,13 @@ class Arrays(unittest.TestCase):
         self.assertLess(0, told["elements"])
         self.assertAlmostEqual(told["factor"], 1.01**2, delta=1e-9)
         self.assertAlmostEqual(told["added"], told["share"] * info["mass"], delta=1e-15)
+        self.assertEqual(told["strained_share"], 0)
+        strained = block(mass_scaling={"strained": 0.02})
+        self.assertEqual(strained.info["mass_scaling"]["strained_share"], 0.02)
+        with lariat.Simulation(strained) as sim:
+            sim.advance(5)
+            self.assertEqual(sim.info["heavier"], {"elements": 0, "share": 0, "mean_share": 0,
+                                                   "largest_share": 0})
         with self.assertRaisesRegex(lariat.Error, "largest_share of 5 %"):
             block(mass_scaling={"time_step": 2 * step}).info
 

@@ -24,7 +24,7 @@ static const char usage[] =
     "The row: when and why it stopped; how long a tool's middle line was in the body; the largest\n"
     "force on a tool and of its jaws; the largest speed of a node, and when; divided steps;\n"
     "processor time as a part of the time simulated, of all and of the slowest tenth of a second;\n"
-    "the last state's hash.\n";
+    "the last state's hash. Where strained elements may be heavier, a line about that.\n";
 
 enum { DEVICES = 4 };
 
@@ -192,6 +192,8 @@ static lar_status play(lar_scripts *s, lar_error *error) {
 
 static void print_row(lar_scripts *s, const char *why) {
     int32_t max;
+    lar_heavier heavier;
+    lar_energy e;
     double time = lar_simulation_time(s->simulation);
     uint64_t divided = lar_simulation_divided_steps(s->simulation, &max);
     printf(
@@ -200,6 +202,14 @@ static void print_row(lar_scripts *s, const char *why) {
         *why ? why : "no stop", s->inside, s->force, s->grasp_force, s->fastest, s->fastest_at,
         (unsigned long long)divided, (int)max, s->all / time, s->slowest,
         (unsigned long long)lar_simulation_hash(s->simulation));
+    lar_simulation_heavier(s->simulation, &heavier);
+    lar_simulation_energy(s->simulation, &e);
+    if (heavier.largest_share > 0)
+        printf("heavier by %.3g %% on average, %.3g %% at most; of %.3g J outside %.2g missing\n",
+               100 * heavier.mean_share, 100 * heavier.largest_share, e.external,
+               fabs(e.kinetic + e.strain + e.hourglass + e.damping + e.contact + e.viscous -
+                    e.external) /
+                   fabs(e.external));
 }
 
 static lar_scripts_options read_options(int count, char **word) {

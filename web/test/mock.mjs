@@ -202,7 +202,7 @@ export function mock({ port = 0, surface = null, riding = false, token = null, w
         slow_advice: state.slow ? 'a step takes 250 us and stands for 100 us of the clock; what would hold: --grid 2x2x1, a mesh of about 700 elements, or a slower pace' : '', lag: 0, skipped: 0,
         recording: state.recording, recording_lost: state.recordingLost ?? '', lost: state.lost, message: state.message, viewers: 1, saved: state.saved, recordings: state.recordings, ...(state.replay ? { replay: state.replay } : {}),
         recoveries: state.recoveries, recovery: state.recovery, body: state.body,
-        placed: state.placed, step_parts: state.parts, divided_steps: state.divided,
+        placed: state.placed, step_parts: state.parts, divided_steps: state.divided, heavier: 0, heavier_share: 0,
         tools: tools.map((_, i) => ({ ...poses[i], force: forces[i].at(-1) ?? [0, 0, 0], torque: [0, 0, 0],
             ...(state.pressed && i === 0 ? { force: [0, 0, 1.8], depth: 0.0004, apart: 0.006, limited: true, grasp: 0 }
                 : { depth: 0, apart: 0, limited: false, grasp: 0 }),

@@ -15,6 +15,7 @@ void cli_write_mass_scaling(lar_json *json, const lar_model *model, const lar_ma
     lar_json_number(json, "stable_step_without", m->stable_step);
     lar_json_number(json, "possible_step", m->possible_step);
     lar_json_number(json, "slowing", m->slowing);
+    lar_json_number(json, "strained_share", m->strained_share);
     lar_json_close(json);
 }
 
@@ -37,4 +38,29 @@ void cli_print_mass_scaling(const lar_model *model, const lar_mass_scaling *m, b
         fprintf(out, "%-17snone; with up to %g %% (mass_scaling) stable up to %.3g s\n",
                 "mass added", 100 * m->largest_share, 0.994 * m->possible_step);
     }
+    if (offers && m->strained_share > 0)
+        fprintf(out, "%-17sup to %g %% of the mass, for elements that are strained\n", "",
+                100 * m->strained_share);
+}
+
+void cli_write_heavier(lar_json *json, const lar_simulation *simulation) {
+    lar_heavier heavier;
+    lar_simulation_heavier(simulation, &heavier);
+    lar_json_open(json, "heavier", '{');
+    lar_json_integer(json, "elements", heavier.elements);
+    lar_json_number(json, "share", heavier.share);
+    lar_json_number(json, "mean_share", heavier.mean_share);
+    lar_json_number(json, "largest_share", heavier.largest_share);
+    lar_json_close(json);
+}
+
+void cli_print_heavier(const lar_simulation *simulation, FILE *out) {
+    lar_heavier heavier;
+    lar_simulation_heavier(simulation, &heavier);
+    if (heavier.largest_share > 0)
+        fprintf(out,
+                "%-17sstrained elements by %.2g %% of the mass on average, by %.2g %% at most; "
+                "now %d elements by %.2g %%\n",
+                "heavier", 100 * heavier.mean_share, 100 * heavier.largest_share,
+                (int)heavier.elements, 100 * heavier.share);
 }

@@ -10,6 +10,9 @@
 /* The object `mass_scaling`: docs/cli.md. */
 void cli_write_mass_scaling(lar_json *json, const lar_model *model, const lar_mass_scaling *m);
 /* Nothing where the scene asks for none, unless the caller `offers` it. */
+/* The keys of what strained elements have more, and their line; nothing where they may not. */
+void cli_write_heavier(lar_json *json, const lar_simulation *simulation);
+void cli_print_heavier(const lar_simulation *simulation, FILE *out);
 void cli_print_mass_scaling(const lar_model *model, const lar_mass_scaling *m, bool offers,
                             FILE *out);
 

@@ -134,6 +134,7 @@ void run_report_json(const run_report *report, FILE *out) {
     write_rest(&json, report);
     lar_json_integer(&json, "divided_steps", (int64_t)divided);
     lar_json_integer(&json, "most_parts", max_parts);
+    cli_write_heavier(&json, simulation);
     lar_json_hash(&json, "state_hash", lar_simulation_hash(simulation));
     lar_json_boolean(&json, "verify", report->verify);
     lar_json_integer(&json, "frames", report->frames);
@@ -194,6 +195,7 @@ static void print_parts(const lar_simulation *simulation, FILE *out) {
     if (divided > 0)
         fprintf(out, "%-17s%" PRIu64 " steps, into %d parts at most\n", "divided", divided,
                 (int)max);
+    cli_print_heavier(simulation, out);
 }
 
 static void print_rest(const run_report *report, FILE *out) {

@@ -3,6 +3,7 @@
 #include <inttypes.h>
 
 #include "cli/parallel.h"
+#include "cli/report/mass_scaling.h"
 #include "base/json/write.h"
 
 static const char *const state_names[] = {"idle", "playing", "paused", "stopped"};
@@ -119,6 +120,7 @@ void view_report_json(const view_report *report, FILE *out) {
     lar_json_text(&json, "recovery", s->recovery);
     lar_json_integer(&json, "divided_steps", (int64_t)s->divided_steps);
     lar_json_integer(&json, "most_parts", max_parts(report));
+    cli_write_heavier(&json, report->simulation);
     lar_json_integer(&json, "viewers", report->viewers_max);
     write_tools(&json, report);
     write_devices(&json, report);
@@ -173,6 +175,7 @@ void view_report_table(const view_report *report, FILE *out) {
     if (s->divided_steps > 0)
         fprintf(out, "%-17s%" PRIu64 " steps, into %d parts at most\n", "divided", s->divided_steps,
                 (int)max_parts(report));
+    cli_print_heavier(report->simulation, out);
     print_tools(report, out);
     print_devices(report, out);
     fprintf(out, "%-17s%d at once at most\n", "viewers", (int)report->viewers_max);

@@ -36,19 +36,11 @@ static lar_status read_time_step(lar_scene *scene, const lar_yaml *node) {
 }
 
 /* More than a second is no step, and more mass than a body has is another body. */
-static lar_status read_mass_scaling(lar_scene *scene, const lar_yaml *node) {
-    static const char *const keys[] = {"time_step", "largest_share", NULL};
+static lar_status read_mass_step(lar_scene *scene, const lar_yaml *value) {
     const char *const step = "a number in seconds up to 1, for example 2.0e-4: what all elements "
-                             "shall be stable up to",
-                      *const share = "a part of the model's mass above 0 and up to 1, for example "
-                                     "0.05";
+                             "shall be stable up to";
     lar_model *model = scene->model;
-    const lar_yaml *value;
-    lar_status status = lar_scene_keys(scene, node, "mass_scaling", keys);
-    if (!status)
-        status =
-            lar_scene_need(scene, node, "mass_scaling", "time_step", "time_step: 2.0e-4", &value);
-    if (!status) status = lar_scene_positive(scene, value, step, &model->mass_step);
+    lar_status status = lar_scene_positive(scene, value, step, &model->mass_step);
     if (status) return status;
     if (model->mass_step > 1)
         return lar_scene_fail(scene, value, LAR_ERROR_MODEL, "time_step is %s; expected %s",
@@ -58,11 +50,37 @@ static lar_status read_mass_scaling(lar_scene *scene, const lar_yaml *node) {
                               "mass_scaling makes elements stable up to %g s, and the scene's "
                               "time_step is %g s: make one larger or the other smaller",
                               model->mass_step, model->time_step);
-    if (!(value = lar_yaml_get(node, "largest_share"))) return LAR_OK;
-    status = lar_scene_positive(scene, value, share, &model->mass_share);
-    if (status || model->mass_share <= 1) return status;
-    return lar_scene_fail(scene, value, LAR_ERROR_MODEL, "largest_share is %s; expected %s",
-                          value->text, share);
+    return LAR_OK;
+}
+
+/* A part of the model's mass. */
+static lar_status read_share(lar_scene *scene, const lar_yaml *value, const char *key, double most,
+                             const char *expected, double *share) {
+    lar_status status = lar_scene_positive(scene, value, expected, share);
+    if (status || *share <= most) return status;
+    return lar_scene_fail(scene, value, LAR_ERROR_MODEL, "%s is %s; expected %s", key, value->text,
+                          expected);
+}
+
+/* Without what is strained it is about the time step. */
+static lar_status read_mass_scaling(lar_scene *scene, const lar_yaml *node) {
+    static const char *const keys[] = {"time_step", "largest_share", "strained", NULL};
+    lar_model *model = scene->model;
+    const lar_yaml *value, *strained;
+    lar_status status = lar_scene_keys(scene, node, "mass_scaling", keys);
+    if (status) return status;
+    if ((strained = lar_yaml_get(node, "strained")))
+        status = read_share(scene, strained, "strained", 0.2,
+                            "a part of the model's mass above 0 and up to 0.2, for example 0.02",
+                            &model->strained_share);
+    bool alone = strained && !lar_yaml_get(node, "largest_share");
+    if (status || (alone && !lar_yaml_get(node, "time_step"))) return status;
+    status = lar_scene_need(scene, node, "mass_scaling", "time_step", "time_step: 2.0e-4", &value);
+    if (!status) status = read_mass_step(scene, value);
+    if (status || !(value = lar_yaml_get(node, "largest_share"))) return status;
+    return read_share(scene, value, "largest_share", 1,
+                      "a part of the model's mass above 0 and up to 1, for example 0.05",
+                      &model->mass_share);
 }
 
 /* Seconds, or "rest". Without a damping of its own such a scene is damped as static decks are. */

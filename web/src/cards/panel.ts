@@ -58,6 +58,8 @@ export class Panel {
             (s) => `${s.recoveries} ×`, (s) => s.recoveries > 0],
         ['division', DIVIDED, (s) => division(s.step_parts), (s) => s.step_parts > 1],
         ['divided steps', `${DIVIDED} So many were, since the engine was started.`, (s) => String(s.divided_steps)],
+        ['heavier', 'Strained elements that move with more mass now, so that steps are divided into fewer parts, and how much that is of the mass of all.',
+            (s) => `${s.heavier} by ${(100 * s.heavier_share).toFixed(2)} %`, (s) => s.heavier > 0],
         ['viewers', 'Pages that look at this run, this one included.', (s) => String(s.viewers)],
     ];
 

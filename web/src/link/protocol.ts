@@ -111,6 +111,8 @@ export interface Status {
     placed: number; // times that it was put somewhere else: reset, load, went back
     step_parts: number; // that every step is computed in now; 1: not divided
     divided_steps: number;
+    heavier: number; // strained elements that are heavier now
+    heavier_share: number; // what they have more, as a part of the model's mass
     viewers: number;
     saved: string[]; // saved states, oldest first
     recordings: string[];
