@@ -8,11 +8,20 @@
 
 #include "base/simd.h"
 
+/* Small where it cannot be fast: without the instruction, fma() is a call. */
+#ifdef __OPTIMIZE_SIZE__
+#define UNROLL3
+#define UNROLL4
+#define UNROLL6
+#define UNROLL8
+#define UNROLL9
+#else
 #define UNROLL3 _Pragma("GCC unroll 3")
 #define UNROLL4 _Pragma("GCC unroll 4")
 #define UNROLL6 _Pragma("GCC unroll 6")
 #define UNROLL8 _Pragma("GCC unroll 8")
 #define UNROLL9 _Pragma("GCC unroll 9")
+#endif
 
 /* The local nodes at xi = -1 and xi = +1 of the four edges along xi: (eta, zeta) = --, +-, -+,
  * ++. */
