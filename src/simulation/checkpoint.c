@@ -140,13 +140,17 @@ static unsigned char *append(unsigned char *at, const void *from, size_t bytes) 
     return at + bytes;
 }
 
+/* Whether strained elements are heavier, or may soon be. */
+static bool some_strained(const lar_heavy_list *list) {
+    return list->count > 0 || list->beyond > 0 || list->beyond_need > 0;
+}
+
 /* What a file has of the tools: spares up to the last one that is there. */
 static file_shape shape_of(const lar_domain *whole, const lar_tools *tools) {
     const lar_tool_list *list = whole->surroundings.list;
     int32_t spares = lar_spares_needed(tools->spare);
     const lar_heavy_list *heavier = &tools->strained;
-    bool heavy = heavier->count > 0 || heavier->beyond > 0 || heavier->beyond_need > 0;
-    uint32_t version = heavy                                     ? HEAVIER
+    uint32_t version = some_strained(heavier)                    ? HEAVIER
                        : lar_settings_activate(&tools->settings) ? ACTIVE
                        : tools->forces.count > 0                 ? FORCES
                                                                  : VERSION;
@@ -474,7 +478,8 @@ static bool take_tools(const file_head *head, const file_shape *shape, const lar
                 lar_settings_good(&tools->settings, whole->time_step) &&
                 lar_forces_good(&tools->forces, whole->model, lar_domain_force_max(whole)) &&
                 lar_spares_good(tools->spare, list ? list->spares : 0) &&
-                lar_heavier_good(whole, &tools->strained);
+                lar_heavier_good(whole, &tools->strained) &&
+                some_strained(&tools->strained) == (head->version >= HEAVIER);
     for (int32_t i = 0; good && i < tools->count; i++) {
         const lar_tool tool = lar_spare_tool_of(list, tools->spare, i);
         good = good_motion(&tools->motion[i]) && near_enough(&tool, &tools->motion[i]) &&

@@ -63,6 +63,8 @@ pip)
     found=$("$scratch/venv/bin/python" -c 'from lariat._command import program; print(program())')
     [ "$found" = "$scratch/venv/bin/lariat" ] || { echo "not the wheel's command: $found"; exit 1; }
     if [ -e "$page/index.html" ]; then
+        cmp "$page/index.html" "$scratch/venv/share/lariat/viewer/index.html" ||
+            { echo "the wheel's command has no page"; exit 1; }
         "$scratch/venv/bin/python" - "$page/index.html" "$source/examples/beam.yaml" <<'END' || exit 1
 import sys, urllib.request
 import lariat

@@ -169,7 +169,9 @@ bool lar_heavier_good(const lar_domain *whole, const lar_heavy_list *list) {
                (i == 0 || heavy->element > heavy[-1].element) && good_heavy(heavy);
         heavier += heavy->factor > 1;
     }
-    if (!good || heavier > LAR_HEAVIER_MAX || (!whole->burden && list->count > 0)) return false;
+    if (!good || heavier > LAR_HEAVIER_MAX) return false;
+    if (!whole->burden && (list->count > 0 || list->beyond > 0 || list->beyond_need > 0))
+        return false;
     lar_heavy_now now = {0};
     lar_heavier_name(list, &now);
     return lar_heavier_now_good(whole, &now);
