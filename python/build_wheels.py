@@ -114,9 +114,6 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
                     add(wheel, path, file.read())
             with open(command, "rb") as file:  # what lariat.fit and its like run; pip knows where to
                 add(wheel, f"lariat-{_version()}.data/scripts/lariat", file.read(), 0o755)
-            for path, source in _page():  # once more, where that command looks for it
-                with open(source, "rb") as file:
-                    add(wheel, f"lariat-{_version()}.data/data/share/lariat/viewer/{path}", file.read())
             with open(os.path.join(SOURCE, "LICENSE"), "rb") as file:
                 add(wheel, f"{info}/LICENSE", file.read())
             add(wheel, f"{info}/METADATA", _metadata().encode())

@@ -3,6 +3,7 @@
 #include <dirent.h>
 #include <dlfcn.h>
 #include <errno.h>
+#include <glob.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -151,6 +152,20 @@ static char *cut_last(char *path) {
     return slash + 1;
 }
 
+/* Where pip puts the page of a wheel, whose command lies in PREFIX/bin: into the module. */
+static bool wheel_folder(const char *prefix, char *out, size_t size) {
+    char pattern[4096];
+    glob_t found = {0};
+    int length =
+        snprintf(pattern, sizeof pattern, "%s/lib/python3*/site-packages/lariat/viewer", prefix);
+    bool there = length > 0 && (size_t)length < sizeof pattern &&
+                 glob(pattern, GLOB_ONLYDIR, NULL, &found) == 0 && found.gl_pathc > 0 &&
+                 strlen(found.gl_pathv[0]) < size;
+    if (there) memcpy(out, found.gl_pathv[0], strlen(found.gl_pathv[0]) + 1);
+    globfree(&found);
+    return there && is_folder(out);
+}
+
 /* PREFIX/share/lariat/viewer, when this code lies in PREFIX/bin, PREFIX/lib or one below: an
  * installed tree may be moved. False when there is none. */
 static bool installed_folder(char *out, size_t size) {
@@ -167,7 +182,8 @@ static bool installed_folder(char *out, size_t size) {
         if (!name) return false;
         if (strcmp(name, "bin") != 0 && strncmp(name, "lib", 3) != 0) continue;
         int length = snprintf(out, size, "%s/%s", path, LAR_VIEWER_BELOW_PREFIX);
-        return length > 0 && (size_t)length < size && is_folder(out);
+        if (length > 0 && (size_t)length < size && is_folder(out)) return true;
+        return wheel_folder(path, out, size);
     }
     return false;
 }
