@@ -508,7 +508,8 @@ lar_status lar_checkpoint_parse(const char *path, const lar_bytes *bytes, const 
                         .history = lar_viscous_total(whole),
                         .forces = forces_in(&head, bytes)};
     shape.heavier = heavier_in(&head, &shape, bytes);
-    int32_t constant = list ? lar_spares_first(list) : 0, spares = head.tools - constant;
+    int32_t constant = list ? lar_spares_first(list) : 0;
+    int32_t spares = head.tools < constant ? -1 : head.tools - constant;
     if (spares < 0 || spares > (has_added(head.version) ? LAR_SPARES_MAX : 0) || head.grasps < 0 ||
         head.grasps > LAR_GRASPS_MAX || shape.forces < 0 || shape.heavier < 0 ||
         bytes->size != file_bytes(&shape, nodes))
