@@ -256,15 +256,7 @@ static void every_joule_is_accounted_for(void **unused) {
         lay_fibres(model);
         model->time_step = 1e-4;
         lar_simulation *simulation = start(model);
-        lar_energy start_energy, e;
-        lar_simulation_energy(simulation, &start_energy);
-        double worst = 0, largest = 0;
-        for (int n = 0; n < 60; n++) {
-            advance(simulation, 100);
-            lar_simulation_energy(simulation, &e);
-            largest = fmax(largest, sum_of(&e));
-            worst = fmax(worst, fabs(sum_of(&e) - e.external - sum_of(&start_energy)));
-        }
+        double largest, worst = account_open(simulation, &largest);
         assert_below(worst, 2e-3 * largest);
         print_message("fibres %d: open by %.2g of %.2g J\n", family, worst, largest);
         finish(simulation, model);

@@ -278,15 +278,7 @@ static void every_joule_is_accounted_for(void **unused) {
     lay_families(model);
     model->time_step = 1e-4;
     lar_simulation *simulation = start(model);
-    lar_energy before, e;
-    lar_simulation_energy(simulation, &before);
-    double worst = 0, largest = 0;
-    for (int n = 0; n < 60; n++) {
-        advance(simulation, 100);
-        lar_simulation_energy(simulation, &e);
-        largest = fmax(largest, sum_of(&e));
-        worst = fmax(worst, fabs(sum_of(&e) - e.external - sum_of(&before)));
-    }
+    double largest, worst = account_open(simulation, &largest);
     assert_below(worst, 2e-3 * largest);
     finish(simulation, model);
 }
