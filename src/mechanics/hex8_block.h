@@ -203,10 +203,13 @@ typedef int64_t (*lar_hex8_recover_more)(const lar_block_run *run, const lar_vis
 /* Makes block `block` of a lean run whole. */
 typedef void (*lar_hex8_expand)(const lar_block_run *run, int32_t block, lar_hex8_block *whole);
 
-/* Looks at the corners of block `block` of a run, with nodes at `rest` and displaced by `u`, both
- * [nodes][4]. A corner's volume is what its edges span. Returns a bit for each lane where one is
- * not above share[0] times that at rest; and for share[1], eight bits further up. */
-typedef unsigned (*lar_hex8_corners)(const lar_block_run *run, int32_t block, const double *rest,
+/* Looks at the corners of those of block `block` of a run that have a bit in `lanes`, with nodes at
+ * `rest` and displaced by `u`, both [nodes][4]. A corner's volume is what its edges span; at rest
+ * no corner of a lane has more than `largest` [8] (aligned to 64 bytes). Returns a bit for each
+ * lane where one is not above share[0] times that at rest; and for share[1], which is more, eight
+ * bits further up. */
+typedef unsigned (*lar_hex8_corners)(const lar_block_run *run, int32_t block, unsigned lanes,
+                                     const double largest[LAR_BLOCK], const double *rest,
                                      const double *u, const double share[2]);
 
 /* How nodes move in one leapfrog step of length dt with mass-proportional damping. */

@@ -205,6 +205,17 @@ double lar_hex8_corner_limit(const lar_hex8 *element, const double rest[8][3]) {
     return 1 / worst;
 }
 
+double lar_hex8_largest_corner(const double rest[8][3]) {
+    static const double ROUNDED = 1e-14; /* of what three such edges can span at most */
+    double largest = 0, longest = 0;
+    for (int a = 0; a < 8; a++) {
+        double edge[3][3];
+        largest = fmax(largest, span(rest, a, edge));
+        for (int k = 0; k < 3; k++) longest = fmax(longest, lar_dot(edge[k], edge[k]));
+    }
+    return largest + ROUNDED * longest * sqrt(longest);
+}
+
 double lar_fibre_limit(const lar_material *material) {
     static const double PART = 0.1; /* of the law's modulus, by all families together */
     double modulus = lar_material_bulk(material) + 4 * lar_material_shear(material) / 3;

@@ -530,23 +530,32 @@ LAR_INLINE void corner_volumes(const lar_lane x[8][3], lar_lane volume[8]) {
     }
 }
 
-static unsigned corners(const lar_block_run *run, int32_t b, const double *rest, const double *u,
+/* The lanes of some that have a corner with not more than `share` of its volume at rest. */
+LAR_INLINE unsigned lanes_below(const lar_lane now[8], const lar_lane at_rest[8], double share) {
+    unsigned below = 0;
+    UNROLL8 for (int a = 0; a < 8; a++) below |=
+        lar_lane_not_greater(now[a], lar_lane_set(share) * at_rest[a]);
+    return below;
+}
+
+static unsigned corners(const lar_block_run *run, int32_t b, unsigned lanes,
+                        const double largest[LAR_BLOCK], const double *rest, const double *u,
                         const double share[2]) {
     const lar_block_head *head =
         (const void *)((const char *)run->blocks + (size_t)b * lar_run_stride(run));
     unsigned below[2] = {0, 0};
     for (int lane = 0; lane < LAR_BLOCK; lane += LAR_LANES) {
-        lar_lane x[8][3], moved[8][3], before[8], now[8];
-        gather_corners(head, lane, run->rows, rest, x);
-        corner_volumes((const lar_lane(*)[3])x, before);
-        gather_corners(head, lane, run->rows, u, moved);
-        UNROLL8 for (int a = 0; a < 8; a++) UNROLL3 for (int i = 0; i < 3; i++) x[a][i] =
-            x[a][i] + moved[a][i];
+        lar_lane x[8][3], now[8], at_rest[8];
+        unsigned part = lanes >> lane & ((1u << LAR_LANES) - 1);
+        if (!part) continue;
+        gather_corners(head, lane, rest, u, x);
         corner_volumes((const lar_lane(*)[3])x, now);
+        UNROLL8 for (int a = 0; a < 8; a++) at_rest[a] = lar_lane_load(&largest[lane]);
+        if (!(lanes_below(now, at_rest, share[1]) & part)) continue;
+        gather_corners(head, lane, rest, NULL, x);
+        corner_volumes((const lar_lane(*)[3])x, at_rest);
         for (int k = 0; k < 2; k++)
-            for (int a = 0; a < 8; a++)
-                below[k] |= lar_lane_not_greater(now[a], lar_lane_set(share[k]) * before[a])
-                            << lane;
+            below[k] |= (lanes_below(now, at_rest, share[k]) & part) << lane;
     }
     return below[0] | below[1] << LAR_BLOCK;
 }

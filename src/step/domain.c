@@ -114,6 +114,7 @@ static void fill_lane(const lar_domain *domain, const lar_block_run *run, void *
     memcpy(base->stiffness, hex8.stiffness, sizeof base->stiffness);
     base->limit =
         lar_hex8_corner_limit(&hex8, (const double(*)[3])corner) * domain->scale * domain->scale;
+    base->largest = lar_hex8_largest_corner((const double(*)[3])corner);
 }
 
 /* More than this is read from memory in every step: beyond the second-level cache and a fair share

@@ -25,6 +25,7 @@ typedef struct lar_lane_base {
     double volume;                        /* [m^3] */
     double stiffness[LAR_HEX8_HOURGLASS]; /* c_m [N/m] */
     double limit;                         /* of corner_limit */
+    double largest;                       /* corner at rest [m^3] (mechanics/hex8_guard.h) */
 } lar_lane_base;
 
 typedef struct lar_domain {

@@ -74,41 +74,43 @@ static bool is_thrown(const lar_domain *domain, const lar_state *state, lar_gid 
     for (int a = 1; a < 8; a++) {
         double away[3];
         lar_minus(state->v + 4 * domain->layout.local[node[a]], first, away);
-        most = fmax(most, lar_dot(away, away));
+        double square = lar_dot(away, away);
+        if (square > most) most = square;
     }
     double square = 100 * most * ahead * ahead;
     return square * square * square > volume * volume;
 }
 
-/* How stiff an element's barriers are: now, and where its corners will be after so many steps if
- * nothing stops them. */
-static double barriers_of(const lar_domain *domain, const lar_state *state, lar_gid e,
+/* How stiff an element's barriers are: now, where a corner is at one, and where its corners will be
+ * after so many steps if nothing stops them. */
+static double barriers_of(const lar_domain *domain, const lar_state *state, lar_gid e, bool at_one,
                           double steps) {
+    const lar_material *material = lar_domain_material(domain, e);
     double rest[8][3], now[8][3], v[8][3];
-    lar_guard guard, then;
+    lar_guard guard = {0}, then;
     corners_of(domain, state, e, rest, now);
-    lar_hex8_guard((const double(*)[3])rest, (const double(*)[3])now,
-                   lar_domain_material(domain, e), &guard);
+    if (at_one) lar_hex8_guard((const double(*)[3])rest, (const double(*)[3])now, material, &guard);
     lar_domain_corners(domain, state->v, e, v);
     for (int a = 0; a < 8; a++)
         for (int i = 0; i < 3; i++) now[a][i] += steps * domain->time_step * v[a][i];
-    lar_hex8_guard((const double(*)[3])rest, (const double(*)[3])now,
-                   lar_domain_material(domain, e), &then);
+    lar_hex8_guard((const double(*)[3])rest, (const double(*)[3])now, material, &then);
     return fmax(guard.stiffness, then.stiffness);
 }
 
-/* (omega dt / 2)^2 of an element as it is strained, if it is not heavier for a while. */
-static double need_of(const lar_domain *domain, const lar_state *state, lar_gid e, bool pressed,
+/* (omega dt / 2)^2 of an element as it is strained, if it is not heavier for a while. `below`: the
+ * bits of its lane (lar_hex8_corners). */
+static double need_of(const lar_domain *domain, const lar_state *state, lar_gid e, unsigned below,
                       double volume, const float strain[LAR_STRAIN_NUMBERS]) {
     const lar_element_rate *rate = &domain->rate[e];
     const lar_material *material = lar_domain_material(domain, e);
     double factor = domain->factor[lar_factor_of(domain->model->element_material[e])];
     double square = factor * rate->square * lar_hex8_growth(material, strain), steps = 0;
-    if (pressed)
+    if (below >> LAR_BLOCK & 1)
         steps = SEEN_IN_STEPS;
     else if (is_thrown(domain, state, e, volume))
         steps = steps_ahead(domain, state);
-    if (steps > 0) square += (1 + 2 * LEAD) * barriers_of(domain, state, e, steps) / rate->mass;
+    if (steps > 0)
+        square += (1 + 2 * LEAD) * barriers_of(domain, state, e, below & 1, steps) / rate->mass;
     double need = 0.25 * domain->time_step * domain->time_step * square;
     return need >= 0 ? need : INFINITY; /* a corner that is a point has no number */
 }
@@ -217,11 +219,15 @@ static void finish_damping(const lar_domain *domain, int32_t r, lar_state *state
     strained->damped_count[r] = 0;
 }
 
-/* The lanes of a block of run r where a corner is below START, and from bit 8 on those where one is
- * below twice START. */
-static unsigned lanes_below(const lar_domain *domain, int32_t r, int32_t block,
+/* Those lanes of a block of run r where a corner is below START, and from bit 8 on those where one
+ * is below twice START. */
+static unsigned lanes_below(const lar_domain *domain, int32_t r, int32_t block, unsigned lanes,
                             const lar_state *state) {
-    return domain->kernels->corners(&domain->run[r], block, domain->rest, state->u, SHARES);
+    const lar_lane_base *base = domain->base + LAR_BLOCK * (size_t)(domain->run_first[r] + block);
+    double largest[LAR_BLOCK] __attribute__((aligned(64)));
+    for (int lane = 0; lane < LAR_BLOCK; lane++) largest[lane] = base[lane].largest;
+    return domain->kernels->corners(&domain->run[r], block, lanes, largest, domain->rest, state->u,
+                                    SHARES);
 }
 
 static void apply_lanes(const lar_domain *domain, int32_t r, const lar_gid *element, unsigned lanes,
@@ -232,6 +238,21 @@ static void apply_lanes(const lar_domain *domain, int32_t r, const lar_gid *elem
         *count += apply(domain, element[__builtin_ctz(lanes)], &damped[*count], state);
 }
 
+/* How fast strained elements of a block have become, entries first to end - 1 of a monitor. */
+static void measure(const lar_domain *domain, const lar_hex8_monitor *monitor, int32_t first,
+                    int32_t end, size_t place, const lar_gid *element, unsigned below,
+                    lar_state *state) {
+    for (int32_t i = first; i < end; i++) {
+        int32_t lane = monitor->lane[i] % LAR_BLOCK;
+        if (element[lane] < 0) continue;
+        double need = need_of(domain, state, element[lane], below >> lane,
+                              domain->base[place + (size_t)lane].volume, monitor->strain[i]);
+        if (!(need <= state->need)) state->need = need;
+        if (state->needs && need > domain->burden->least)
+            lar_needs_add(state->needs, element[lane], need);
+    }
+}
+
 void lar_guard_select_and_apply(const lar_domain *domain, int32_t r,
                                 const lar_hex8_monitor *monitor, bool measures, lar_state *state) {
     int32_t *list = monitor->lane, count = 0;
@@ -240,22 +261,12 @@ void lar_guard_select_and_apply(const lar_domain *domain, int32_t r,
         int32_t block;
         unsigned lanes;
         end = lanes_of_block(monitor, first, &block, &lanes);
-        const lar_gid *element = domain->layout.block[domain->run_first[r] + block].element;
-        unsigned below = lanes_below(domain, r, block, state);
-        for (int32_t i = first; i < end; i++) {
-            int32_t lane = monitor->lane[i] % LAR_BLOCK;
+        size_t at = (size_t)(domain->run_first[r] + block);
+        const lar_gid *element = domain->layout.block[at].element;
+        for (int lane = 0; lane < LAR_BLOCK; lane++)
             if (element[lane] < 0) lanes &= ~(1u << lane);
-            if (!measures || element[lane] < 0) continue;
-            bool pressed = below >> LAR_BLOCK >> lane & 1;
-            double volume =
-                domain->base[LAR_BLOCK * (size_t)(domain->run_first[r] + block) + (size_t)lane]
-                    .volume;
-            double need =
-                need_of(domain, state, element[lane], pressed, volume, monitor->strain[i]);
-            if (!(need <= state->need)) state->need = need;
-            if (state->needs && need > domain->burden->least)
-                lar_needs_add(state->needs, element[lane], need);
-        }
+        unsigned below = lanes_below(domain, r, block, lanes, state);
+        if (measures) measure(domain, monitor, first, end, LAR_BLOCK * at, element, below, state);
         lanes &= below >> LAR_BLOCK;
         if (lanes) list[count++] = (int32_t)((unsigned)block << LAR_BLOCK | lanes);
         apply_lanes(domain, r, element, lanes & below, state);
@@ -268,9 +279,10 @@ void lar_guard_apply(const lar_domain *domain, int32_t r, lar_state *state) {
     finish_damping(domain, r, state);
     for (int32_t i = 0; i < state->strained->count[r]; i++) {
         int32_t block = (int32_t)((uint32_t)list[i] >> LAR_BLOCK);
+        unsigned lanes = (unsigned)list[i] & ALL_LANES;
         const lar_gid *element = domain->layout.block[domain->run_first[r] + block].element;
-        unsigned below = lanes_below(domain, r, block, state);
-        apply_lanes(domain, r, element, below & (unsigned)list[i] & ALL_LANES, state);
+        apply_lanes(domain, r, element, lanes_below(domain, r, block, lanes, state) & ALL_LANES,
+                    state);
     }
 }
 
