@@ -33,7 +33,7 @@ LAR_INLINE lar_lane lar_ogden_power(const lar_lane *p, int term) {
 LAR_LONG void lar_ogden_pull(const lar_lane h[3], const lar_lane *p, lar_lane b[3]) {
 #pragma GCC unroll 3
     for (int a = 0; a < 3; a++) b[a] = lar_lane_set(0);
-#pragma GCC unroll 3
+#pragma GCC unroll 1 /* three exponentials are long enough */
     for (int i = 0; i < LAR_OGDEN_TERMS; i++) {
         lar_lane m = lar_ogden_power(p, i), factor = p[2 * i] / m;
 #pragma GCC unroll 3
@@ -97,6 +97,7 @@ LAR_INLINE void lar_ogden_principal(const lar_lane c[3], lar_lane log_J, const l
     lar_lane h[3], t[3], e[3] = {lar_lane_set(0), lar_lane_set(0), lar_lane_set(0)};
     lar_ogden_logs(c, log_J, h);
     lar_ogden_pull(h, p, t);
+#pragma GCC unroll 1
     for (int i = 0; i < LAR_OGDEN_TERMS; i++)
         for (int a = 0; a < 3; a++)
             e[a] = lar_lane_fma(p[2 * i], lar_lane_exp(p[2 * i + 1] * h[a]), e[a]);

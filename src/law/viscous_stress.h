@@ -21,7 +21,8 @@
 /* Coefficients of a lane; `unit` is by how much P is larger than pascal of the material as the
  * model has it, `inverse` its reciprocal; both 0 without an element. */
 typedef struct lar_viscous_lane {
-    lar_lane rest, share[LAR_VISCOUS_TERMS], rate[LAR_VISCOUS_TERMS], unit, inverse;
+    lar_lane rest, share[LAR_VISCOUS_TERMS], unit, inverse;
+    lar_lane less[LAR_VISCOUS_TERMS], rise[LAR_VISCOUS_TERMS]; /* e - 1 and h: lar_viscous_fade */
 } lar_viscous_lane;
 
 /* a^T b over J, as six values: a = cof F and b = P make F^-1 P. */
@@ -33,23 +34,39 @@ LAR_INLINE void lar_lane_pull(const lar_lane a[9], const lar_lane b[9], lar_lane
                                            lar_lane_fma(a[3 + i], b[3 + j], a[i] * b[j]));
 }
 
-/* Takes a term on by a step; `now` is its H. */
-LAR_INLINE void lar_viscous_relax(lar_lane dt, lar_lane rate, const lar_lane change[6],
-                                  lar_lane now[6]) {
+/* What a term does in a step, of its rate 1/t_i. */
+LAR_INLINE void lar_viscous_fade(lar_lane dt, lar_lane rate, lar_lane *less, lar_lane *rise) {
     lar_lane x = lar_lane_max(dt * rate, lar_lane_set(LAR_LANE_TINY));
-    lar_lane less = lar_lane_expm1(-x), h = -less / x;
-    for (int k = 0; k < 6; k++)
-        now[k] = lar_lane_fma(h, change[k], lar_lane_fma(less, now[k], now[k]));
+    *less = lar_lane_expm1(-x);
+    *rise = -*less / x;
 }
 
-/* P of the law becomes P of the material; `history` [values] goes on by dt. Returns a number not
+/* Takes value k of all terms on; returns what they are together, and had been in *then. */
+LAR_INLINE lar_lane lar_viscous_relax(const lar_viscous_lane *c, int terms, int k, lar_lane change,
+                                      const double *before, double *after, int stride,
+                                      lar_lane *then) {
+    lar_lane now = lar_lane_set(0);
+    *then = now;
+    for (int i = 0; i < terms; i++) {
+        int at = stride * (LAR_HISTORY_TERMS + 6 * i + k);
+        lar_lane H = lar_lane_load(before + at);
+        *then = lar_lane_fma(c->share[i], H, *then);
+        H = lar_lane_fma(c->rise[i], change, lar_lane_fma(c->less[i], H, H));
+        now = lar_lane_fma(c->share[i], H, now);
+        lar_lane_store(after + at, H);
+    }
+    return now;
+}
+
+/* P of the law becomes P of the material. What is remembered stands in `before` and goes on in
+ * `after`, which may be the same: value k of some lanes at k times `stride`. Returns a number not
  * below |S - Se|^2 |F|^2 in order of magnitude, in the units of P. */
 LAR_INLINE lar_lane lar_viscous_stress(const lar_lane F[9], const lar_viscous_lane *c, int terms,
-                                       bool isochoric, lar_lane dt, lar_lane history[],
-                                       lar_lane P[9]) {
+                                       bool isochoric, const double *before, double *after,
+                                       int stride, lar_lane P[9]) {
     static const int symmetric[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}};
     static const double twice[6] = {1, 2, 2, 1, 2, 1}; /* of a product of tensors */
-    lar_lane cof[9], part[9], strain[6], stress[6], change[6], before[6], after[6];
+    lar_lane cof[9], part[9], strain[6], stress[6], over[6];
     lar_lane J = lar_lane_cofactor(F, cof), work = lar_lane_set(0), size = work;
     lar_lane reciprocal = lar_lane_set(1) / J, mean = work;
     for (int k = 0; isochoric && k < 9; k++) mean = lar_lane_fma(P[k], F[k], mean);
@@ -58,30 +75,25 @@ LAR_INLINE lar_lane lar_viscous_stress(const lar_lane F[9], const lar_viscous_la
     lar_lane_pull(cof, part, c->inverse * reciprocal, stress);
     lar_lane_pull(F, F, lar_lane_set(1), strain);
     for (int k = 0; k < 6; k++) {
+        int strained = stride * (LAR_HISTORY_STRAIN + k),
+            stressed = stride * (LAR_HISTORY_STRESS + k);
+        lar_lane change = stress[k] - lar_lane_load(before + stressed), then;
+        lar_lane now = lar_viscous_relax(c, terms, k, change, before, after, stride, &then);
         if (k == 0 || k == 3 || k == 5) strain[k] = strain[k] - lar_lane_set(1);
-        change[k] = stress[k] - history[LAR_HISTORY_STRESS + k];
-        history[LAR_HISTORY_STRESS + k] = stress[k];
-        before[k] = after[k] = lar_lane_set(0);
-    }
-    for (int i = 0; i < terms; i++) {
-        lar_lane *H = history + LAR_HISTORY_TERMS + 6 * i;
-        for (int k = 0; k < 6; k++) before[k] = lar_lane_fma(c->share[i], H[k], before[k]);
-        lar_viscous_relax(dt, c->rate[i], change, H);
-        for (int k = 0; k < 6; k++) after[k] = lar_lane_fma(c->share[i], H[k], after[k]);
-    }
-    for (int k = 0; k < 6; k++) {
         lar_lane step =
-            lar_lane_set(0.25 * twice[k]) * (strain[k] - history[LAR_HISTORY_STRAIN + k]);
-        work = lar_lane_fma(before[k] + after[k], step, work);
-        history[LAR_HISTORY_STRAIN + k] = strain[k];
-        after[k] = c->unit * lar_lane_fma(c->rest - lar_lane_set(1), stress[k], after[k]);
-        size = lar_lane_fma(lar_lane_set(twice[k]) * after[k], after[k], size);
+            lar_lane_set(0.25 * twice[k]) * (strain[k] - lar_lane_load(before + strained));
+        work = lar_lane_fma(then + now, step, work);
+        lar_lane_store(after + stressed, stress[k]);
+        lar_lane_store(after + strained, strain[k]);
+        over[k] = c->unit * lar_lane_fma(c->rest - lar_lane_set(1), stress[k], now);
+        size = lar_lane_fma(lar_lane_set(twice[k]) * over[k], over[k], size);
     }
-    history[LAR_HISTORY_WORK] = history[LAR_HISTORY_WORK] + work;
+    work = lar_lane_load(before + stride * LAR_HISTORY_WORK) + work;
+    lar_lane_store(after + stride * LAR_HISTORY_WORK, work);
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++)
             for (int k = 0; k < 3; k++)
-                P[3 * i + j] = lar_lane_fma(F[3 * i + k], after[symmetric[k][j]], P[3 * i + j]);
+                P[3 * i + j] = lar_lane_fma(F[3 * i + k], over[symmetric[k][j]], P[3 * i + j]);
     return size * lar_lane_square_sum(F);
 }
 

@@ -1,5 +1,6 @@
-/* Nodes of a block of hexahedra, several elements at a time: their values, and the sums and
- * differences along the edges that modes are made of. For kernels only (hex8_kernel.c).
+/* Nodes of a block of hexahedra, several elements at a time: their values, the sums and differences
+ * along the edges that modes are made of, and what is made of them. For kernels only
+ * (hex8_kernel.c).
  */
 #ifndef LAR_MECHANICS_HEX8_GATHER_H
 #define LAR_MECHANICS_HEX8_GATHER_H
@@ -22,6 +23,12 @@
 #define UNROLL8 _Pragma("GCC unroll 8")
 #define UNROLL9 _Pragma("GCC unroll 9")
 #endif
+
+/* What waits between the phases. */
+typedef struct lane_record {
+    lar_lane F[9];                      /* deformation gradient, then V times the stress P */
+    lar_lane cq[LAR_HEX8_HOURGLASS][3]; /* hourglass forces c_m q_m */
+} lane_record;
 
 /* The local nodes at xi = -1 and xi = +1 of the four edges along xi: (eta, zeta) = --, +-, -+,
  * ++. */

@@ -23,12 +23,6 @@
 #include "mechanics/hex8_viscous.h"
 #endif
 
-/* What waits between the phases. */
-typedef struct lane_record {
-    lar_lane F[9];                      /* deformation gradient, then V times the stress P */
-    lar_lane cq[LAR_HEX8_HOURGLASS][3]; /* hourglass forces c_m q_m */
-} lane_record;
-
 /* ---- lean blocks --------------------------------------------------------------------------- */
 
 /* The quotient as division would round it: what is left over, times the reciprocal (Markstein
@@ -373,21 +367,6 @@ enum { SOFTER = 1 };
 #define contract(run, active, b, count, limits, gradient, record)           ((void)(active), 0U)
 #else
 #define softer_of(run) (run)->softer
-
-/* Phase 2 goes on, for viscous materials: `gradient` is what the record held before the law. */
-static unsigned relax(const lar_block_run *run, const lar_viscous_step *step, int32_t b,
-                      size_t count, const lar_hex8_limits *limits, lar_lane gradient[][9],
-                      lane_record *record) {
-    size_t size = (size_t)lar_history_values(run->terms) * LAR_BLOCK, part = 0;
-    unsigned beyond = 0;
-    for (size_t i = (size_t)b; i < (size_t)b + count; i++)
-        for (int lane = 0; lane < LAR_BLOCK; lane += LAR_LANES, part++)
-            beyond |= viscous_lanes(&run->relaxing[i], lane, run->terms, run->isochoric, step,
-                                    step->history + i * size, gradient[part], limits->stress_square,
-                                    record[part].F)
-                      << part * LAR_LANES;
-    return beyond;
-}
 
 /* And for fibres; where somebody `watches`, *strained gets those that are much stiffer. Of those
  * that `spread` and may be a pair the larger number counts. */

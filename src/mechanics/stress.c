@@ -32,9 +32,9 @@ static double relax(const lar_material *material, int terms, double factor, doub
         lar_viscous_lane c = {.rest = v->rest, .unit = factor, .inverse = 1 / factor};
         for (int i = 0; i < terms; i++) {
             c.share[i] = v->share[i];
-            c.rate[i] = 1 / v->time[i];
+            lar_viscous_fade(past, 1 / v->time[i], &c.less[i], &c.rise[i]);
         }
-        lar_viscous_stress(&F[0][0], &c, terms, v->isochoric, past, history, &P[0][0]);
+        lar_viscous_stress(&F[0][0], &c, terms, v->isochoric, history, history, 1, &P[0][0]);
     }
     if (fibre && lar_fibre_active(&material->fibre))
         (void)lar_active_stress(&F[0][0], &lane, &P[0][0]);
