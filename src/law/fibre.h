@@ -72,8 +72,8 @@ static inline int lar_fibre_families(const lar_fibre *fibre) {
 /* Kinds of fibres whose elements may share a block: 0 none, else law and part. Pairs have kinds of
  * their own, LAR_FIBRE_SINGLE further up than that of one of their families. */
 enum { LAR_FIBRE_SINGLE = 1 + 2 * LAR_FIBRE_LAWS, LAR_FIBRE_KINDS = 2 * LAR_FIBRE_SINGLE };
-/* Those from here on spread. */
-enum { LAR_FIBRE_SPREAD = 1 + 2 * LAR_FIBRE_HGO };
+/* Those from here on spread; the kind of one of their families. */
+enum { LAR_FIBRE_SPREAD = 1 + 2 * LAR_FIBRE_HGO, LAR_FIBRE_KIND_SPREAD = LAR_FIBRE_SPREAD + 1 };
 static inline int lar_fibre_kind_single(const lar_fibre *fibre) {
     return lar_fibre_here(fibre) ? 1 + 2 * (int)fibre->law + fibre->isochoric : 0;
 }

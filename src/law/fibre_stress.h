@@ -142,29 +142,6 @@ LAR_INLINE lar_lane lar_fibre_mean(const lar_lane F[9], lar_lane length, lar_lan
     return lar_lane_fma(kappa, lar_lane_square_sum(F), most * length);
 }
 
-/* Adds to P the stress of fibres that are stretched. Returns the square of its size, as laws do;
- * *length becomes |F a|^2 and *stiff, where it is not NULL, lar_fibre_stiffness. */
-LAR_INLINE lar_lane lar_fibre_stress(int kind, const lar_lane F[9], const lar_fibre_lane *c,
-                                     lar_lane *length, lar_lane *stiff, lar_lane P[9]) {
-    lar_lane g[3], cof[9], sum = lar_lane_set(0);
-    lar_lane J = lar_lane_cofactor(F, cof);
-    *length = lar_fibre_push(F, c->direction, g);
-    lar_lane square = lar_fibre_square(kind, *length, J);
-    lar_fibre_answer now = lar_fibre_straight(lar_fibre_kind_law(kind), square, c->parameter);
-    if (stiff)
-        *stiff = lar_fibre_stiffness(kind, &now, square, *length, J, lar_lane_square_sum(cof));
-    lar_lane along = now.tension / lar_lane_max(*length, lar_lane_set(LAR_LANE_TINY));
-    lar_lane pressure =
-        lar_fibre_kind_isochoric(kind) ? lar_lane_set(-1.0 / 3) * now.tension / J : lar_lane_set(0);
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++) {
-            lar_lane more = lar_lane_fma(along * g[i], c->direction[j], pressure * cof[3 * i + j]);
-            P[3 * i + j] = P[3 * i + j] + more;
-            sum = lar_lane_fma(more, more, sum);
-        }
-    return sum;
-}
-
 /* lar_fibre_stiffness of fibres that spread; `length`: lar_fibre_mean, `I1`: |F|^2. */
 LAR_INLINE lar_lane lar_fibre_spread_stiffness(const lar_fibre_answer *now, lar_lane square,
                                                lar_lane length, lar_lane I1, lar_lane kappa,
@@ -175,42 +152,64 @@ LAR_INLINE lar_lane lar_fibre_spread_stiffness(const lar_fibre_answer *now, lar_
         lar_lane_fma(kappa * kappa, I1, (one - kappa) * lar_lane_fnma(kappa, I1, length));
     lar_lane steep =
         lar_lane_fnma(lar_lane_set(2), now->tension, now->slope * lar_lane_sqrt(square));
-    lar_lane straight =
-        lar_fibre_stiffness(1 + 2 * LAR_FIBRE_HGO + 1, now, square, length, J, area);
+    lar_lane straight = lar_fibre_stiffness(LAR_FIBRE_KIND_SPREAD, now, square, length, J, area);
     return straight - steep * inverse * lar_lane_fnma(mean, inverse, one);
 }
 
-/* lar_fibre_stress of fibres that spread; *length becomes the mean. */
-LAR_INLINE lar_lane lar_fibre_hgo_stress(const lar_lane F[9], const lar_fibre_lane *c,
-                                         lar_lane *length, lar_lane *stiff, lar_lane P[9]) {
-    enum { KIND = 1 + 2 * LAR_FIBRE_HGO + 1 };
-    lar_lane g[3], cof[9], sum = lar_lane_set(0), kappa = c->parameter[2];
-    lar_lane J = lar_lane_cofactor(F, cof), tiny = lar_lane_set(LAR_LANE_TINY);
-    *length = lar_fibre_mean(F, lar_fibre_push(F, c->direction, g), kappa);
-    lar_lane square = lar_fibre_square(KIND, *length, J);
-    lar_fibre_answer now = lar_fibre_hgo(square, c->parameter);
-    if (stiff)
-        *stiff = lar_fibre_spread_stiffness(&now, square, *length, lar_lane_square_sum(F), kappa, J,
-                                            lar_lane_square_sum(cof));
-    lar_lane all = now.tension / lar_lane_max(*length, tiny), spread = kappa * all;
-    lar_lane along = lar_lane_fnma(lar_lane_set(3), spread, all);
-    lar_lane pressure = lar_lane_set(-1.0 / 3) * now.tension / J;
+/* How fibres are stretched. */
+typedef struct lar_fibre_stretch {
+    lar_lane g[3];   /* F a */
+    lar_lane length; /* |g|^2; of fibres that spread lar_fibre_mean */
+    lar_lane square; /* l^2 */
+} lar_fibre_stretch;
+
+LAR_INLINE lar_fibre_stretch lar_fibre_look(int kind, const lar_lane F[9],
+                                            const lar_fibre_lane *c) {
+    lar_fibre_stretch to;
+    lar_lane cof[9], J = lar_lane_cofactor(F, cof);
+    to.length = lar_fibre_push(F, c->direction, to.g);
+    if (lar_fibre_kind_law(kind) == LAR_FIBRE_HGO)
+        to.length = lar_fibre_mean(F, to.length, c->parameter[2]);
+    to.square = lar_fibre_square(kind, to.length, J);
+    return to;
+}
+
+/* Adds to P the stress of fibres with that answer to their stretch. Returns the square of its size,
+ * as laws do; *stiff, where it is not NULL, becomes lar_fibre_stiffness. */
+LAR_INLINE lar_lane lar_fibre_pull(int kind, const lar_lane F[9], const lar_fibre_lane *c,
+                                   const lar_fibre_stretch *to, const lar_fibre_answer *now,
+                                   lar_lane *stiff, lar_lane P[9]) {
+    bool spreads = lar_fibre_kind_law(kind) == LAR_FIBRE_HGO;
+    lar_lane cof[9], sum = lar_lane_set(0), kappa = c->parameter[2];
+    lar_lane J = lar_lane_cofactor(F, cof);
+    if (stiff && spreads)
+        *stiff = lar_fibre_spread_stiffness(now, to->square, to->length, lar_lane_square_sum(F),
+                                            kappa, J, lar_lane_square_sum(cof));
+    else if (stiff)
+        *stiff =
+            lar_fibre_stiffness(kind, now, to->square, to->length, J, lar_lane_square_sum(cof));
+    lar_lane all = now->tension / lar_lane_max(to->length, lar_lane_set(LAR_LANE_TINY));
+    lar_lane spread = spreads ? kappa * all : lar_lane_set(0);
+    lar_lane along = spreads ? lar_lane_fnma(lar_lane_set(3), spread, all) : all;
+    lar_lane pressure = lar_fibre_kind_isochoric(kind) ? lar_lane_set(-1.0 / 3) * now->tension / J
+                                                       : lar_lane_set(0);
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++) {
-            lar_lane more = lar_lane_fma(spread, F[3 * i + j], pressure * cof[3 * i + j]);
-            more = lar_lane_fma(along * g[i], c->direction[j], more);
+            lar_lane more = pressure * cof[3 * i + j];
+            if (spreads) more = lar_lane_fma(spread, F[3 * i + j], more);
+            more = lar_lane_fma(along * to->g[i], c->direction[j], more);
             P[3 * i + j] = P[3 * i + j] + more;
             sum = lar_lane_fma(more, more, sum);
         }
     return sum;
 }
 
-/* Either of them, of one family. */
-LAR_INLINE lar_lane lar_fibre_family_stress(int kind, const lar_lane F[9], const lar_fibre_lane *c,
-                                            lar_lane *length, lar_lane *stiff, lar_lane P[9]) {
-    return lar_fibre_kind_law(kind) == LAR_FIBRE_HGO
-               ? lar_fibre_hgo_stress(F, c, length, stiff, P)
-               : lar_fibre_stress(kind, F, c, length, stiff, P);
+/* Both, of one family. */
+LAR_INLINE lar_lane lar_fibre_stress(int kind, const lar_lane F[9], const lar_fibre_lane *c,
+                                     lar_lane P[9]) {
+    lar_fibre_stretch to = lar_fibre_look(kind, F, c);
+    lar_fibre_answer now = lar_fibre_tension(lar_fibre_kind_law(kind), to.square, c->parameter);
+    return lar_fibre_pull(kind, F, c, &to, &now, NULL, P);
 }
 
 /* What an active stress has for a potential, 0 at rest. */

@@ -30,6 +30,16 @@ typedef struct lane_record {
     lar_lane cq[LAR_HEX8_HOURGLASS][3]; /* hourglass forces c_m q_m */
 } lane_record;
 
+/* What a monitor says of the strain of some lanes (hex8_block.h). */
+typedef struct lane_strain {
+    lar_lane number[LAR_STRAIN_NUMBERS];
+} lane_strain;
+
+/* The phases work on a few blocks at a time. The law of one block is a long chain of dependent
+ * operations, which a processor can hide only behind other blocks; in short loops their turns
+ * overlap in its window. Few enough that the records stay in the first-level cache. */
+enum { CHUNK = 4, PARTS = LAR_BLOCK / LAR_LANES };
+
 /* The local nodes at xi = -1 and xi = +1 of the four edges along xi: (eta, zeta) = --, +-, -+,
  * ++. */
 static const int left_node[4] = {0, 3, 4, 7}, right_node[4] = {1, 2, 5, 6};

@@ -141,11 +141,6 @@ typedef unsigned (*lane_stiffened)(lar_lane J, lar_lane I1, lar_lane area, const
 static const double STRAINED_VOLUME = 0.7, STRAINED_COFACTOR = 3 * 1.4, STRAINED_SHEAR = 0.4,
                     STRAINED_CORNER = 0.09;
 
-/* What a monitor says of the strain of some lanes (hex8_block.h). */
-typedef struct lane_strain {
-    lar_lane number[LAR_STRAIN_NUMBERS];
-} lane_strain;
-
 LAR_INLINE unsigned strained_lanes(const lane_strain *strain) {
     return lar_lane_not_greater(lar_lane_set(STRAINED_COFACTOR), strain->number[LAR_STRAIN_AREA]) |
            lar_lane_not_greater(strain->number[LAR_STRAIN_VOLUME], lar_lane_set(STRAINED_VOLUME));
@@ -266,11 +261,6 @@ LAR_INLINE void force_lanes(const void *block, int lane, lar_block_shape shape, 
     scatter_modes(block, lane, rows, n, force);
 }
 
-/* The phases work on a few blocks at a time. The law of one block is a long chain of dependent
- * operations, which a processor can hide only behind other blocks; in short loops their turns
- * overlap in its window. Few enough that the records stay in the first-level cache. */
-enum { CHUNK = 4, PARTS = LAR_BLOCK / LAR_LANES };
-
 #define FOR_PARTS(blocks, count, size)                                                             \
     for (const char *block = (blocks), *end = block + (count) * (size); block < end;               \
          block += (size))                                                                          \
@@ -368,27 +358,6 @@ enum { SOFTER = 1 };
 #else
 #define softer_of(run) (run)->softer
 
-/* And for fibres; where somebody `watches`, *strained gets those that are much stiffer. Of those
- * that `spread` and may be a pair the larger number counts. */
-LAR_INLINE unsigned stretch_family(bool spread, const lar_fibre_block *fibres, int kind, int32_t b,
-                                   size_t count, double max, bool watches, lar_lane gradient[][9],
-                                   lane_record *record, lane_strain *strain, unsigned *strained) {
-    unsigned beyond = 0;
-    size_t part = 0;
-    for (size_t i = (size_t)b; i < (size_t)b + count; i++)
-        for (int lane = 0; lane < LAR_BLOCK; lane += LAR_LANES, part++) {
-            lar_lane length, *number = &strain[part].number[LAR_STRAIN_FIBRE];
-            unsigned stiffer = 0;
-            beyond |= fibre_lanes(spread, &fibres[i], lane, kind, gradient[part], max,
-                                  record[part].F, &length, watches ? &stiffer : NULL)
-                      << part * LAR_LANES;
-            if (!watches) continue;
-            *number = spread ? lar_lane_max(length, *number) : length;
-            *strained |= stiffer << part * LAR_LANES;
-        }
-    return beyond;
-}
-
 /* A function of its own, so that straight fibres do not pay for it. */
 __attribute__((noinline)) static unsigned stretch_spread(const lar_block_run *run, int32_t b,
                                                          size_t count, double max, bool watches,
@@ -397,8 +366,8 @@ __attribute__((noinline)) static unsigned stretch_spread(const lar_block_run *ru
                                                          unsigned *strained) {
     unsigned beyond = 0;
     for (const lar_fibre_block *of = run->fibres; of; of = of == run->second ? NULL : run->second)
-        beyond |=
-            stretch_family(true, of, 0, b, count, max, watches, gradient, record, strain, strained);
+        beyond |= stretch_family(LAR_FIBRE_KIND_SPREAD, of, b, count, max, watches, gradient,
+                                 record, strain, strained);
     return beyond;
 }
 
@@ -408,8 +377,8 @@ static unsigned stretch(const lar_block_run *run, int32_t b, size_t count, doubl
     if (lar_fibre_kind_law(run->fibrous) == LAR_FIBRE_NONE) return 0;
     if (run->fibrous >= LAR_FIBRE_SPREAD)
         return stretch_spread(run, b, count, max, watches, gradient, record, strain, strained);
-    return stretch_family(false, run->fibres, run->fibrous, b, count, max, watches, gradient,
-                          record, strain, strained);
+    return stretch_family(run->fibrous, run->fibres, b, count, max, watches, gradient, record,
+                          strain, strained);
 }
 
 /* What is active, behind all that relaxes. */

@@ -19,14 +19,14 @@ static lar_fibre_lane lane_of(const lar_fibre *fibre, const double *direction) {
 static double relax(const lar_material *material, int terms, double factor, double past,
                     const double *fibre, const double F[3][3], double *history, double P[3][3]) {
     const lar_viscosity *v = &material->viscosity;
-    double J = lar_lane_cofactor(&F[0][0], &P[0][0]), I1 = lar_lane_square_sum(&F[0][0]), length;
+    double J = lar_lane_cofactor(&F[0][0], &P[0][0]), I1 = lar_lane_square_sum(&F[0][0]);
     lar_fibre_lane lane = lane_of(&material->fibre, fibre ? fibre : nowhere);
     lar_law_table[material->law].stress(&F[0][0], &P[0][0], J, I1, material->parameter);
     if (fibre && material->fibre.law != LAR_FIBRE_NONE)
         for (int k = 0; k < lar_fibre_families(&material->fibre); k++) {
             const lar_fibre_lane family = lane_of(&material->fibre, fibre + 3 * k);
-            (void)lar_fibre_family_stress(lar_fibre_kind_single(&material->fibre), &F[0][0],
-                                          &family, &length, NULL, &P[0][0]);
+            (void)lar_fibre_stress(lar_fibre_kind_single(&material->fibre), &F[0][0], &family,
+                                   &P[0][0]);
         }
     if (v->terms > 0) {
         lar_viscous_lane c = {.rest = v->rest, .unit = factor, .inverse = 1 / factor};
