@@ -214,6 +214,11 @@ LAR_API void lar_model_surface(const lar_model *model, lar_surface_info *info);
 /* The material of an element: index into those of lar_model_material; -1: no such element. */
 LAR_API int32_t lar_model_element_material(const lar_model *model, int32_t element);
 
+/* Unit vectors along the fibres of an element at rest, one for each family, 0 0 0 where there is
+ * none; NULL: not asked for. How many families it has: 0, 1 or 2. */
+LAR_API int32_t lar_model_element_fibres(const lar_model *model, int32_t element,
+                                         double fibre[2][3]);
+
 /* A fine surface embedded in the mesh, for display (scene key `surface`). */
 typedef struct lar_embedded_info {
     int32_t vertices, triangles;

@@ -116,6 +116,19 @@ int32_t lar_model_element_material(const lar_model *model, int32_t element) {
     return known ? model->element_material[element] : -1;
 }
 
+int32_t lar_model_element_fibres(const lar_model *model, int32_t element, double fibre[2][3]) {
+    double both[6] = {0};
+    int32_t families = 0;
+    if (lar_model_element_nodes(model, element)) {
+        const lar_fibre *of = &lar_model_material_of(model, element)->fibre;
+        if (lar_fibre_directed(of)) families = lar_fibre_families(of);
+        lar_model_fibres(model, element, both);
+    }
+    if (fibre)
+        for (int i = 0; i < 6; i++) fibre[i / 3][i % 3] = i < 3 * families ? both[i] : 0;
+    return families;
+}
+
 int lar_model_embedded(const lar_model *model, lar_embedded_info *info) {
     const lar_embedded_surface *embedded = model ? &model->embedded : NULL;
     if (!embedded || embedded->surface.triangle_count == 0) return 0;
