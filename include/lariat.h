@@ -177,6 +177,8 @@ typedef struct lar_material_info {
     double fibre_modulus; /* d(tension)/d(stretch) of fibres that begin to pull [Pa] */
     double active_along, active_across; /* stress that fibres develop when all of them are active,
                                            along and across them [Pa] */
+    int32_t fibre_families;             /* for which its elements have directions: 0, 1 or 2 */
+    double fibre_dispersion; /* kappa of "hgo": 0, all along the direction, to 1/3, evenly */
 } lar_material_info;
 
 /* One named set of the mesh or the scene. */

@@ -72,6 +72,9 @@ lar_status lar_model_material(const lar_model *model, int32_t index, lar_materia
                                 .fibre_modulus = lar_fibre_modulus(&material->fibre),
                                 .active_along = material->fibre.along,
                                 .active_across = material->fibre.across};
+    if (lar_fibre_directed(&material->fibre))
+        info->fibre_families = lar_fibre_families(&material->fibre);
+    if (material->fibre.law == LAR_FIBRE_HGO) info->fibre_dispersion = material->fibre.parameter[2];
     for (int32_t e = 0; e < model->mesh.element_count; e++)
         info->elements += model->element_material[e] == index;
     return LAR_OK;
