@@ -97,6 +97,7 @@ typedef struct lar_mesh_arrays {
     const lar_array_set *set;      /* [sets] what scenes select by name; may be NULL */
     const double (*fibre)[3];      /* [elements] along fibres, of any length, for `direction: mesh`
                                       of a material; NULL: none */
+    const double (*fibre2)[3];     /* the same of a second family, for `second: mesh`; NULL: none */
 } lar_mesh_arrays;
 
 /* Makes a model of arrays and the text of a scene (YAML, docs/formats.md), which has no key `mesh`,
