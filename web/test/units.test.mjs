@@ -122,6 +122,16 @@ test('lines along fibres lie in the faces, and move, turn and stretch with them'
     });
 });
 
+test('lines of two families that lie alike point alike, whatever the sense of their directions', () => {
+    const x = Float32Array.from([0, 0, 0, 1, 0, 0, 1.3, 1, 0, 0.3, 1, 0]);
+    for (const sense of [1, -1]) {
+        const fibres = Float32Array.from([0.8, 0, 0.6, -0.8 * sense, 0, 0.6]);
+        const lines = new parts.fibreLines.FibreLines(x, Uint32Array.from([0, 1, 2, 3]), fibres, 2);
+        const [a, b] = [0, 1].map((i) => lineOf(lines, i));
+        for (let k = 0; k < 3; k++) assert.ok(Math.abs(a.along[k] - b.along[k]) < 1e-6, `${a.along} and ${b.along}`);
+    }
+});
+
 test('where there are many faces, some of them have lines along fibres, evenly strewn', () => {
     const { x, quads } = cube(30, true);
     const faces = quads.length / 4;

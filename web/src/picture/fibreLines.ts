@@ -63,6 +63,11 @@ export class FibreLines {
         if (within < THIN) {
             [p, q] = [THIN / Math.sqrt(aa), 0];
         }
+        // Fibres have no sense; families that lie alike point alike, so that they can be drawn side by side.
+        if (i % this.families > 0) {
+            const [r, s] = [this.along[2 * i - 2]!, this.along[2 * i - 1]!];
+            if (p * r * aa + (p * s + q * r) * ab + q * s * bb < 0) [p, q] = [-p, -q];
+        }
         const room = 1 / Math.max(Math.abs(p), Math.abs(q)); // at which the face ends, seen from side to side
         const whole = COVER * (apart > 0 ? Math.max(apart, Math.sqrt(area)) : Math.min(room, 2 * Math.sqrt(area)));
         this.along[2 * i] = (p * whole) / 2;

@@ -1,6 +1,7 @@
 /* Lines along the fibres, as three.js draws them: flat on the faces, brought a little towards the eye as
  * edges are (edges.ts), because the drawn surface is rounder than the mesh's faces or another one. Dark
  * at both sides, so that they are seen on every colour of values; the second family of a pair is blue.
+ * Of a pair each lies beside its middle, or one would hide the other where they are projected alike.
  * From afar they are wider than they lie, so that they stay some points of the screen wide. */
 import * as THREE from 'three';
 import type { FibreLines } from './fibreLines';
@@ -9,6 +10,7 @@ const VERTEX = /* glsl */ `
 #define WIDE 3.0 // points of the screen, at least
 uniform float lift;
 uniform float height;
+uniform float pair;
 attribute vec3 side;
 attribute float aside;
 attribute float family;
@@ -24,7 +26,7 @@ void main() {
     float far = length(p);
     float points = WIDE * far / (projectionMatrix[1][1] * height);
     vec3 wide = normalMatrix * side;
-    p += wide * max(1.0, points / max(length(wide), 1e-9));
+    p += wide * max(1.0, points / max(length(wide), 1e-9)) * (1.0 + pair * (1.0 - 2.0 * family) * aside);
     vFacing = -dot(normalMatrix * normal, p) / far;
     p *= 1.0 - min(lift / (max(vFacing, 0.2) * far), 0.5);
     gl_Position = projectionMatrix * vec4(p, 1.0);
@@ -53,7 +55,7 @@ export class Fibres {
     constructor(private readonly lines: FibreLines, cut: THREE.Vector4) {
         this.ink = new THREE.ShaderMaterial({
             vertexShader: VERTEX, fragmentShader: FRAGMENT, side: THREE.DoubleSide,
-            uniforms: { lift: { value: 0 }, height: { value: 1 }, cut: { value: cut } },
+            uniforms: { lift: { value: 0 }, height: { value: 1 }, pair: { value: lines.families - 1 }, cut: { value: cut } },
         });
         const corners = lines.positions.length / 3;
         const aside = Float32Array.from({ length: corners }, (_, corner) => (corner & 1 ? -1 : 1));
