@@ -97,6 +97,7 @@ typedef struct lar_mesh_arrays {
     const lar_array_set *set;      /* [sets] what scenes select by name; may be NULL */
     const double (*fibre)[3];      /* [elements] along fibres, of any length, for `direction: mesh`
                                       of a material; NULL: none */
+    const double (*fibre2)[3];     /* the same of a second family, for `second: mesh`; NULL: none */
 } lar_mesh_arrays;
 
 /* Makes a model of arrays and the text of a scene (YAML, docs/formats.md), which has no key `mesh`,
@@ -177,6 +178,8 @@ typedef struct lar_material_info {
     double fibre_modulus; /* d(tension)/d(stretch) of fibres that begin to pull [Pa] */
     double active_along, active_across; /* stress that fibres develop when all of them are active,
                                            along and across them [Pa] */
+    int32_t fibre_families;             /* for which its elements have directions: 0, 1 or 2 */
+    double fibre_dispersion; /* kappa of "hgo": 0, all along the direction, to 1/3, evenly */
 } lar_material_info;
 
 /* One named set of the mesh or the scene. */
@@ -213,6 +216,11 @@ LAR_API void lar_model_surface(const lar_model *model, lar_surface_info *info);
 
 /* The material of an element: index into those of lar_model_material; -1: no such element. */
 LAR_API int32_t lar_model_element_material(const lar_model *model, int32_t element);
+
+/* Unit vectors along the fibres of an element at rest, one for each family, 0 0 0 where there is
+ * none; NULL: not asked for. How many families it has: 0, 1 or 2. */
+LAR_API int32_t lar_model_element_fibres(const lar_model *model, int32_t element,
+                                         double fibre[2][3]);
 
 /* A fine surface embedded in the mesh, for display (scene key `surface`). */
 typedef struct lar_embedded_info {

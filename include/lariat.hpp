@@ -196,6 +196,9 @@ class Model : public detail::Handle<lar_model, lar_model_destroy> {
     std::int32_t element_material(std::int32_t element) const {
         return lar_model_element_material(get(), element);
     }
+    std::int32_t element_fibres(std::int32_t element, double fibre[2][3]) const {
+        return lar_model_element_fibres(get(), element, fibre);
+    }
     const std::int32_t *element_nodes(std::int32_t element) const {
         return lar_model_element_nodes(get(), element);
     }

@@ -118,11 +118,12 @@ static PyObject *make_material(const lar_model *model, int32_t index) {
     lar_material_info m;
     lar_error error;
     if (lar_model_material(model, index, &m, &error)) return python_raise(&error);
-    return Py_BuildValue("{s:s,s:s,s:i,s:d,s:d,s:d,s:i,s:d,s:s,s:d}", "name", m.name, "law", m.law,
-                         "elements", (int)m.elements, "density", m.density, "shear_modulus",
+    return Py_BuildValue("{s:s,s:s,s:i,s:d,s:d,s:d,s:i,s:d,s:s,s:d,s:i,s:d}", "name", m.name, "law",
+                         m.law, "elements", (int)m.elements, "density", m.density, "shear_modulus",
                          m.shear_modulus, "bulk_modulus", m.bulk_modulus, "viscous_terms",
                          (int)m.viscous_terms, "instant_shear_modulus", m.instant_shear_modulus,
-                         "fibres", m.fibres, "fibre_modulus", m.fibre_modulus);
+                         "fibres", m.fibres, "fibre_modulus", m.fibre_modulus, "fibre_families",
+                         (int)m.fibre_families, "fibre_dispersion", m.fibre_dispersion);
 }
 static PyObject *get_materials(PyObject *me, void *unused) {
     (void)unused;
@@ -307,7 +308,7 @@ static PyGetSetDef model_properties[] = {
 static PyMethodDef model_methods[] = {
     {"from_arrays", FUNCTION(python_model_from_arrays), METH_CLASS | METH_VARARGS | METH_KEYWORDS,
      "from_arrays($type, nodes, hexahedra, scene=None, *, tags=None, sets=None, "
-     "fibres=None)\n--\n\n"
+     "fibres=None, fibres2=None)\n--\n\n"
      "A model of arrays in memory; no file is read, everything is copied.\n\n"
      "nodes      float64 [n, 3], metres times the scene's `scale`; each belongs to an element\n"
      "hexahedra  int32 [m, 8]: four nodes around the bottom, counter-clockwise seen from above, "
@@ -319,7 +320,8 @@ static PyMethodDef model_methods[] = {
      "tags       int32 [m], what scenes select by `tag`; None: all 0\n"
      "sets       dict of name: int32 [k] nodes, or name: (kind, int32 [k]) with kind \"nodes\",\n"
      "           \"elements\" or \"faces\" (6 * element + face)\n"
-     "fibres     float64 [m, 3], along fibres, of any length\n\n"
+     "fibres     float64 [m, 3], along fibres, of any length, for `direction: mesh`\n"
+     "fibres2    the same of a second family, for `second: mesh`\n\n"
      "Nested lists do for arrays. ModelError names the element, node or set that cannot be so."},
     {"embedded_positions", FUNCTION(embedded_positions), METH_VARARGS | METH_KEYWORDS,
      "embedded_positions($self, displacements=None, out=None)\n--\n\n"

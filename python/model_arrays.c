@@ -6,7 +6,7 @@ PyObject *python_model_from_arrays(PyObject *type, PyObject *args, PyObject *key
 PyObject *python_model_wrap(lar_model *model);
 
 typedef struct arrays {
-    python_rows nodes, hexahedra, tags, fibres, *set_rows;
+    python_rows nodes, hexahedra, tags, fibres, fibres2, *set_rows;
     lar_array_set *set;
     int32_t sets;
     PyObject *named; /* a copy of the caller's dict: converting numbers may run any code */
@@ -17,6 +17,7 @@ static void arrays_free(arrays *a) {
     python_rows_free(&a->hexahedra);
     python_rows_free(&a->tags);
     python_rows_free(&a->fibres);
+    python_rows_free(&a->fibres2);
     for (int32_t i = 0; i < a->sets; i++) python_rows_free(&a->set_rows[i]);
     PyMem_Free(a->set_rows);
     PyMem_Free(a->set);
@@ -69,14 +70,16 @@ static bool same_rows(const python_rows *rows, const char *name, Py_ssize_t elem
                          rows->rows);
 }
 
-static bool take_arrays(PyObject *const source[5], arrays *a) {
+static bool take_arrays(PyObject *const source[6], arrays *a) {
     return python_doubles(source[0], "nodes", 3, &a->nodes) &&
            python_integers(source[1], "hexahedra", 8, &a->hexahedra) &&
            (source[2] == Py_None || python_integers(source[2], "tags", 0, &a->tags)) &&
            (source[3] == Py_None || take_sets(source[3], a)) &&
            (source[4] == Py_None || python_doubles(source[4], "fibres", 3, &a->fibres)) &&
+           (source[5] == Py_None || python_doubles(source[5], "fibres2", 3, &a->fibres2)) &&
            same_rows(&a->tags, "tags", a->hexahedra.rows) &&
            same_rows(&a->fibres, "fibres", a->hexahedra.rows) &&
+           same_rows(&a->fibres2, "fibres2", a->hexahedra.rows) &&
            ((a->nodes.rows <= INT32_MAX && a->hexahedra.rows <= INT32_MAX) ||
             python_refuse("nodes, hexahedra: at most 2^31 - 1 of each"));
 }
@@ -89,8 +92,8 @@ static PyObject *pack(const python_rows *rows, const char *format, int columns) 
     return Py_BuildValue("(y#si)", rows->data, size, format, columns);
 }
 
-/* (lariat._from_packed, (nodes, hexahedra, scene, tags, sets, fibres)): what was taken, copied, for
- * the caller may change its arrays afterwards. */
+/* (lariat._from_packed, (nodes, hexahedra, scene, tags, sets, fibres, fibres2)): what was taken,
+ * copied, for the caller may change its arrays afterwards. */
 static PyObject *recipe_of(const arrays *a, PyObject *scene) {
     PyObject *package = PyImport_ImportModule("lariat"), *sets = PyDict_New(), *recipe = NULL;
     PyObject *maker = package ? PyObject_GetAttrString(package, "_from_packed") : NULL;
@@ -101,9 +104,9 @@ static PyObject *recipe_of(const arrays *a, PyObject *scene) {
         Py_XDECREF(value);
     }
     if (ok)
-        recipe = Py_BuildValue("(O(NNONON))", maker, pack(&a->nodes, "d", 3),
+        recipe = Py_BuildValue("(O(NNONONN))", maker, pack(&a->nodes, "d", 3),
                                pack(&a->hexahedra, "i", 8), scene, pack(&a->tags, "i", 0), sets,
-                               pack(&a->fibres, "d", 3));
+                               pack(&a->fibres, "d", 3), pack(&a->fibres2, "d", 3));
     Py_XDECREF(maker);
     Py_XDECREF(sets);
     Py_XDECREF(package);
@@ -118,7 +121,8 @@ static PyObject *make(const arrays *a, PyObject *scene) {
                                   .element = a->hexahedra.data,
                                   .tag = a->tags.data,
                                   .set = a->set,
-                                  .fibre = a->fibres.data};
+                                  .fibre = a->fibres.data,
+                                  .fibre2 = a->fibres2.data};
     PyObject *text = scene == Py_None ? scene : python_scene_text(scene);
     Py_ssize_t length = 0;
     const char *utf8 = text && text != Py_None ? PyUnicode_AsUTF8AndSize(text, &length) : NULL;
@@ -139,12 +143,14 @@ static PyObject *make(const arrays *a, PyObject *scene) {
 }
 
 PyObject *python_model_from_arrays(PyObject *type, PyObject *args, PyObject *keywords) {
-    static char *names[] = {"nodes", "hexahedra", "scene", "tags", "sets", "fibres", NULL};
-    PyObject *scene = Py_None, *source[5] = {NULL, NULL, Py_None, Py_None, Py_None};
+    static char *names[] = {"nodes", "hexahedra", "scene",   "tags",
+                            "sets",  "fibres",    "fibres2", NULL};
+    PyObject *scene = Py_None, *source[6] = {NULL, NULL, Py_None, Py_None, Py_None, Py_None};
     arrays a = {.set = NULL};
     (void)type;
-    if (!PyArg_ParseTupleAndKeywords(args, keywords, "OO|O$OOO:from_arrays", names, &source[0],
-                                     &source[1], &scene, &source[2], &source[3], &source[4]))
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, "OO|O$OOOO:from_arrays", names, &source[0],
+                                     &source[1], &scene, &source[2], &source[3], &source[4],
+                                     &source[5]))
         return NULL;
     PyObject *model = take_arrays(source, &a) ? make(&a, scene) : NULL;
     arrays_free(&a);

@@ -73,9 +73,10 @@ def _unpack(packed):
     return memoryview(data).cast(kind, (rows, columns)) if columns and rows else view
 
 
-def _from_packed(nodes, hexahedra, scene, tags, sets, fibres):
+def _from_packed(nodes, hexahedra, scene, tags, sets, fibres, fibres2=None):
     return Model.from_arrays(
         _unpack(nodes), _unpack(hexahedra), scene, tags=_unpack(tags), fibres=_unpack(fibres),
+        fibres2=_unpack(fibres2),
         sets={name: (kind, _unpack(index)) for name, (kind, index) in sets.items()})
 
 

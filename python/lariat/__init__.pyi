@@ -195,6 +195,7 @@ class Model:
         tags: _Array = None,
         sets: Union[Mapping[str, Any], None] = None,
         fibres: _Array = None,
+        fibres2: _Array = None,
     ) -> Model: ...
     def embedded_positions(self, displacements: _Array = None, out: Any = None) -> Any: ...
     def rays(

@@ -62,7 +62,7 @@ def _array(name, kind, raw, size=""):
     return f'<DataArray type="{kind}" Name="{name}" {size} format="binary">{inside}</DataArray>\n'
 
 
-def _vtu(nodes, hexahedra, tags, sets, fibres):
+def _vtu(nodes, hexahedra, tags, sets, *fibres):
     """A VTK file of packed arrays: (bytes, format, columns) each, as pickles have them."""
     points, cells = len(nodes[0]) // 24, len(hexahedra[0]) // 32
     order = "LittleEndian" if sys.byteorder == "little" else "BigEndian"
@@ -78,8 +78,9 @@ def _vtu(nodes, hexahedra, tags, sets, fibres):
     yield _array("types", "UInt8", bytes([_HEXAHEDRON]) * cells) + "</Cells>\n<CellData>\n"
     if tags:
         yield _array("tag", "Int32", tags[0])
-    if fibres:
-        yield _array("fibre", "Float64", fibres[0], _VECTORS)
+    for name, family in zip(("fibre", "fibre2"), fibres):
+        if family:
+            yield _array(name, "Float64", family[0], _VECTORS)
     yield "</CellData>\n</Piece></UnstructuredGrid></VTKFile>\n"
 
 
@@ -197,8 +198,8 @@ class Folder:
         recipe = model.__reduce__()[1]
         if len(recipe) == 1:
             return path_of(recipe[0], name)
-        nodes, hexahedra, scene, tags, sets, fibres = recipe
-        mesh = self.write("mesh.vtu", _vtu(nodes, hexahedra, tags, sets, fibres))
+        nodes, hexahedra, scene, tags, sets, *fibres = recipe
+        mesh = self.write("mesh.vtu", _vtu(nodes, hexahedra, tags, sets, *fibres))
         return mesh if scene is None else self.write("scene.yaml", [_with_mesh(scene, mesh)])
 
     def table(self, source, name):

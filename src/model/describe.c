@@ -72,6 +72,9 @@ lar_status lar_model_material(const lar_model *model, int32_t index, lar_materia
                                 .fibre_modulus = lar_fibre_modulus(&material->fibre),
                                 .active_along = material->fibre.along,
                                 .active_across = material->fibre.across};
+    if (lar_fibre_directed(&material->fibre))
+        info->fibre_families = lar_fibre_families(&material->fibre);
+    if (material->fibre.law == LAR_FIBRE_HGO) info->fibre_dispersion = material->fibre.parameter[2];
     for (int32_t e = 0; e < model->mesh.element_count; e++)
         info->elements += model->element_material[e] == index;
     return LAR_OK;
@@ -114,6 +117,19 @@ void lar_model_surface(const lar_model *model, lar_surface_info *info) {
 int32_t lar_model_element_material(const lar_model *model, int32_t element) {
     bool known = model && element >= 0 && element < model->mesh.element_count;
     return known ? model->element_material[element] : -1;
+}
+
+int32_t lar_model_element_fibres(const lar_model *model, int32_t element, double fibre[2][3]) {
+    double both[6] = {0};
+    int32_t families = 0;
+    if (lar_model_element_nodes(model, element)) {
+        const lar_fibre *of = &lar_model_material_of(model, element)->fibre;
+        if (lar_fibre_directed(of)) families = lar_fibre_families(of);
+        lar_model_fibres(model, element, both);
+    }
+    if (fibre)
+        for (int i = 0; i < 6; i++) fibre[i / 3][i % 3] = i < 3 * families ? both[i] : 0;
+    return families;
 }
 
 int lar_model_embedded(const lar_model *model, lar_embedded_info *info) {

@@ -100,9 +100,11 @@ typedef struct lar_probe {
     enum { LAR_PROBE_DISPLACEMENT, LAR_PROBE_REACTION } what;
 } lar_probe;
 
+enum { LAR_OUTPUT_FIBRES = 64 }; /* beside the bits of lar_field */
+
 typedef struct lar_output {
     double every;    /* seconds, 0: only the end */
-    unsigned fields; /* lar_field bits (lariat.h) */
+    unsigned fields; /* lar_field bits (lariat.h), and that one */
     bool surface;    /* the embedded surface too, in every frame */
     int probe_count;
     lar_probe *probe;

@@ -43,8 +43,28 @@ static uint32_t surface_index(const lar_surface_info *surface, int32_t node) {
     return (uint32_t)low;
 }
 
-static void write_surface(const lar_model *model, const lar_surface_info *surface, int32_t *parent,
-                          const float *processor, unsigned char *out) {
+/* How many families of fibres the elements behind the faces have at most. */
+static int32_t count_families(const lar_model *model, const lar_surface_info *surface) {
+    int32_t most = 0;
+    for (int32_t f = 0; f < surface->faces && most < 2; f++) {
+        int32_t here = lar_model_element_fibres(model, surface->element[f], NULL);
+        if (here > most) most = here;
+    }
+    return most;
+}
+
+/* [faces][families][3] */
+static void write_fibres(const lar_model *model, const lar_surface_info *surface, int32_t families,
+                         float *out) {
+    for (int32_t f = 0; f < surface->faces; f++) {
+        double fibre[2][3];
+        lar_model_element_fibres(model, surface->element[f], fibre);
+        for (int32_t i = 0; i < 3 * families; i++) *out++ = (float)fibre[i / 3][i % 3];
+    }
+}
+
+static void write_surface(const lar_model *model, const lar_surface_info *surface, int32_t families,
+                          int32_t *parent, const float *processor, unsigned char *out) {
     const double(*rest)[3] = lar_model_positions(model);
     size_t n = (size_t)surface->nodes, f = (size_t)surface->faces;
     uint32_t *header = (uint32_t *)(void *)out;
@@ -55,7 +75,8 @@ static void write_surface(const lar_model *model, const lar_surface_info *surfac
     header[0] = 1;
     header[1] = (uint32_t)n;
     header[2] = (uint32_t)f;
-    header[3] = 0;
+    header[3] = (uint32_t)families;
+    write_fibres(model, surface, families, (float *)(void *)(node + n));
     for (size_t i = 0; i < n; i++) {
         int32_t k = surface->node[i];
         for (int axis = 0; axis < 3; axis++) position[3 * i + axis] = (float)rest[k][axis];
@@ -73,7 +94,9 @@ static lar_status make_surface(const lar_model *model, const float *processor, l
                                lar_error *error) {
     lar_surface_info surface;
     lar_model_surface(model, &surface);
-    size_t n = (size_t)surface.nodes, f = (size_t)surface.faces, length = 16 + 20 * n + 24 * f;
+    int32_t families = count_families(model, &surface);
+    size_t n = (size_t)surface.nodes, f = (size_t)surface.faces;
+    size_t length = 16 + 20 * n + (24 + 12 * (size_t)families) * f;
     unsigned char *memory = lar_calloc_aligned(LAR_HEADROOM + length, 1);
     int32_t *parent = lar_calloc(n, sizeof *parent);
     if (!memory || !parent) {
@@ -81,7 +104,7 @@ static lar_status make_surface(const lar_model *model, const float *processor, l
         free(parent);
         return lar_fail_memory(error, length, "the surface for viewers");
     }
-    write_surface(model, &surface, parent, processor, memory + LAR_HEADROOM);
+    write_surface(model, &surface, families, parent, processor, memory + LAR_HEADROOM);
     free(parent);
     *message = (lar_blob){memory, length};
     return LAR_OK;

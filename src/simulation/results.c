@@ -9,9 +9,9 @@
 #include <string.h>
 
 #include "base/file/folder.h"
-#include "step/measure.h"
 #include "simulation/results_probe.h"
 #include "simulation/results_surface.h"
+#include "simulation/simulation.h"
 #include "mechanics/stress.h"
 #include "model/format/mesh_io.h"
 
@@ -30,6 +30,8 @@ struct lar_results {
     lar_surface_results surface;
     double (*displacement)[3], (*velocity)[3]; /* NULL when not asked for */
     double *cell[CELL_FIELDS];                 /* the same */
+    int families;                              /* of fibres that are written */
+    double (*fibre[2])[3];
     lar_probe_file probes;
 };
 
@@ -42,6 +44,22 @@ static char *series_name(const lar_model *model) {
     const char *base = slash ? slash + 1 : source;
     const char *dot = strrchr(base, '.');
     return lar_strndup(base, dot && dot > base ? (size_t)(dot - base) : strlen(base));
+}
+
+/* Where fibres are asked for and there are some. */
+static bool prepare_fibres(lar_results *results, const lar_model *model) {
+    const lar_gid elements = model->mesh.element_count;
+    if (!(model->output.fields & LAR_OUTPUT_FIBRES)) return true;
+    for (lar_gid e = 0; e < elements && results->families < 2; e++) {
+        int32_t here = lar_model_element_fibres(model, e, NULL);
+        if (here > results->families) results->families = here;
+    }
+    bool complete = true;
+    for (int k = 0; k < results->families; k++) {
+        results->fibre[k] = lar_calloc((size_t)elements, sizeof *results->fibre[k]);
+        complete = complete && results->fibre[k];
+    }
+    return complete;
 }
 
 static lar_status prepare_arrays(lar_results *results, const lar_model *model, lar_error *error) {
@@ -61,6 +79,7 @@ static lar_status prepare_arrays(lar_results *results, const lar_model *model, l
             results->cell[i] = lar_calloc(elements, sizeof *results->cell[i]);
             complete = complete && results->cell[i];
         }
+    complete = complete && prepare_fibres(results, model);
     return complete ? LAR_OK
                     : lar_fail_memory(error, 48 * nodes + 24 * elements, "the fields of a frame");
 }
@@ -120,6 +139,7 @@ lar_status lar_results_close(lar_results *results, lar_error *error) {
     closed = lar_probe_file_close(&results->probes, &later);
     if (!status && closed) status = lar_fail(error, closed, "%s", later.message);
     for (int i = 0; i < CELL_FIELDS; i++) free(results->cell[i]);
+    for (int k = 0; k < 2; k++) free(results->fibre[k]);
     lar_series_clear(&results->series);
     free(results->displacement);
     free(results->velocity);
@@ -149,6 +169,20 @@ static void measure_cells(lar_results *results, const lar_simulation *simulation
     }
 }
 
+/* F a: along the fibres as they are now, as long as they are stretched. */
+static void turn_fibres(lar_results *results, const lar_simulation *simulation) {
+    const lar_domain *domain = &simulation->domain;
+    for (lar_gid e = 0; results->families > 0 && e < domain->model->mesh.element_count; e++) {
+        double F[3][3], fibre[2][3];
+        lar_model_element_fibres(domain->model, e, fibre);
+        lar_element_gradient(domain, &simulation->state, e, F);
+        for (int k = 0; k < results->families; k++)
+            for (int i = 0; i < 3; i++)
+                results->fibre[k][e][i] =
+                    F[i][0] * fibre[k][0] + F[i][1] * fibre[k][1] + F[i][2] * fibre[k][2];
+    }
+}
+
 static lar_status check_finite(const lar_simulation *simulation, lar_error *error) {
     const lar_domain *domain = &simulation->domain;
     for (lar_gid g = 0; g < domain->model->mesh.node_count; g++)
@@ -167,7 +201,8 @@ static lar_status check_finite(const lar_simulation *simulation, lar_error *erro
 
 static lar_status write_frame(lar_results *results, const lar_simulation *simulation,
                               const char *path, lar_error *error) {
-    lar_vtu_array point[2], cell[CELL_FIELDS];
+    static const char *const fibre_name[] = {"fibre_now", "fibre2_now"};
+    lar_vtu_array point[2], cell[CELL_FIELDS + 2];
     lar_vtu_frame frame = {.mesh = &simulation->domain.model->mesh,
                            .point_array = point,
                            .cell_array = cell,
@@ -186,6 +221,10 @@ static lar_status write_frame(lar_results *results, const lar_simulation *simula
         if (results->cell[i])
             cell[frame.cell_array_count++] =
                 (lar_vtu_array){cell_field[i].name, 1, results->cell[i]};
+    turn_fibres(results, simulation);
+    for (int k = 0; k < results->families; k++)
+        cell[frame.cell_array_count++] =
+            (lar_vtu_array){fibre_name[k], 3, &results->fibre[k][0][0]};
     return lar_vtu_write(path, &frame, error);
 }
 

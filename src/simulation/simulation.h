@@ -40,6 +40,10 @@ struct lar_simulation {
 /* The state as it is now: everything that looks at a simulation's state begins with this. */
 const lar_state *lar_simulation_state(const lar_simulation *simulation);
 
+/* The mean deformation gradient of an element (stresses.c). */
+void lar_element_gradient(const lar_domain *domain, const lar_state *state, lar_gid e,
+                          double F[3][3]);
+
 /* lar_simulation_advance_with without bringing the state together: what a tick of a session
  * costs. lar_simulation_gather does that, before somebody looks, and says when it fails: between
  * processes it can. */

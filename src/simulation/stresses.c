@@ -3,17 +3,23 @@
 #include "simulation/simulation.h"
 #include "step/measure.h"
 
-/* Green and Lagrange's (F^T F - 1) / 2 of the mean deformation gradient. */
-static void element_strain(const lar_domain *domain, const lar_state *state, lar_gid e,
-                           double strain[6]) {
-    static const int row[6] = {0, 1, 2, 0, 1, 2}, column[6] = {0, 1, 2, 1, 2, 0};
-    double corner[8][3], u[8][3], F[3][3];
+void lar_element_gradient(const lar_domain *domain, const lar_state *state, lar_gid e,
+                          double F[3][3]) {
+    double corner[8][3], u[8][3];
     const lar_material now = lar_domain_material_copy(domain, e, NULL);
     lar_hex8 hex8;
     lar_mesh_corners(&domain->model->mesh, e, corner);
     lar_domain_corners(domain, state->u, e, u);
     lar_hex8_prepare(corner, &now, &hex8);
     lar_hex8_gradient(&hex8, u, F);
+}
+
+/* Green and Lagrange's (F^T F - 1) / 2 of the mean deformation gradient. */
+static void element_strain(const lar_domain *domain, const lar_state *state, lar_gid e,
+                           double strain[6]) {
+    static const int row[6] = {0, 1, 2, 0, 1, 2}, column[6] = {0, 1, 2, 1, 2, 0};
+    double F[3][3];
+    lar_element_gradient(domain, state, e, F);
     for (int n = 0; n < 6; n++) {
         double sum = row[n] == column[n] ? -1 : 0;
         for (int i = 0; i < 3; i++) sum += F[i][row[n]] * F[i][column[n]];

@@ -209,6 +209,21 @@ grep -q '</svg>' "$SCRATCH/roof.svg" || fail "the picture is not whole"
 expect 0 "$LARIAT" bench kernel --sweep --elements 600 --repeat 1
 says '^c  *general  *500 '
 says '^memory: .* GB/s read by one core'
+# What laws cost, beside neo-Hookean elements in turn: all there are, and together.
+expect 0 "$LARIAT" bench kernel --law all --elements 64 --repeat 1 --json
+has_keys isa shape laws.0.law laws.15.law --numbers elements laws.0.ratio laws.0.ratio_spread.min \
+    laws.15.ns_per_element laws.15.ns_beside laws.15.bytes_per_element
+[ "$(value_of laws.12.law)$(value_of laws.15.law)" = '"hgo-pair""viscous-3"' ] || fail "not all laws"
+expect 0 "$LARIAT" bench kernel --law yeoh+hgo-pair+viscous-2 --elements 27 --shape box --repeat 1
+says '^yeoh+hgo-pair+viscous-2  *[0-9.]* '
+for law in marble ogden++yeoh ogden+; do
+    expect 2 "$LARIAT" bench kernel --law "$law"
+    complains 'there are all, neo-hookean, .*, viscous-3, or several'
+done
+expect 2 "$LARIAT" bench kernel --law ogden+yeoh
+complains "'yeoh' is one too many"
+expect 2 "$LARIAT" bench kernel --sweep --law ogden
+complains 'leave --law out'
 expect 2 "$LARIAT" bench kernel --sweep --shape box
 complains 'leave --shape out'
 expect 2 "$LARIAT" bench kernel --svg "$SCRATCH/none.svg"

@@ -29,6 +29,16 @@ has_keys title file lower upper sets.0.name sets.0.kind materials.0.law contacts
     mass_scaling.strained_share
 [ "$(value_of elements)" = 1840 ] || fail "the organ has $(value_of elements) elements"
 
+# Two families of fibres are told, and how many elements have directions.
+artery=$(dirname "$0")/../../examples/scenes/artery.yaml
+expect 0 "$LARIAT" info "$artery" --no-speed
+says 'fibres (hgo, two families 58 degrees apart, dispersion 0.1, modulus'
+says '^fibres  *128 elements have a direction'
+expect 0 "$LARIAT" info "$artery" --no-speed --json
+has_keys materials.0.fibres --numbers fibre_elements materials.0.fibre_families \
+    materials.0.fibre_angle materials.0.fibre_dispersion
+[ "$(value_of materials.0.fibre_families)" = 2 ] || fail "$(value_of materials.0.fibre_families) families"
+
 expect 0 "$LARIAT" run "$scene" --steps 200 --json --out "$SCRATCH/results"
 [ ! -s "$SCRATCH/err" ] || fail "messages during a good run"
 has_keys title element grid scheme comm isa state_hash realtime interrupted --numbers elements \

@@ -163,6 +163,78 @@ static void fields_are_those_asked_for(void **state) {
     lar_bytes_free(&bytes);
 }
 
+/* F a of a cube of 10 mm, by the differences along its edges. */
+static void turn(const double u[BRICK_NODES][3], const int32_t node[8], const double a[3],
+                 double out[3]) {
+    for (int i = 0; i < 3; i++) {
+        out[i] = a[i];
+        for (int c = 0; c < 8; c++)
+            for (int j = 0; j < 3; j++)
+                out[i] += (lar_node_sign[c][j] > 0 ? 25 : -25) * u[node[c]][i] * a[j];
+    }
+}
+
+/* Reads the mesh of a frame whose directions are, by their names, the present ones. */
+static void read_turned(lar_mesh *mesh, lar_error *error) {
+    static const char *const names[] = {"\"fibre\"",      "\"rest1\"",     "\"fibre2\"",
+                                        "\"rest_2\"",     "\"fibre_now\"", "\"fibre\"    ",
+                                        "\"fibre2_now\"", "\"fibre2\"    "};
+    lar_bytes bytes = read_all(FOLDER "/organ_000000.vtu");
+    char *text = (char *)bytes.data;
+    for (int i = 0; i < 8; i += 2) {
+        char *at = strstr(text, names[i]);
+        assert_non_null(at);
+        memcpy(at, names[i + 1], strlen(names[i]));
+    }
+    FILE *file = fopen(FOLDER "/expected.vtu", "w");
+    assert_non_null(file);
+    assert_int_equal(fwrite(text, 1, bytes.size, file), bytes.size);
+    assert_int_equal(fclose(file), 0);
+    lar_bytes_free(&bytes);
+    assert_int_equal(lar_mesh_read(FOLDER "/expected.vtu", 1, mesh, error), LAR_OK);
+}
+
+/* Along the fibres as they are now: in frames that ask for it, where there are some. */
+static void fibres_turn_with_the_tissue(void **state) {
+    fixture *f = *state;
+    lar_mesh *mesh = &f->model->mesh;
+    double u[BRICK_NODES][3], now[2][BRICK_ELEMENTS][3];
+    f->model->output.fields = LAR_OUTPUT_FIBRES;
+    open_results(f);
+    add(f); /* nothing has any */
+    assert_int_equal(lar_results_close(f->results, &f->error), LAR_OK);
+    lar_bytes bytes = read_all(FOLDER "/organ_000000.vtu");
+    assert_null(strstr((const char *)bytes.data, "fibre"));
+    lar_bytes_free(&bytes);
+    /* Directions belong to the model; the run does not have to know of them. */
+    f->model->material[0].fibre =
+        (lar_fibre){.law = LAR_FIBRE_HGO, .isochoric = true, .paired = true, .parameter = {1e3}};
+    mesh->fibre = lar_calloc(BRICK_ELEMENTS, sizeof *mesh->fibre);
+    mesh->second = lar_calloc(BRICK_ELEMENTS, sizeof *mesh->second);
+    for (int e = 0; e < BRICK_ELEMENTS; e++) {
+        mesh->fibre[e][e % 3] = 1;
+        mesh->second[e][0] = 0.6;
+        mesh->second[e][2] = -0.8;
+    }
+    lar_simulation_advance(f->simulation, 300, NULL);
+    open_results(f);
+    add(f);
+    lar_simulation_displacements(f->simulation, u);
+    for (int e = 0; e < BRICK_ELEMENTS; e++) {
+        turn((const double(*)[3])u, mesh->element[e], mesh->fibre[e], now[0][e]);
+        turn((const double(*)[3])u, mesh->element[e], mesh->second[e], now[1][e]);
+    }
+    assert_true(fabs(now[0][2][2] - 1) > 1e-3 && fabs(now[1][4][0] - 0.6) > 1e-5);
+    lar_mesh frame = {0};
+    read_turned(&frame, &f->error);
+    for (int e = 0; e < BRICK_ELEMENTS; e++)
+        for (int i = 0; i < 3; i++) {
+            assert_true(fabs(frame.fibre[e][i] - now[0][e][i]) < 1e-12);
+            assert_true(fabs(frame.second[e][i] - now[1][e][i]) < 1e-12);
+        }
+    lar_mesh_clear(&frame);
+}
+
 static void the_series_lists_what_is_there(void **state) {
     fixture *f = *state;
     open_results(f);
@@ -473,6 +545,7 @@ int main(void) {
 #define WITH_FIXTURE(test) cmocka_unit_test_setup_teardown(test, set_up, tear_down)
     const struct CMUnitTest tests[] = {WITH_FIXTURE(a_frame_holds_the_state),
                                        WITH_FIXTURE(fields_are_those_asked_for),
+                                       WITH_FIXTURE(fibres_turn_with_the_tissue),
                                        WITH_FIXTURE(the_series_lists_what_is_there),
                                        WITH_FIXTURE(adding_frames_changes_nothing),
                                        WITH_FIXTURE(probes_have_names_units_and_values),

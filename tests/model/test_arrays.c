@@ -5,6 +5,7 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -35,7 +36,7 @@ static const lar_array_set sets[3] = {
     {"wall", NULL, 4, left}, {"both", "elements", 2, whole}, {"tip", "faces", 1, end_face}};
 
 static lar_mesh_arrays two_cubes(void) {
-    return (lar_mesh_arrays){12, 2, 3, place, cube, tags, sets, NULL};
+    return (lar_mesh_arrays){12, 2, 3, place, cube, tags, sets, NULL, NULL};
 }
 
 static uint64_t hash_after(const lar_model *model, uint64_t steps) {
@@ -127,9 +128,9 @@ static void refused(const lar_mesh_arrays *arrays, const char *scene, const char
 }
 
 #define FIBRES(direction)                                                                          \
-    "lariat: 1\ngravity: [0, 0, -9.81]\nfix: [ { nodes: wall, axes: xyz } ]\nmaterials:\n"        \
-    "  - { cells: all, law: neo-hookean, density: 1050, shear_modulus: 3e3, bulk_modulus: 1e5,\n"   \
-    "      fibres: { law: exp-linear, part: isochoric, c3: 5e3, c4: 12, c5: 4e4, lam_max: 1.2,\n"   \
+    "lariat: 1\ngravity: [0, 0, -9.81]\nfix: [ { nodes: wall, axes: xyz } ]\nmaterials:\n"         \
+    "  - { cells: all, law: neo-hookean, density: 1050, shear_modulus: 3e3, bulk_modulus: 1e5,\n"  \
+    "      fibres: { law: exp-linear, part: isochoric, c3: 5e3, c4: 12, c5: 4e4, lam_max: 1.2,\n"  \
     "                direction: " direction " } }\n"
 
 static void directions_of_fibres_are_those_of_the_arrays(void **unused) {
@@ -147,6 +148,54 @@ static void directions_of_fibres_are_those_of_the_arrays(void **unused) {
     assert_true(hash_after(model, 300) == hash_after(rule, 300));
     lar_model_destroy(rule);
     lar_model_destroy(model);
+}
+
+#define PAIR(direction, second)                                                                    \
+    "lariat: 1\ngravity: [0, 0, -9.81]\nfix: [ { nodes: wall, axes: xyz } ]\nmaterials:\n"         \
+    "  - { cells: all, law: neo-hookean, density: 1050, shear_modulus: 3e3, bulk_modulus: 1e5,\n"  \
+    "      fibres: { law: hgo, part: isochoric, k1: 2e4, k2: 0.8, kappa: 0.1,\n"                   \
+    "                direction: " direction ", second: " second " } }\n"
+
+/* Both families: as by a rule, as from a file, and as the other way round. */
+static void so_are_those_of_a_second_family(void **unused) {
+    (void)unused;
+    static const double first[2][3] = {{0, 3, 4}, {0, 3, 4}}, second[2][3] = {{2, 0, 0}, {1, 0, 0}};
+    lar_mesh_arrays a = two_cubes();
+    lar_model *rule = NULL, *model = NULL, *file = NULL, *turned = NULL;
+    if (lar_model_from_arrays(&a, PAIR("{ axis: [0, 3, 4] }", "{ axis: [1, 0, 0] }"), &rule,
+                              &error))
+        fail_msg("%s", error.message);
+    a.fibre = first;
+    refused(&a, PAIR("mesh", "mesh"), "second: mesh", "lar_model_from_arrays");
+    a.fibre2 = second;
+    if (lar_model_from_arrays(&a, PAIR("mesh", "mesh"), &model, &error))
+        fail_msg("%s", error.message);
+    uint64_t hash = hash_after(model, 300);
+    assert_true(hash == hash_after(rule, 300));
+    a.fibre2 = first;
+    if (lar_model_from_arrays(&a, PAIR("mesh", "mesh"), &turned, &error))
+        fail_msg("%s", error.message);
+    assert_true(hash != hash_after(turned, 300));
+    /* The same through a file. */
+    lar_results *results = NULL;
+    lar_simulation *simulation = NULL;
+    const char *const folder = LAR_TEST_BUILD "/arrays_pair";
+    if (lar_simulation_create(model, NULL, &simulation, &error) ||
+        lar_results_open(folder, simulation, &results, &error) ||
+        lar_results_add(results, simulation, &error) || lar_results_close(results, &error))
+        fail_msg("%s", error.message);
+    FILE *scene = fopen(LAR_TEST_BUILD "/arrays_pair/pair.yaml", "w");
+    assert_non_null(scene);
+    fputs(PAIR("mesh", "mesh") "mesh: model_000000.vtu\n", scene);
+    fclose(scene);
+    if (lar_model_open(LAR_TEST_BUILD "/arrays_pair/pair.yaml", &file, &error))
+        fail_msg("%s", error.message);
+    assert_true(hash == hash_after(file, 300));
+    lar_simulation_destroy(simulation);
+    lar_model_destroy(rule);
+    lar_model_destroy(model);
+    lar_model_destroy(turned);
+    lar_model_destroy(file);
 }
 
 static void mistakes_are_named(void **unused) {
@@ -205,11 +254,13 @@ static void so_are_those_of_the_scene(void **unused) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(what_a_file_says_arrays_say_too),
-                                       cmocka_unit_test(sets_and_tags_are_found_by_the_scene),
-                                       cmocka_unit_test(without_a_scene_it_is_soft_and_free),
-                                       cmocka_unit_test(directions_of_fibres_are_those_of_the_arrays),
-                                       cmocka_unit_test(mistakes_are_named),
-                                       cmocka_unit_test(so_are_those_of_the_scene)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(what_a_file_says_arrays_say_too),
+        cmocka_unit_test(sets_and_tags_are_found_by_the_scene),
+        cmocka_unit_test(without_a_scene_it_is_soft_and_free),
+        cmocka_unit_test(directions_of_fibres_are_those_of_the_arrays),
+        cmocka_unit_test(so_are_those_of_a_second_family),
+        cmocka_unit_test(mistakes_are_named),
+        cmocka_unit_test(so_are_those_of_the_scene)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

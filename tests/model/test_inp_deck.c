@@ -207,7 +207,7 @@ static void test_contact(void **state) {
     lar_model_destroy(model);
     const int line = 33;
     refused(TWO "*FRICTION\n0.3,\n", LAR_ERROR_UNSUPPORTED, line,
-            "*FRICTION is not read from decks");
+            "*FRICTION belongs to no *SURFACE INTERACTION");
     refused(TWO "*CONTACT PAIR, INTERACTION=a\nPoints, Top\n", LAR_ERROR_UNSUPPORTED, line + 1,
             "the surface 'Points' is one of nodes");
     refused(TWO "*CONTACT PAIR, TIED\nUnder, Top\n", LAR_ERROR_UNSUPPORTED, line, "TIED");
@@ -218,6 +218,45 @@ static void test_contact(void **state) {
             "join their nodes");
     refused(MESH "*SURFACE, NAME=Mid\n1, S4\n" SOFT "*CONTACT PAIR\nMid, End\n", LAR_ERROR_MODEL,
             AFTER_SOFT + 3, "is inside the body");
+}
+
+#define PAIR       "*CONTACT PAIR, INTERACTION=Rough\nUnder, Top\n"
+#define RUBS(card) TWO "*SURFACE INTERACTION, NAME=rough\n1.,\n" card PAIR
+
+/* Coulomb's, with one coefficient, for the pairs that name the interaction. */
+static void test_friction(void **state) {
+    (void)state;
+    lar_model *model =
+        read_deck(TWO "*SURFACE INTERACTION, NAME=smooth\n1.,\n*FRICTION\n0.,\n" PAIR
+                      "*CONTACT PAIR, INTERACTION=Smooth\nUnder, Top\n*CONTACT PAIR\n"
+                      "Top\n*SURFACE INTERACTION, NAME=rough\n1.,\n*FRICTION, SLIP "
+                      "TOLERANCE=0.005\n 0.3,\n*SURFACE BEHAVIOR, "
+                      "PRESSURE-OVERCLOSURE=HARD\n");
+    assert_int_equal(model->contact_count, 3);
+    assert_true(model->contact[0].friction == 0.3 && model->contact[1].friction == 0 &&
+                model->contact[2].friction == 0);
+    assert_int_equal(notices_with(model, "SLIP TOLERANCE was left out"), 1);
+    lar_model_destroy(model);
+    model = read_deck(RUBS("*FRICTION\n0.25, 5000.\n")); /* as CalculiX has it */
+    assert_true(model->contact[0].friction == 0.25);
+    assert_int_equal(notices_with(model, "stick slope, was left out"), 1);
+    lar_model_destroy(model);
+    const int line = 35;
+    refused(RUBS("*FRICTION, ROUGH\n"), LAR_ERROR_UNSUPPORTED, line, "ROUGH of *FRICTION");
+    refused(RUBS("*FRICTION, ANISOTROPIC\n0.3, 0.2\n"), LAR_ERROR_UNSUPPORTED, line,
+            "ANISOTROPIC of *FRICTION");
+    refused(RUBS("*FRICTION, TAUMAX=1e3\n0.3\n"), LAR_ERROR_UNSUPPORTED, line, "TAUMAX");
+    refused(RUBS("*FRICTION\n0.3, , 1e3\n"), LAR_ERROR_UNSUPPORTED, line + 1,
+            "depends on pressure");
+    refused(RUBS("*FRICTION\n0.3\n0.2, 0.01\n"), LAR_ERROR_UNSUPPORTED, line + 2, "slip rate");
+    refused(RUBS("*FRICTION\n-0.3\n"), LAR_ERROR_MODEL, line + 1, "must be from 0 to 5");
+    refused(RUBS("*FRICTION\nmuch\n"), LAR_ERROR_FORMAT, line + 1, "a coefficient");
+    refused(RUBS("*FRICTION\n0.3\n*FRICTION\n0.2\n"), LAR_ERROR_FORMAT, line + 2,
+            "a second *FRICTION of *SURFACE INTERACTION 'rough', after line 35");
+    refused(RUBS("*SURFACE INTERACTION, NAME=ROUGH\n"), LAR_ERROR_FORMAT, line,
+            "a second *SURFACE INTERACTION is called 'ROUGH'");
+    refused(TWO "*SURFACE INTERACTION\n1.\n", LAR_ERROR_FORMAT, line - 2, "has no NAME");
+    refused(TWO PAIR, LAR_ERROR_FORMAT, line - 2, "no *SURFACE INTERACTION called 'Rough'");
 }
 
 /* ---- steps --------------------------------------------------------------------------------- */
@@ -312,6 +351,7 @@ int main(void) {
         cmocka_unit_test(test_bad_loads),
         cmocka_unit_test(test_initial_velocity),
         cmocka_unit_test(test_contact),
+        cmocka_unit_test(test_friction),
         cmocka_unit_test(test_steps),
         cmocka_unit_test(test_parts),
         cmocka_unit_test(test_is_deck),

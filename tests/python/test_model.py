@@ -108,6 +108,36 @@ class Arrays(unittest.TestCase):
             self.assertEqual(again.positions.tolist(), model.positions.tolist())
             self.assertEqual(again.sets, model.sets)
 
+    def test_two_families_of_fibres(self):
+        nodes, hexahedra, sets = block_arrays()
+        count = len(hexahedra)
+
+        def scene(**directions):
+            pair = {"law": "hgo", "part": "isochoric", "k1": 2e4, "k2": 0.8, "kappa": 0.1}
+            return {**SCENE, "materials": [{**SCENE["materials"][0],
+                                            "fibres": {**pair, **directions}}]}
+
+        def hash_of(model):
+            simulation = lariat.Simulation(model)
+            simulation.advance(100)
+            return simulation.hash()
+
+        given = scene(direction="mesh", second="mesh")
+        model = lariat.Model.from_arrays(nodes, hexahedra, given, sets=sets,
+                                         fibres=[[0, 3, 4]] * count, fibres2=[[2, 0, 0]] * count)
+        rule = lariat.Model.from_arrays(
+            nodes, hexahedra, scene(direction={"axis": [0, 3, 4]}, second={"axis": [1, 0, 0]}),
+            sets=sets)
+        self.assertEqual(hash_of(model), hash_of(rule))
+        self.assertEqual(hash_of(pickle.loads(pickle.dumps(model))), hash_of(rule))
+        self.assertEqual(model.materials[0]["fibre_families"], 2)
+        self.assertAlmostEqual(model.materials[0]["fibre_dispersion"], 0.1)
+        told = lariat.info(model, speed=False)  # through a file
+        self.assertEqual((told.fibre_elements, told.materials[0].fibre_families), (count, 2))
+        self.assertAlmostEqual(told.materials[0].fibre_angle, 90)
+        self.refuses(lariat.ModelError, "second: mesh, but no mesh has directions", scene=given,
+                     fibres=[[0, 3, 4]] * count)
+
     def refuses(self, kind, words, nodes=None, hexahedra=None, scene=None, **others):
         whole_nodes, whole_hexahedra, sets = block_arrays()
         others.setdefault("sets", sets)
@@ -135,6 +165,7 @@ class Arrays(unittest.TestCase):
         self.refuses(TypeError, "sets: expected a dict", sets=[1])
         self.refuses(TypeError, "names as keys", sets={3: [1]})
         self.refuses(ValueError, "fibres: expected one row", fibres=[[1, 0, 0]])
+        self.refuses(ValueError, "fibres2: expected one row", fibres2=[[1, 0, 0]])
         self.refuses(TypeError, "scene: expected a str", scene=5)
         self.refuses(TypeError, "scene: a value", scene={"lariat": {1, 2}})
         self.refuses(ValueError, "scene: there is a character 0", scene="lariat: 1\0")

@@ -4,12 +4,13 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 #include <stdlib.h>
 
 #include <cmocka.h>
 
 #include "model/model.h"
-#include "study/bench/kernel.h"
+#include "study/bench/laws.h"
 #include "study/bench/fma_peak.h"
 
 static void edges_are_exact_where_they_can_be(void **state) {
@@ -94,6 +95,43 @@ static void figures_fit_together(void **state) {
     assert_true(r.bytes_per_element > 144 && r.bytes_per_element < 2000);
 }
 
+/* As soft at rest as the block's own, and every term of a law at work. */
+static void materials_of_laws_compare(void **state) {
+    (void)state;
+    lar_material material;
+    lar_error error;
+    const char *words;
+    int count = 0;
+    for (; (words = lar_bench_law_words(count)); count++) {
+        assert_int_equal(lar_bench_law_material(words, &material, &error), LAR_OK);
+        assert_int_equal(lar_material_check(&material, words, &error), LAR_OK);
+        assert_true(fabs(lar_material_shear(&material) / 1.5e3 - 1) < 1e-12);
+        for (int k = 0; k < lar_law_table[material.law].count; k++)
+            assert_true(material.parameter[k] != 0);
+    }
+    assert_int_equal(count, LAR_LAW_COUNT + LAR_FIBRE_LAWS + LAR_VISCOUS_TERMS);
+    assert_int_equal(lar_bench_law_material("hgo-pair+viscous-2+yeoh", &material, &error), LAR_OK);
+    assert_true(material.law == LAR_LAW_yeoh && material.fibre.law == LAR_FIBRE_HGO &&
+                material.fibre.paired && material.viscosity.terms == 2);
+    assert_int_equal(lar_bench_law_material("hgo+", &material, &error), LAR_ERROR_ARGUMENT);
+    assert_int_equal(lar_bench_law_material("hgo+exp-pow", &material, &error), LAR_ERROR_ARGUMENT);
+    assert_non_null(strstr(error.message, "'exp-pow' is one too many"));
+}
+
+static void times_of_laws_fit_together(void **state) {
+    (void)state;
+    lar_bench_kernel_options options = {.elements = 216, .general = true, .repeat = 3};
+    lar_bench_law_row row;
+    lar_error error;
+    assert_int_equal(lar_bench_law(&options, "ogden+hgo-pair+viscous-3", &row, &error), LAR_OK);
+    assert_int_equal(row.elements, 216);
+    assert_true(0 < row.ratio.min && row.ratio.min <= row.ratio.median &&
+                row.ratio.median <= row.ratio.max && row.beside.min > 0);
+    assert_true(row.ratio.max > 1.2); /* it takes some four times as long */
+    options.repeat = 0;
+    assert_int_equal(lar_bench_law(&options, "ogden", &row, &error), LAR_ERROR_ARGUMENT);
+}
+
 static void nonsense_is_refused(void **state) {
     (void)state;
     lar_bench_kernel_options options = {.elements = 0, .repeat = 3};
@@ -126,6 +164,8 @@ int main(void) {
                                        cmocka_unit_test(edges_are_near_where_not),
                                        cmocka_unit_test(general_blocks_have_no_parallelepiped),
                                        cmocka_unit_test(figures_fit_together),
+                                       cmocka_unit_test(materials_of_laws_compare),
+                                       cmocka_unit_test(times_of_laws_fit_together),
                                        cmocka_unit_test(nonsense_is_refused),
                                        cmocka_unit_test(the_peak_computes_what_it_counts)};
     return cmocka_run_group_tests(tests, NULL, NULL);

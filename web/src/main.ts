@@ -72,6 +72,8 @@ function start(): void {
             view.setSurface(surface, materials.map((material) => material.name), from);
             colours.setHello(session.hello!);
             element('fine-row').hidden = true;
+            element('fibres-row').hidden = surface.families === 0;
+            element('fibres-second').hidden = surface.families < 2;
             hints.start(session.watches);
         },
         embedded(embedded) {
@@ -176,6 +178,8 @@ function start(): void {
 
     const edges = element<HTMLInputElement>('edges');
     edges.addEventListener('change', () => view.showEdges(edges.checked));
+    const fibres = element<HTMLInputElement>('fibres');
+    fibres.addEventListener('change', () => view.showFibres(fibres.checked));
     const shadows = element<HTMLInputElement>('shadows');
     shadows.checked = view.shadows;
     shadows.addEventListener('change', () => view.showShadows(shadows.checked));

@@ -33,6 +33,7 @@ export function publish(session: Session, view: View, hand: Hand, force: ForceCa
         get body() { return session.status?.body ?? null; },
         get distance() { return view.endoscope.distance; },
         get surface() { return view.finer ? 'fine' : 'mesh'; },
+        get fibres() { return view.fibreLines; },
         get others() { return view.others.shown; },
         get nodes() { return view.surface?.nodes ?? 0; },
     };

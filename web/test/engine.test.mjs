@@ -531,6 +531,20 @@ test('an embedded surface follows its mesh: drawn, pulled where it stands off, a
     await riding.end();
 });
 
+test('two families of fibres in an artery: lines on its faces, which turn with them', async () => {
+    const artery = await view(join(process.cwd(), '../examples/scenes/artery.yaml'), '--port', '0');
+    const a = await openPage(browser, artery.url);
+    await a.page.getByLabel('fibres').evaluate((box) => box.click());
+    await a.until(() => window.lariat.fibres > 0);
+    assert.equal((await a.get('fibres')) % 2, 0);
+    await a.until(() => window.lariat.displacement > 0.0002, undefined, 20000);
+    await a.page.waitForTimeout(300);
+    await a.shot('11-artery-fibres');
+    assert.equal(await a.get('torn'), 0);
+    await a.close();
+    await artery.end();
+});
+
 test('a run that breaks is explained, and reset takes it up again', async () => {
     const torn = await view(tornDemo(model), '--port', '0');
     const t = await openPage(browser, torn.url, { drawn: false });

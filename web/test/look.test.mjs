@@ -108,6 +108,52 @@ for (const riding of [false, true])
         await v.close();
     });
 
+test('lines along fibres are drawn where there are some, and not on hidden organs', async (t) => {
+    const own = await mock({ fibres: 2, organs: 'halves' });
+    t.after(() => own.close());
+    const none = await openPage(browser, server.url);
+    assert.equal(await none.page.locator('#fibres-row').isVisible(), false);
+    await none.page.locator('#picture').focus();
+    await none.page.keyboard.press('/');
+    await none.page.getByText('Nothing in this scene has fibres.').waitFor({ timeout: 3000 });
+    assert.equal(await none.get('fibres'), 0);
+    await none.close();
+    const v = await openPage(browser, own.url);
+    const faces = 6 * 14 * 14;
+    assert.equal(await v.page.locator('#fibres').isChecked(), false, 'off at first');
+    assert.equal(await v.get('fibres'), 0);
+    await v.page.waitForTimeout(300);
+    const points = Array.from({ length: 400 }, (_, i) => [450 + 5 * (i % 20), 200 + 5 * Math.floor(i / 20)]);
+    const plain = await colours(v.page, points);
+    await v.page.locator('#picture').focus();
+    await v.page.keyboard.press('/');
+    assert.ok(await v.page.getByLabel('fibres').isChecked());
+    await v.until((n) => window.lariat.fibres === n, 2 * faces);
+    await v.page.waitForTimeout(400);
+    await v.shot('fibres');
+    const lined = await colours(v.page, points);
+    const changed = lined.filter((c, i) => difference(c, plain[i]) > 40).length;
+    assert.ok(changed > 20 && changed < 300, `${changed} of 400 points`);
+    const blue = lined.filter(([r, , b]) => b > r + 30).length;
+    const pale = lined.filter(([r, g, b], i) => r + g + b > plain[i][0] + plain[i][1] + plain[i][2] + 100).length;
+    assert.ok(blue > 3 && pale > 3, `two colours: ${blue} and ${pale}`);
+    // They go with the tissue that is pulled.
+    await drag(v.page, 500, 200, 60, -40);
+    await v.until(() => window.lariat.displacement > 0.004);
+    await v.page.waitForTimeout(300);
+    await v.shot('fibres-pulled');
+    await v.page.mouse.up();
+    await v.page.locator('#inside').evaluate((card) => (card.open = true));
+    const entry = v.page.locator('#organs button').nth(1);
+    await entry.click();
+    await entry.click();
+    await v.until((n) => window.lariat.fibres > 0 && window.lariat.fibres < n, 2 * faces);
+    await v.page.locator('#picture').focus();
+    await v.page.keyboard.press('/');
+    await v.until(() => window.lariat.fibres === 0);
+    await v.close();
+});
+
 test('values of a node and its element are read where one presses, also by keyboard', async (t) => {
     const own = await mock({ riding: true });
     t.after(() => own.close());

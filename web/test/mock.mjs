@@ -77,7 +77,7 @@ function fineSurface(mesh, pieces = 4, off = 0.12) {
     return { inner, weights, carriers, triangles, material, vertices: known.size };
 }
 
-export function mock({ port = 0, surface = null, riding = false, token = null, watchToken = null, organs = null, active = [], scan = false, dist = join(here, '../dist') } = {}) {
+export function mock({ port = 0, surface = null, riding = false, token = null, watchToken = null, organs = null, active = [], scan = false, fibres = 0, dist = join(here, '../dist') } = {}) {
     const mesh = surface ? JSON.parse(readFileSync(surface, 'utf8')) : pear();
     // Two organs, one above the other.
     if (organs === 'halves')
@@ -211,13 +211,20 @@ export function mock({ port = 0, surface = null, riding = false, token = null, w
     });
 
     function surfaceMessage() {
-        const out = new ArrayBuffer(16 + 20 * n + 24 * faces);
-        new Uint32Array(out, 0, 4).set([1, n, faces, 0]);
+        const out = new ArrayBuffer(16 + 20 * n + (24 + 12 * fibres) * faces);
+        new Uint32Array(out, 0, 4).set([1, n, faces, fibres]);
         new Float32Array(out, 16, 3 * n).set(rest);
         new Uint32Array(out, 16 + 12 * n, 4 * faces).set(mesh.f);
         new Uint32Array(out, 16 + 12 * n + 16 * faces, faces).set(mesh.m);
         const processor = new Uint32Array(out, 16 + 12 * n + 24 * faces, n);
         for (let i = 0; i < n; i++) processor[i] = processorOf(i);
+        // One family goes up, another one around the body's axis.
+        const along = new Float32Array(out, 16 + 20 * n + 24 * faces, 3 * fibres * faces);
+        for (let f = 0; f < faces && fibres; f++) {
+            const [x, y] = [0, 1].map((k) => mesh.x[3 * mesh.f[4 * f] + k]);
+            const far = Math.hypot(x, y) || 1;
+            along.set([0, 0, 1, ...(x || y ? [-y / far, x / far, 0] : [1, 0, 0])].slice(0, 3 * fibres), 3 * fibres * f);
+        }
         return out;
     }
     const processorOf = (i) => (rest[3 * i] > 0 ? 1 : 0) + (rest[3 * i + 2] > (low + high) / 2 ? 2 : 0);

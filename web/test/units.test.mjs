@@ -13,7 +13,7 @@ const parts = {};
 
 before(async () => {
     const files = [
-        'picture/surface', 'picture/embedded', 'picture/palette', 'picture/tissueNoise', 'picture/camera', 'hands/pick',
+        'picture/surface', 'picture/fibreLines', 'picture/embedded', 'picture/palette', 'picture/tissueNoise', 'picture/camera', 'hands/pick',
         'inspect/measurecard', 'inspect/capture', 'inspect/plots', 'inspect/scan', 'cards/graph', 'cards/panel', 'cards/toolcard', 'cards/range', 'cards/bodycard', 'cards/addtool', 'link/protocol', 'dom',
     ];
     await build({
@@ -78,6 +78,79 @@ test('large surfaces are rounded less, or not at all', () => {
     const { x, quads } = cube(4, true);
     assert.equal(new parts.surface.Surface(x, quads, 1000).quads.length, quads.length * 4);
     assert.equal(new parts.surface.Surface(x, quads, 100).quads.length, quads.length);
+});
+
+/* From one end of line i to the other, and across it. */
+function lineOf({ positions, sides }, i) {
+    const corner = (k) => [...positions.subarray(12 * i + 3 * k, 12 * i + 3 * k + 3)].map((v, c) => v + sides[12 * i + 3 * k + c]);
+    const between = (a, b) => a.map((v, k) => b[k] - v);
+    return { along: between(corner(0), corner(2)), aside: between(corner(0), corner(1)) };
+}
+const length = (v) => Math.hypot(...v);
+
+test('lines along fibres lie in the faces, and move, turn and stretch with them', () => {
+    const { x, quads } = cube(4, false);
+    const faces = quads.length / 4;
+    const a = [0.6, 0.8, 0];
+    const b = [0, 0, 1];
+    const fibres = new Float32Array(6 * faces);
+    for (let f = 1; f < faces; f++) fibres.set([...a, ...b], 6 * f); // the first face has none
+    const lines = new parts.fibreLines.FibreLines(x, quads, fibres, 2);
+    assert.deepEqual([...lines.faces], Array.from({ length: faces - 1 }, (_, i) => i + 1));
+    const F = [[0.9, 0.5, 0.1], [-0.4, 1.1, 0.2], [0.3, -0.1, 1.3]];
+    const moved = (p) => F.map((row) => row[0] * p[0] + row[1] * p[1] + row[2] * p[2]);
+    const turned = new Float32Array(x.length);
+    for (let i = 0; i < x.length; i += 3) turned.set(moved(x.subarray(i, i + 3)), i);
+    const rest = Array.from({ length: 2 * (faces - 1) }, (_, i) => lineOf(lines, i));
+    lines.place(turned);
+    rest.forEach(({ along }, i) => {
+        const face = lines.faceOf(i);
+        const corners = [0, 1, 2, 3].map((k) => [...x.subarray(3 * quads[4 * face + k], 3 * quads[4 * face + k] + 3)]);
+        const axis = [0, 1, 2].find((k) => corners.every((c) => c[k] === corners[0][k])); // the face's normal
+        const within = (i % 2 ? b : a).map((v, k) => (k === axis ? 0 : v));
+        assert.ok(Math.abs(along[axis]) < 1e-6, 'within the face');
+        if (length(within) > 0) {
+            // A line is 0.8 of the face's width long where the fibre is in it, and less where it leaves it.
+            assert.ok(length(along) > 0.3 * length(within) && length(along) < 0.51, `${along}`);
+            for (let k = 0; k < 3; k++)
+                assert.ok(Math.abs(along[k] / length(along) - within[k] / length(within)) < 1e-5, `${along} is along ${within}`);
+        } else assert.ok(length(along) > 0.02 && length(along) < 0.1, 'a dot');
+        const now = lineOf(lines, i);
+        moved(along).forEach((v, k) => assert.ok(Math.abs(v - now.along[k]) < 1e-5, `${now.along} went to F ${along}`));
+        const cosine = now.along.reduce((sum, v, k) => sum + v * now.aside[k], 0) / length(now.along) / length(now.aside);
+        assert.ok(Math.abs(cosine) < 1e-3 && length(now.aside) > 0, 'as wide as at rest, whatever happens');
+    });
+});
+
+test('lines of two families that lie alike point alike, whatever the sense of their directions', () => {
+    const x = Float32Array.from([0, 0, 0, 1, 0, 0, 1.3, 1, 0, 0.3, 1, 0]);
+    for (const sense of [1, -1]) {
+        const fibres = Float32Array.from([0.8, 0, 0.6, -0.8 * sense, 0, 0.6]);
+        const lines = new parts.fibreLines.FibreLines(x, Uint32Array.from([0, 1, 2, 3]), fibres, 2);
+        const [a, b] = [0, 1].map((i) => lineOf(lines, i));
+        for (let k = 0; k < 3; k++) assert.ok(Math.abs(a.along[k] - b.along[k]) < 1e-6, `${a.along} and ${b.along}`);
+    }
+});
+
+test('where there are many faces, some of them have lines along fibres, evenly strewn', () => {
+    const { x, quads } = cube(30, true);
+    const faces = quads.length / 4;
+    const fibres = Float32Array.from({ length: 3 * faces }, (_, i) => (i % 3 === 2 ? 1 : 0));
+    const lines = new parts.fibreLines.FibreLines(x, quads, fibres, 1, 600);
+    assert.ok(lines.faces.length <= 600 && lines.faces.length > 300, `${lines.faces.length} of ${faces}`);
+    const middle = (i) => [0, 1, 2].map((k) => (lines.positions[12 * i + k] + lines.positions[12 * i + 9 + k]) / 2);
+    const places = Array.from(lines.faces, (_, i) => middle(i));
+    const octants = new Map();
+    for (const p of places) {
+        const octant = p.map((v) => (v > 0 ? '+' : '-')).join('');
+        octants.set(octant, (octants.get(octant) ?? 0) + 1);
+    }
+    for (const count of octants.values()) assert.ok(Math.abs(count / lines.faces.length - 1 / 8) < 0.03, `${count}`);
+    // Nowhere on the ball, whose area is 12.6, is the next line far away.
+    let farthest = 0;
+    for (let i = 0; i < x.length; i += 30)
+        farthest = Math.max(farthest, Math.min(...places.map((p) => Math.hypot(p[0] - x[i], p[1] - x[i + 1], p[2] - x[i + 2]))));
+    assert.ok(farthest < 0.3, `${farthest}`);
 });
 
 test('edges of the mesh are drawn all along', () => {

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "cli/bench/frame.h"
+#include "cli/bench/laws.h"
 #include "cli/bench/sweep.h"
 #include "cli/commands.h"
 #include "study/bench/kernel.h"
@@ -54,7 +55,7 @@ static int kernel_main(int argc, char **argv) {
     int64_t elements = 0, repeat = 9;
     int shape = 0, isa = 0, precision = 0, blocks = 0;
     bool sweep = false;
-    const char *svg = NULL;
+    const char *svg = NULL, *law = NULL;
     bench_frame frame = bench_frame_of(&cli_bench_kernel, "kernel");
     const cli_option options[] = {
         CLI_COUNT("--elements", "N",
@@ -65,6 +66,10 @@ static int kernel_main(int argc, char **argv) {
                  "memory and core allow",
                  &sweep),
         CLI_TEXT("--svg", "FILE", "of --sweep: the picture", &svg),
+        CLI_TEXT("--law", "NAME",
+                 "what a law, fibres or viscosity cost beside neo-Hookean elements,\nin turn: all, "
+                 "or for example ogden, hgo-pair, viscous-2, yeoh+hgo",
+                 &law),
         CLI_CHOICE("--shape", "NAME", "general: each of its own shape (default); or box", &shape,
                    shapes),
         CLI_CHOICE("--precision", "NAME", "double, the only one there is", &precision, precisions),
@@ -80,11 +85,14 @@ static int kernel_main(int argc, char **argv) {
     int status = cli_parse(&cli_bench_kernel, options, argc, argv, NULL, 0);
     if (status >= 0) return status;
     if (sweep) {
-        if (shape > 0 || isa > 0 || blocks > 0)
+        if (shape > 0 || isa > 0 || blocks > 0 || law)
             return cli_complain(&cli_bench_kernel, CLI_USAGE,
-                                "--sweep measures all shapes, instruction sets and blocks; leave "
-                                "--%s out",
-                                shape > 0 ? "shape" : isa > 0 ? "isa" : "blocks");
+                                "--sweep measures all shapes, instruction sets and blocks of one "
+                                "law; leave --%s out",
+                                shape > 0 ? "shape"
+                                : isa > 0 ? "isa"
+                                : law     ? "law"
+                                          : "blocks");
         return bench_sweep(&frame, elements > 0 ? (int32_t)elements : 1000000, (int)repeat, svg);
     }
     if (svg) return cli_complain(&cli_bench_kernel, CLI_USAGE, "--svg is the picture of --sweep");
@@ -94,13 +102,14 @@ static int kernel_main(int argc, char **argv) {
     lar_bench_set_text(&frame.report, "precision", precisions[precision]);
     lar_bench_set_text(&frame.report, "isa", cli_isa_names[isa]);
     if (blocks > 0) lar_bench_set_text(&frame.report, "blocks", forms[blocks]);
-    status = bench_begin(&frame);
-    if (status) return status;
     lar_bench_kernel_options wanted = {.elements = (int32_t)elements,
                                        .general = shape == 0,
                                        .isa = (lar_isa)isa,
                                        .blocks = blocks > 0 ? forms[blocks] : NULL,
                                        .repeat = (int)repeat};
+    if (law) return bench_laws(&frame, &wanted, law);
+    status = bench_begin(&frame);
+    if (status) return status;
     lar_bench_kernel_result result;
     lar_error error;
     if (lar_bench_kernel(&wanted, &result, &error))
@@ -127,6 +136,7 @@ const cli_command cli_bench_kernel = {
     .examples = "  lariat bench kernel\n"
                 "  lariat bench kernel --elements 100000 --shape box --json\n"
                 "  lariat bench kernel --isa avx2 --repeat 31\n"
+                "  lariat bench kernel --law all\n"
                 "  lariat bench kernel --sweep --svg roofline.svg\n",
     .main = kernel_main};
 

@@ -1,6 +1,7 @@
 #include "cli/report/info.h"
 
 #include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
 
 #include "cli/report/mass_scaling.h"
@@ -19,6 +20,29 @@ static void towards(const lar_tool_pose *pose, double out[3]) {
     out[0] = 0 - 2 * (q[1] * q[3] + q[0] * q[2]);
     out[1] = 0 - 2 * (q[2] * q[3] - q[0] * q[1]);
     out[2] = -(1 - 2 * (q[1] * q[1] + q[2] * q[2]));
+}
+
+/* Mean angle between both families of a material's fibres [degrees], as between lines: 0 to 90. */
+static double mean_angle(const lar_model *model, int32_t material) {
+    double sum = 0, count = 0;
+    for (int32_t e = 0; e < lar_model_element_count(model); e++) {
+        double a[2][3];
+        if (lar_model_element_material(model, e) != material ||
+            lar_model_element_fibres(model, e, a) != 2)
+            continue;
+        double cosine = fabs(a[0][0] * a[1][0] + a[0][1] * a[1][1] + a[0][2] * a[1][2]);
+        sum += degrees(acos(fmin(cosine, 1)));
+        count += 1;
+    }
+    return count > 0 ? sum / count : 0;
+}
+
+/* Elements whose fibres have a direction. */
+static int32_t directed_elements(const lar_model *model) {
+    int32_t count = 0;
+    for (int32_t e = 0; e < lar_model_element_count(model); e++)
+        count += lar_model_element_fibres(model, e, NULL) > 0;
+    return count;
 }
 
 /* ---- for machines ----------------------------------------------------------------------- */
@@ -88,6 +112,7 @@ void info_report_json(const info_report *report) {
     lar_json_number(&json, "duration", lar_model_duration(model));
     lar_json_boolean(&json, "until_rest", lar_model_until_rest(model));
     lar_json_number(&json, "output_interval", lar_model_output_interval(model));
+    lar_json_integer(&json, "fibre_elements", directed_elements(model));
     lar_json_open(&json, "materials", '[');
     lar_material_info material;
     for (int32_t i = 0; !lar_model_material(model, i, &material, NULL); i++) {
@@ -102,6 +127,9 @@ void info_report_json(const info_report *report) {
         lar_json_number(&json, "instant_shear_modulus", material.instant_shear_modulus);
         lar_json_text(&json, "fibres", material.fibres);
         lar_json_number(&json, "fibre_modulus", material.fibre_modulus);
+        lar_json_integer(&json, "fibre_families", material.fibre_families);
+        lar_json_number(&json, "fibre_angle", mean_angle(model, i));
+        lar_json_number(&json, "fibre_dispersion", material.fibre_dispersion);
         lar_json_number(&json, "active_along", material.active_along);
         lar_json_number(&json, "active_across", material.active_across);
         lar_json_close(&json);
@@ -127,6 +155,14 @@ void info_report_json(const info_report *report) {
 
 /* ---- for people ------------------------------------------------------------------------- */
 
+static void print_fibres(const lar_model *model, int32_t material, const lar_material_info *m) {
+    printf(", fibres (%s", m->fibres);
+    if (m->fibre_families == 2)
+        printf(", two families %.4g degrees apart", mean_angle(model, material));
+    if (m->fibre_dispersion > 0) printf(", dispersion %.4g", m->fibre_dispersion);
+    printf(", modulus where they begin to pull %.4g Pa)", m->fibre_modulus);
+}
+
 static void print_materials(const lar_model *model) {
     lar_material_info m;
     for (int32_t i = 0; !lar_model_material(model, i, &m, NULL); i++) {
@@ -136,14 +172,14 @@ static void print_materials(const lar_model *model) {
         if (m.viscous_terms > 0)
             printf(", viscous (%d term%s, shear modulus at once %.4g Pa)", (int)m.viscous_terms,
                    m.viscous_terms > 1 ? "s" : "", m.instant_shear_modulus);
-        if (*m.fibres)
-            printf(", fibres (%s, modulus where they begin to pull %.4g Pa)", m.fibres,
-                   m.fibre_modulus);
+        if (*m.fibres) print_fibres(model, i, &m);
         if (m.active_along > 0 || m.active_across > 0)
             printf(", active (up to %.4g Pa along fibres and %.4g Pa across)", m.active_along,
                    m.active_across);
         putchar('\n');
     }
+    int32_t directed = directed_elements(model);
+    if (directed > 0) printf("%-17s%d elements have a direction\n", "fibres", (int)directed);
 }
 
 static void print_sets(const lar_model *model) {

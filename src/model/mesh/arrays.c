@@ -113,6 +113,13 @@ static lar_status add_sets(const lar_mesh_arrays *a, lar_mesh *mesh, lar_error *
 
 /* ---- the mesh ------------------------------------------------------------------------------ */
 
+static bool copy_family(const double (*given)[3], int32_t elements, double (**fibre)[3]) {
+    if (!given) return true;
+    *fibre = lar_calloc((size_t)elements, sizeof **fibre);
+    if (*fibre) memcpy(*fibre, given, (size_t)elements * sizeof **fibre);
+    return *fibre != NULL;
+}
+
 static lar_status copy(const lar_mesh_arrays *a, double scale, lar_mesh *mesh, lar_error *error) {
     lar_status status =
         lar_mesh_allocate(mesh, "mesh", (size_t)a->nodes, (size_t)a->elements, error);
@@ -128,12 +135,10 @@ static lar_status copy(const lar_mesh_arrays *a, double scale, lar_mesh *mesh, l
         mesh->element_id[e] = e;
         mesh->element_tag[e] = a->tag ? a->tag[e] : 0;
     }
-    if (a->fibre) {
-        size_t bytes = (size_t)a->elements * sizeof *mesh->fibre;
-        mesh->fibre = lar_calloc((size_t)a->elements, sizeof *mesh->fibre);
-        if (!mesh->fibre) return lar_fail_memory(error, bytes, "the directions of fibres");
-        memcpy(mesh->fibre, a->fibre, bytes);
-    }
+    if (!copy_family(a->fibre, a->elements, &mesh->fibre) ||
+        !copy_family(a->fibre2, a->elements, &mesh->second))
+        return lar_fail_memory(error, (size_t)a->elements * sizeof *mesh->fibre,
+                               "the directions of fibres");
     return add_sets(a, mesh, error);
 }
 

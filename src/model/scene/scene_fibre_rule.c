@@ -452,9 +452,9 @@ static lar_status lay_family(lar_scene *scene, const lar_yaml *direction, int ma
         if (*fibre) return LAR_OK;
         return lar_scene_fail(scene, direction, LAR_ERROR_MODEL,
                               "%.9s: mesh, but no mesh has directions; they stand in a .vtu file "
-                              "as a cell array \"%s\" of three components%s",
-                              key, second ? "fibre2" : "fibre",
-                              second ? "" : ", or in the arrays of lar_model_from_arrays");
+                              "as a cell array \"%s\" of three components, or in the arrays of "
+                              "lar_model_from_arrays",
+                              key, second ? "fibre2" : "fibre");
     }
     lar_status status = lar_scene_keys(scene, direction, key, keys);
     if (!status && direction->count != 1)

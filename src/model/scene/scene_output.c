@@ -6,12 +6,12 @@
 /* ---- fields ------------------------------------------------------------------------------- */
 
 static lar_status read_fields(lar_scene *scene, const lar_yaml *node) {
-    enum { FIELDS = 5 };
-    static const char *const names[FIELDS] = {"displacement", "velocity", "von_mises", "pressure",
-                                              "energy"};
+    enum { FIELDS = 6 };
+    static const char *const names[FIELDS] = {"displacement", "velocity", "von_mises",
+                                              "pressure",     "energy",   "fibres"};
     static const unsigned bits[FIELDS] = {LAR_FIELD_DISPLACEMENT, LAR_FIELD_VELOCITY,
-                                          LAR_FIELD_VON_MISES, LAR_FIELD_PRESSURE,
-                                          LAR_FIELD_ENERGY};
+                                          LAR_FIELD_VON_MISES,    LAR_FIELD_PRESSURE,
+                                          LAR_FIELD_ENERGY,       LAR_OUTPUT_FIBRES};
     lar_status status = lar_scene_list(scene, node, "fields");
     if (status) return status;
     unsigned fields = 0;

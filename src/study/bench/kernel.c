@@ -79,24 +79,42 @@ static lar_status fill_mesh(lar_mesh *mesh, const int32_t edge[3], bool general,
     return lar_mesh_check(mesh, error);
 }
 
-lar_status lar_bench_block(const int32_t edge[3], bool general, lar_model **model,
-                           lar_error *error) {
+lar_material lar_bench_material(void) {
+    lar_material material = {.law = LAR_LAW_neo_hookean, .density = 1050};
+    lar_material_from_shear_bulk(&material, 1.5e3, 3e5);
+    return material;
+}
+
+/* Two families, 74 degrees apart; models take what their materials have. */
+static lar_status lay_fibres(lar_mesh *mesh, lar_error *error) {
+    size_t elements = (size_t)mesh->element_count;
+    mesh->fibre = lar_calloc(elements, sizeof *mesh->fibre);
+    mesh->second = lar_calloc(elements, sizeof *mesh->second);
+    if (!mesh->fibre || !mesh->second) return lar_fail_memory(error, 48 * elements, "the block");
+    for (size_t e = 0; e < elements; e++) {
+        mesh->fibre[e][0] = mesh->second[e][0] = 0.8;
+        mesh->fibre[e][2] = 0.6;
+        mesh->second[e][2] = -0.6;
+    }
+    return LAR_OK;
+}
+
+lar_status lar_bench_block_of(const int32_t edge[3], bool general, const lar_material *material,
+                              lar_model **model, lar_error *error) {
     lar_model *made = lar_model_create();
     if (!made) return lar_fail_memory(error, sizeof *made, "the block");
     lar_status status = fill_mesh(&made->mesh, edge, general, error);
+    if (!status && lar_fibre_here(&material->fibre)) status = lay_fibres(&made->mesh, error);
     if (!status) {
-        lar_material *material = LAR_MODEL_APPEND(made, material);
+        lar_material *own = LAR_MODEL_APPEND(made, material);
         made->element_material = lar_calloc((size_t)made->mesh.element_count, sizeof(int32_t));
         made->title = lar_strdup("Block");
         made->source = lar_strdup("block");
         made->damping = 1;
-        if (!material || !made->element_material || !made->title || !made->source)
+        if (!own || !made->element_material || !made->title || !made->source)
             status = lar_fail_memory(error, 4 * (size_t)made->mesh.element_count, "the block");
-        else {
-            material->law = LAR_LAW_neo_hookean;
-            material->density = 1050;
-            lar_material_from_shear_bulk(material, 1.5e3, 3e5);
-        }
+        else
+            *own = *material;
     }
     if (!status) status = lar_model_check(made, error);
     if (status)
@@ -104,6 +122,12 @@ lar_status lar_bench_block(const int32_t edge[3], bool general, lar_model **mode
     else
         *model = made;
     return status;
+}
+
+lar_status lar_bench_block(const int32_t edge[3], bool general, lar_model **model,
+                           lar_error *error) {
+    const lar_material material = lar_bench_material();
+    return lar_bench_block_of(edge, general, &material, model, error);
 }
 
 /* ---- measuring -------------------------------------------------------------------------- */
@@ -124,9 +148,8 @@ static void set_in_motion(lar_simulation *simulation) {
     }
 }
 
-/* Seconds that `steps` steps take; they mean nothing when *status is not LAR_OK. */
-static double time_steps(lar_simulation *simulation, uint64_t steps, lar_status *status,
-                         lar_error *error) {
+double lar_bench_time(lar_simulation *simulation, uint64_t steps, lar_status *status,
+                      lar_error *error) {
     double begin = lar_clock_seconds();
     *status = lar_simulation_advance(simulation, steps, error);
     return lar_clock_seconds() - begin;
@@ -173,7 +196,7 @@ static double sample_steps(lar_simulation *simulation, uint64_t steps, lar_statu
     uint64_t each = steps / (uint64_t)count;
     *status = LAR_OK;
     for (int i = 0; i < count && !*status; i++)
-        section[i] = 1e9 * time_steps(simulation, each, status, error) / (double)each;
+        section[i] = 1e9 * lar_bench_time(simulation, each, status, error) / (double)each;
     return lar_spread_of(section, count).median;
 }
 
@@ -196,7 +219,7 @@ static lar_status calibrate(lar_simulation *simulation, const lar_fma_peak *peak
     for (*steps = 1; !status && took <= 0.25 * wanted; *steps *= 2) {
         took = INFINITY;
         for (int i = 0; i < TRIES && !status && took > 0.25 * wanted; i++)
-            took = fmin(took, time_steps(simulation, *steps, &status, error));
+            took = fmin(took, lar_bench_time(simulation, *steps, &status, error));
     }
     *steps = (uint64_t)fmax(1, 0.5 * (double)*steps * wanted / took);
     for (*rounds = 256, took = 0; !status && took <= 0.25 * wanted; *rounds *= 2) {
@@ -243,14 +266,21 @@ static lar_status create(const lar_model *model, const lar_options *options, con
     return status;
 }
 
-static lar_status bench_model(const lar_model *model, const lar_bench_kernel_options *options,
-                              lar_bench_kernel_result *result, lar_error *error) {
+lar_status lar_bench_start(const lar_model *model, const lar_bench_kernel_options *options,
+                           lar_simulation **simulation, lar_error *error) {
     lar_options simulation_options = lar_options_default();
     simulation_options.isa = options->isa;
+    lar_status status = create(model, &simulation_options, options->blocks, simulation, error);
+    if (!status) set_in_motion(*simulation);
+    return status;
+}
+
+static lar_status bench_model(const lar_model *model, const lar_bench_kernel_options *options,
+                              lar_bench_kernel_result *result, lar_error *error) {
     lar_simulation *simulation = NULL;
     lar_model_info info;
     lar_status status = lar_model_inspect(model, &info, error);
-    if (!status) status = create(model, &simulation_options, options->blocks, &simulation, error);
+    if (!status) status = lar_bench_start(model, options, &simulation, error);
     if (status) return status;
     result->lean = simulation->domain.lean;
     result->elements = info.elements;
@@ -258,7 +288,6 @@ static lar_status bench_model(const lar_model *model, const lar_bench_kernel_opt
     result->scaled_jacobian_min = info.scaled_jacobian_min;
     result->bytes_per_element = (double)lar_simulation_bytes(simulation) / info.elements;
     result->isa = lar_simulation_isa(simulation);
-    set_in_motion(simulation);
     const lar_fma_peak *peak = lar_fma_peak_find(result->isa);
     if (peak)
         status = measure(simulation, peak, result, error);
@@ -270,18 +299,24 @@ static lar_status bench_model(const lar_model *model, const lar_bench_kernel_opt
     return status;
 }
 
-lar_status lar_bench_kernel(const lar_bench_kernel_options *options,
-                            lar_bench_kernel_result *result, lar_error *error) {
+lar_status lar_bench_check(const lar_bench_kernel_options *options, lar_error *error) {
     enum { MAX_ELEMENTS = 20000000 };
     if (options->elements < 1 || options->elements > MAX_ELEMENTS || options->repeat < 1 ||
         options->repeat > LAR_BENCH_REPEAT_MAX)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "a benchmark needs 1 to %d elements and 1 to %d samples", MAX_ELEMENTS,
                         LAR_BENCH_REPEAT_MAX);
+    return LAR_OK;
+}
+
+lar_status lar_bench_kernel(const lar_bench_kernel_options *options,
+                            lar_bench_kernel_result *result, lar_error *error) {
+    lar_status status = lar_bench_check(options, error);
+    if (status) return status;
     lar_bench_kernel_result made = {.repeat = options->repeat};
     lar_model *model = NULL;
     lar_bench_edges(options->elements, made.edge);
-    lar_status status = lar_bench_block(made.edge, options->general, &model, error);
+    status = lar_bench_block(made.edge, options->general, &model, error);
     if (!status) status = bench_model(model, options, &made, error);
     lar_model_destroy(model);
     if (!status) *result = made;

@@ -17,13 +17,13 @@
 
 #include <stdbool.h>
 
-#include "lariat.h"
+#include "model/material.h"
 
 enum { LAR_BENCH_OPERATIONS = 816, LAR_BENCH_REPEAT_MAX = 1000 };
 
 typedef struct lar_bench_kernel_options {
-    int32_t elements; /* about so many; exactly, when it is a product of three like numbers */
-    bool general;     /* not boxes */
+    int32_t elements;   /* about so many; exactly, when it is a product of three like numbers */
+    bool general;       /* not boxes */
     const char *blocks; /* of LARIAT_BLOCKS: "auto", "lean" or "whole"; NULL: as it stands */
     lar_isa isa;
     int repeat; /* samples, 1..LAR_BENCH_REPEAT_MAX */
@@ -57,9 +57,24 @@ typedef struct lar_bench_kernel_result {
 lar_status lar_bench_kernel(const lar_bench_kernel_options *options,
                             lar_bench_kernel_result *result, lar_error *error);
 
+/* Refuses options out of range. */
+lar_status lar_bench_check(const lar_bench_kernel_options *options, lar_error *error);
+
 /* The block alone: edge[] elements along each axis. The caller destroys it. */
 lar_status lar_bench_block(const int32_t edge[3], bool general, lar_model **model,
                            lar_error *error);
+/* The same of another material, whose fibres cross in the plane y = 0. */
+lar_status lar_bench_block_of(const int32_t edge[3], bool general, const lar_material *material,
+                              lar_model **model, lar_error *error);
+/* The neo-Hookean material of the block. */
+lar_material lar_bench_material(void);
+
+/* The block in its smooth motion, computed as the options say. The caller destroys it. */
+lar_status lar_bench_start(const lar_model *model, const lar_bench_kernel_options *options,
+                           lar_simulation **simulation, lar_error *error);
+/* Seconds that `steps` steps take; they mean nothing when *status is not LAR_OK. */
+double lar_bench_time(lar_simulation *simulation, uint64_t steps, lar_status *status,
+                      lar_error *error);
 
 /* Edges of a near-cubic block of about `elements` elements: exact when a division with edges not
  * more than 3 : 1 exists, else the nearest with edges not more than 2 : 1. */

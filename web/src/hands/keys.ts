@@ -82,6 +82,7 @@ function press(s: Served, event: KeyboardEvent): boolean {
         ';': () => s.replay.seekBy(0.25),
         e: () => element('edges').click(),
         z: () => element('shadows').click(),
+        '/': () => (element('fibres-row').hidden ? s.say('Nothing in this scene has fibres.') : element('fibres').click()),
         m: () => (element('fine-row').hidden ? s.say('This scene has no embedded surface.') : element('fine').click()),
         f: () => s.view.endoscope.reset(),
         g: () => s.panel.toggle(),

@@ -164,6 +164,8 @@ export interface SurfaceMessage {
     material: Uint32Array;
     body: Uint32Array;
     processor: Uint32Array;
+    families: number; // of fibres, 0 to 2
+    fibres: Float32Array; // for each face and family a unit vector at rest, or zeros
 }
 
 /* An embedded surface. Frames have the surface's nodes first, then these. */
@@ -215,15 +217,16 @@ export function readSurface(data: ArrayBuffer): SurfaceMessage {
     const head = new Uint32Array(data, 0, 4);
     const n = head[1]!;
     const f = head[2]!;
-    if (data.byteLength !== 16 + 16 * n + 24 * f + 4 * n) throw new Error('a surface of wrong length');
+    const families = head[3]!;
+    if (data.byteLength !== 16 + 20 * n + (24 + 12 * families) * f) throw new Error('a surface of wrong length');
     const part = partsOf(data, 16);
-    return {
-        rest: new Float32Array(...part(3 * n)),
-        faces: new Uint32Array(...part(4 * f)),
-        material: new Uint32Array(...part(f)),
-        body: new Uint32Array(...part(f)),
-        processor: new Uint32Array(...part(n)),
-    };
+    const rest = new Float32Array(...part(3 * n));
+    const faces = new Uint32Array(...part(4 * f));
+    const material = new Uint32Array(...part(f));
+    const body = new Uint32Array(...part(f));
+    const processor = new Uint32Array(...part(n));
+    part(n); // indices in the model
+    return { rest, faces, material, body, processor, families, fibres: new Float32Array(...part(3 * families * f)) };
 }
 
 export function readEmbedded(data: ArrayBuffer): EmbeddedMessage {

@@ -8,6 +8,8 @@ import type { SurfaceView } from './surfaceView';
 import { Cut } from '../inspect/cut';
 import { Marks } from '../inspect/marks';
 import { Edges } from './edges';
+import { FibreLines } from './fibreLines';
+import { Fibres } from './fibres';
 import { Organ, type Seen } from './organ';
 import { Others } from './others';
 import { organColour, processorColour, type Rgb } from './palette';
@@ -39,6 +41,8 @@ export class View {
     private fineOrgan: Organ | null = null; // the embedded one
     private edges: Edges | null = null;
     private edgesShown = false;
+    private fibres: Fibres | null = null; // null: nothing has any
+    private fibresShown = false;
     private fineShown = true;
     private processorsShown = false;
     private faceRegions: Uint32Array = new Uint32Array(0); // the organ of each face of the mesh
@@ -104,6 +108,10 @@ export class View {
         this.edges = new Edges(surface.lines, this.organ.mesh.geometry, this.cut.plane);
         this.faceRegions = message.material;
         this.scene.add(this.organ.mesh, this.edges.lines);
+        if (message.families) {
+            this.fibres = new Fibres(new FibreLines(message.rest, message.faces, message.fibres, message.families), this.cut.plane);
+            this.scene.add(this.fibres.mesh);
+        }
         this.pull.setSize(surface.size);
         this.others.setSize(surface.size);
         this.marks.setSize(surface.size);
@@ -168,6 +176,16 @@ export class View {
         this.arrange();
     }
 
+    showFibres(yes: boolean): void {
+        this.fibresShown = yes;
+        this.arrange();
+    }
+
+    /* Lines along fibres that are drawn. */
+    get fibreLines(): number {
+        return this.fibresShown ? (this.fibres?.drawn ?? 0) : 0;
+    }
+
     /* The point of the mesh's surface that is taken hold of when this one is pressed. */
     holdAt(point: [number, number, number]): [number, number, number] {
         if (!this.finer || !this.mesh) return point;
@@ -203,6 +221,7 @@ export class View {
             if (seen(faceRegions[side >> 2]!) !== 'hidden') visible[edge] = 1;
         });
         this.edges.show((segment) => visible[mesh.edgeOf(segment)] === 1);
+        this.fibres?.show((face) => seen(faceRegions[face]!) !== 'hidden');
         this.arrange();
     }
 
@@ -240,6 +259,8 @@ export class View {
         for (const organ of [this.organ, this.fineOrgan]) if (organ) organ.mesh.visible = organ === shown;
         this.edges.lines.visible = this.edgesShown;
         this.edges.lift(this.finer ? 0.75 * this.mesh.meanEdge : 0);
+        if (this.fibres) this.fibres.mesh.visible = this.fibresShown;
+        this.fibres?.lift((this.finer ? 0.75 : 0.2) * this.mesh.meanEdge);
         shown.showProcessors(this.processorsShown);
         this.place();
     }
@@ -254,6 +275,7 @@ export class View {
         shown.place(positions);
         if (shown !== this.organ && this.edgesShown) this.organ.place(positions);
         else if (shown !== this.organ) this.mesh.keep(positions);
+        if (this.fibresShown) this.fibres?.place(positions);
         if (this.values) shown.paint(this.values);
     }
 
@@ -313,12 +335,12 @@ export class View {
     }
 
     private dispose(): void {
-        for (const part of [this.organ?.mesh, this.fineOrgan?.mesh, this.edges?.lines]) {
+        for (const part of [this.organ?.mesh, this.fineOrgan?.mesh, this.edges?.lines, this.fibres?.mesh]) {
             if (!part) continue;
             this.scene.remove(part);
             part.geometry.dispose();
         }
-        this.mesh = this.organ = this.fineOrgan = this.edges = null;
+        this.mesh = this.organ = this.fineOrgan = this.edges = this.fibres = null;
         this.positions = this.values = null;
     }
 }

@@ -1,7 +1,13 @@
-/* Abaqus and CalculiX decks: contact pairs. See deck.h.
+/* Abaqus and CalculiX decks: contact pairs, and the friction of their interactions. See deck.h.
  *
- * Lariat's contact has a stiffness of its own and no friction: what a deck says about the first is
- * named in a notice, what asks for more is refused.
+ *     *SURFACE INTERACTION, NAME=A <---.      walk 1: names and coefficients
+ *     *FRICTION                        |
+ *     0.3                              |
+ *     *CONTACT PAIR, INTERACTION=A ----'      walk 2: surfaces
+ *
+ * Friction is Coulomb's, with one coefficient for all directions. How stiff contact is, and how
+ * stiff surfaces hold until they slide, Lariat says itself: what a deck says of it is named in a
+ * notice, what asks for more is refused.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -32,7 +38,13 @@ static bool same_surface(const inp_deck *deck, lar_span a, lar_span b) {
     return inp_mesh_set(deck, a, LAR_SET_FACES) == inp_mesh_set(deck, b, LAR_SET_FACES);
 }
 
-static lar_status read_pair(inp_deck *deck, lar_span line) {
+static inp_interaction *find_interaction(const inp_deck *deck, lar_span name) {
+    for (size_t i = 0; i < deck->interaction_count; i++)
+        if (lar_span_equal_nocase(name, deck->interaction[i].name)) return &deck->interaction[i];
+    return NULL;
+}
+
+static lar_status read_pair(inp_deck *deck, lar_span line, double friction) {
     char problem[LAR_PROBLEM_SIZE];
     lar_span field[2];
     int count;
@@ -46,6 +58,7 @@ static lar_status read_pair(inp_deck *deck, lar_span line) {
     lar_contact *contact = LAR_MODEL_APPEND(deck->model, contact);
     if (!contact) return inp_no_memory(deck, "the contact");
     contact->kind = LAR_CONTACT_SELF;
+    contact->friction = friction;
     status = copy_faces(deck, field[0], &contact->face, &contact->face_count);
     if (!status && count > 1 && field[1].length > 0 && !same_surface(deck, field[0], field[1])) {
         contact->kind = LAR_CONTACT_BETWEEN;
@@ -60,15 +73,45 @@ lar_status inp_read_contact_pair(inp_deck *deck, const inp_card *card) {
     static const char *const known[] = {"INTERACTION", "TYPE",  "SMALL SLIDING",
                                         "ADJUST",      "CPSET", "MECHANICAL CONSTRAINT",
                                         "WEIGHT",      NULL};
+    const inp_interaction *interaction = NULL;
     lar_span value, line;
     lar_status status = inp_only(deck, card, known);
+    bool named = inp_parameter(card, "INTERACTION", &value);
+    if (named) interaction = find_interaction(deck, value);
+    const double friction = interaction ? interaction->friction : 0;
     if (!status && inp_parameter(card, "SMALL SLIDING", &value))
         status = inp_notice(deck, card->line,
                             "SMALL SLIDING was left out: Lariat's surfaces may slide any way");
     if (!status && inp_parameter(card, "ADJUST", &value))
         status = inp_notice(deck, card->line, "ADJUST was left out: no node is moved at the start");
-    while (!status && inp_data_line(&deck->reader, &line)) status = read_pair(deck, line);
+    while (!status && inp_data_line(&deck->reader, &line)) status = read_pair(deck, line, friction);
+    if (!status && named && !interaction)
+        return inp_fail(
+            deck, card->line, LAR_ERROR_FORMAT,
+            "there is no *SURFACE INTERACTION called '%.*s', which could have friction; "
+            "add it, or correct INTERACTION=",
+            inp_shown(value), value.at);
     return status;
+}
+
+lar_status inp_read_interaction(inp_deck *deck, const inp_card *card) {
+    enum { MAX = 10000 }; /* they are looked up by walking the list */
+    lar_span name;
+    lar_status status = inp_need(deck, card, "NAME", &name);
+    if (status) return status;
+    if (find_interaction(deck, name))
+        return inp_fail(deck, card->line, LAR_ERROR_FORMAT,
+                        "a second *SURFACE INTERACTION is called '%.*s'; rename one of them",
+                        inp_shown(name), name.at);
+    if (deck->interaction_count >= MAX)
+        return inp_fail(deck, card->line, LAR_ERROR_UNSUPPORTED, "more than %d interactions", MAX);
+    char *copy = lar_strndup(name.at, name.length);
+    if (!copy || !LAR_GROW(deck->interaction, deck->interaction_room, deck->interaction_count)) {
+        free(copy);
+        return inp_no_memory(deck, "the interactions");
+    }
+    deck->interaction[deck->interaction_count++] = (inp_interaction){.name = copy};
+    return LAR_OK;
 }
 
 lar_status inp_read_surface_behavior(inp_deck *deck, const inp_card *card) {
@@ -88,17 +131,62 @@ lar_status inp_read_surface_behavior(inp_deck *deck, const inp_card *card) {
                       inp_shown(kind), kind.at);
 }
 
-lar_status inp_read_friction(inp_deck *deck, const inp_card *card) {
+/* One line: the coefficient, and nothing that it would depend on; CalculiX's second number is how
+ * stiff surfaces hold. */
+static lar_status read_coefficient(inp_deck *deck, double *friction) {
     lar_span line, field[4];
     int count;
-    double friction = 0.0;
-    lar_status status = LAR_OK;
-    if (inp_data_line(&deck->reader, &line)) {
-        status = inp_fields(deck, line, field, 4, &count);
-        if (!status) status = inp_optional(deck, field, count, 0, "a coefficient", 0.0, &friction);
-    }
-    if (status || (friction == 0.0 && card->parameters.length == 0)) return status;
-    return inp_fail(deck, card->line, LAR_ERROR_UNSUPPORTED,
-                    "*FRICTION is not read from decks and would change the answer; set the "
-                    "coefficient to 0 or remove it");
+    double stick = 0;
+    *friction = 0;
+    if (!inp_data_line(&deck->reader, &line)) return LAR_OK;
+    lar_status status = inp_fields(deck, line, field, 4, &count);
+    if (!status) status = inp_optional(deck, field, count, 0, "a coefficient", 0.0, friction);
+    if (!status) status = inp_optional(deck, field, count, 1, "a stick slope", 0.0, &stick);
+    if (status) return status;
+    for (int k = 2; k < count; k++)
+        if (field[k].length > 0)
+            return inp_fail(deck, deck->reader.line, LAR_ERROR_UNSUPPORTED,
+                            "a coefficient of *FRICTION that depends on pressure or temperature is "
+                            "not read; give one number");
+    const char *wrong = lar_friction_problem(*friction);
+    if (wrong)
+        return inp_fail(deck, deck->reader.line, LAR_ERROR_MODEL, "*FRICTION is %g; %s", *friction,
+                        wrong);
+    if (stick != 0)
+        status = inp_notice(deck, deck->reader.line,
+                            "the second number of *FRICTION, a stick slope, was left out: Lariat's "
+                            "surfaces hold by a stiffness of their own");
+    if (!status && inp_data_line(&deck->reader, &line))
+        status = inp_fail(deck, deck->reader.line, LAR_ERROR_UNSUPPORTED,
+                          "a second line of *FRICTION is not read: a coefficient that depends on "
+                          "slip rate, pressure or temperature; give one number");
+    return status;
+}
+
+lar_status inp_read_friction(inp_deck *deck, const inp_card *card) {
+    static const char *const known[] = {"SLIP TOLERANCE", NULL};
+    double friction;
+    lar_span value;
+    lar_status status = inp_only(deck, card, known);
+    if (!status) status = read_coefficient(deck, &friction);
+    if (status) return status;
+    if (deck->interaction_count == 0)
+        return friction == 0 ? LAR_OK
+                             : inp_fail(deck, card->line, LAR_ERROR_UNSUPPORTED,
+                                        "*FRICTION belongs to no *SURFACE INTERACTION; put it "
+                                        "behind the one that a *CONTACT PAIR names");
+    inp_interaction *interaction = &deck->interaction[deck->interaction_count - 1];
+    if (interaction->friction_line > 0)
+        return inp_fail(deck, card->line, LAR_ERROR_FORMAT,
+                        "a second *FRICTION of *SURFACE INTERACTION '%.*s', after line %d; remove "
+                        "one of them",
+                        inp_shown((lar_span){interaction->name, strlen(interaction->name)}),
+                        interaction->name, interaction->friction_line);
+    interaction->friction = friction;
+    interaction->friction_line = card->line;
+    if (friction > 0 && inp_parameter(card, "SLIP TOLERANCE", &value))
+        return inp_notice(deck, card->line,
+                          "SLIP TOLERANCE was left out: Lariat's surfaces hold by a stiffness of "
+                          "their own");
+    return LAR_OK;
 }

@@ -141,7 +141,7 @@ static const keyword_row keywords[] = {
     {"DLOAD", NULL, inp_read_dload, OF_DECK},
     {"DSLOAD", NULL, inp_read_dsload, OF_DECK},
     {"CONTACT PAIR", NULL, inp_read_contact_pair, OF_DECK},
-    {"SURFACE INTERACTION", NULL, NULL, OF_DECK},
+    {"SURFACE INTERACTION", inp_read_interaction, NULL, OF_DECK},
     {"SURFACE BEHAVIOR", inp_read_surface_behavior, NULL, OF_DECK},
     {"FRICTION", inp_read_friction, NULL, OF_DECK},
     {"NODE", NULL, NULL, OF_MESH},
@@ -315,6 +315,8 @@ static void clear(inp_deck *deck) {
     for (size_t i = 0; i < deck->amplitude_count; i++) free(deck->amplitude[i].name);
     for (size_t i = 0; i < deck->forces_count; i++) free(deck->forces[i].force);
     for (size_t i = 0; i < deck->orientation_count; i++) free(deck->orientation[i].name);
+    for (size_t i = 0; i < deck->interaction_count; i++) free(deck->interaction[i].name);
+    free(deck->interaction);
     free(deck->material);
     free(deck->orientation);
     free(deck->amplitude);

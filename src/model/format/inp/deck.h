@@ -38,6 +38,13 @@ typedef struct inp_orientation {
     double direction[2][3];
 } inp_orientation;
 
+/* What *SURFACE INTERACTION says of the pairs that name it. */
+typedef struct inp_interaction {
+    char *name;
+    double friction;
+    int friction_line; /* 0: nothing is said of it */
+} inp_interaction;
+
 typedef struct inp_amplitude {
     char *name;
     int curve;
@@ -91,6 +98,8 @@ typedef struct inp_deck {
     int64_t current; /* material that options belong to, -1: none */
     size_t orientation_count, orientation_room;
     inp_orientation *orientation;
+    size_t interaction_count, interaction_room; /* *FRICTION belongs to the last of them */
+    inp_interaction *interaction;
     size_t amplitude_count, amplitude_room;
     inp_amplitude *amplitude;
 
@@ -207,6 +216,7 @@ lar_status inp_finish_loads(inp_deck *deck);
 
 /* ---- contact.c --------------------------------------------------------------------------- */
 
+lar_status inp_read_interaction(inp_deck *deck, const inp_card *card);
 lar_status inp_read_contact_pair(inp_deck *deck, const inp_card *card);
 lar_status inp_read_surface_behavior(inp_deck *deck, const inp_card *card);
 lar_status inp_read_friction(inp_deck *deck, const inp_card *card);
