@@ -136,6 +136,7 @@ lar_status lar_session_open(lar_simulation *simulation, const lar_session_option
     session->simulation = simulation;
     session->time_step = lar_simulation_time_step(simulation);
     session->divided = lar_simulation_divided_steps(simulation, NULL);
+    session->good_step = lar_simulation_steps(simulation);
     lar_status status = choose(session, &asked, error);
     if (!status) status = make_tools(session, error);
     if (!status && !(session->view = lar_calloc(1, sizeof *session->view)))
