@@ -129,6 +129,9 @@ template <class Callable> struct Steps {
 inline const char *version() {
     return lar_version();
 }
+inline std::int32_t version_number() {
+    return lar_version_number();
+}
 inline void demo_write(const std::string &folder) {
     detail::call(lar_demo_write, folder.c_str());
 }
