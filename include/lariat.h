@@ -995,6 +995,12 @@ LAR_SIZED lar_status lar_session_open(lar_simulation *simulation,
                                       lar_error *error);
 /* Starts the thread. */
 LAR_API lar_status lar_session_start(lar_session *session, lar_error *error);
+/* Instead of starting it: one tick now, in the thread that calls, for a host that has a clock of
+ * its own. What was asked for is done first; while the session is paused nothing is computed.
+ * `pace` means nothing then, and calls that wait are done at once between two ticks. From the first
+ * tick on it cannot be started any more. Where the run has stopped: why (lar_session_status.error).
+ */
+LAR_API lar_status lar_session_tick(lar_session *session, lar_error *error);
 /* Ends the thread within a tick, closes devices and the recording. NULL is fine. No other call may
  * be under way or come after it, and servers are closed before. The simulation may be used again,
  * and is the caller's to destroy. Closing fails only when a recording could not be completed. */
@@ -1090,6 +1096,13 @@ LAR_API lar_status lar_session_grasp_answer(const lar_session *session, int32_t 
 LAR_SIZED lar_status lar_session_tool_force(const lar_session *session, int32_t tool,
                                             lar_tool_pose *pose, lar_tool_force *force,
                                             lar_error *error);
+
+/* What a hand feels that leads a tool by lar_session_tool_move, of the last tick: what a driver in
+ * this process gives to its device. Spring and damper of the coupling between hand and tool, not
+ * the tissue itself: bounded, and passive (docs/devices.md). 0 while nobody leads the tool. Either
+ * may be NULL. */
+LAR_API lar_status lar_session_tool_felt(const lar_session *session, int32_t tool, double force[3],
+                                         double torque[3], lar_error *error);
 
 /* As lar_simulation_tool_touches, between two ticks: waits for that. */
 LAR_API lar_status lar_session_tool_touches(lar_session *session, int32_t tool, int32_t max,

@@ -176,6 +176,10 @@ lar_status lar_session_start(lar_session *session, lar_error *error) {
     pthread_mutex_lock(&session->requests.lock);
     if (session->started) {
         status = lar_fail(error, LAR_ERROR_ARGUMENT, "the session has been started already");
+    } else if (session->hosted) {
+        status = lar_fail(error, LAR_ERROR_ARGUMENT,
+                          "the session ticks by its host's clock (lar_session_tick); open another "
+                          "one to start it");
     } else {
         if (session->status.state == LAR_SESSION_IDLE)
             session->status.state =
