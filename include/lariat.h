@@ -79,6 +79,20 @@ typedef struct lar_error {
 LAR_API const char *lar_version(void);
 LAR_API int32_t lar_version_number(void);
 
+/* Functions for memory, from any thread; NULL says that there is none. `alignment` is a power of 2
+ * up to 2 MiB. What is resized, or released, was allocated with that of max_align_t, or any. */
+typedef struct lar_memory_hooks {
+    void *(*allocate)(void *context, size_t bytes, size_t alignment);
+    void *(*resize)(void *context, void *memory, size_t bytes);
+    void (*release)(void *context, void *memory);
+    void *context;
+} lar_memory_hooks;
+
+/* All memory of the library comes from these, and goes back there: called before all other calls,
+ * and once; LAR_ERROR_ARGUMENT later. Not what other libraries need that this one uses, while
+ * files are read and written, and stacks of threads. */
+LAR_API lar_status lar_memory_set(const lar_memory_hooks *hooks, lar_error *error);
+
 /* ---- model ------------------------------------------------------------------------------ */
 
 typedef struct lar_model lar_model;
@@ -1339,8 +1353,9 @@ LAR_API int lar_server_has_page(void);
  *
  * These stay as they are: lar_error, lar_array_set, lar_surface_arrays, lar_set_info,
  * lar_surface_info, lar_embedded_info, lar_ray_hit, lar_model_contact_info, lar_tool_pose,
- * lar_grid_aim, lar_touch, lar_rest, lar_grasp_answer, lar_tool_load, lar_server_options and all
- * that is in another struct, but at its end. The library makes lar_snapshot, so that may grow.
+ * lar_grid_aim, lar_memory_hooks, lar_touch, lar_rest, lar_grasp_answer, lar_tool_load,
+ * lar_server_options and all that is in another struct, but at its end. The library makes
+ * lar_snapshot, so that may grow.
  */
 LAR_API lar_status lar_model_from_arrays_sized(const lar_mesh_arrays *mesh, size_t size,
                                                const char *scene, lar_model **model,

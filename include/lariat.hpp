@@ -132,6 +132,9 @@ inline const char *version() {
 inline std::int32_t version_number() {
     return lar_version_number();
 }
+inline void memory_set(const lar_memory_hooks &hooks) {
+    detail::call(lar_memory_set, &hooks);
+}
 inline void demo_write(const std::string &folder) {
     detail::call(lar_demo_write, folder.c_str());
 }
