@@ -50,6 +50,8 @@ extern "C" {
 #define LAR_SIZED
 #elif defined(__cplusplus)
 #define LAR_SIZED inline
+#elif defined(__GNUC__)
+#define LAR_SIZED static inline __attribute__((unused))
 #else
 #define LAR_SIZED static inline
 #endif
