@@ -38,8 +38,9 @@ static class Lariat {
     [DllImport(Library)] static extern IntPtr lar_version();
     [DllImport(Library)] static extern IntPtr lar_model_positions(Model model);
     [DllImport(Library)] static extern int lar_model_open(byte[] path, out Model model, out Error error);
-    [DllImport(Library)] static extern int lar_simulation_create(
-        Model model, IntPtr options, out Simulation simulation, out Error error);
+    // lar_simulation_create, told how large the options are (none here): lariat.h, structs that grow.
+    [DllImport(Library)] static extern int lar_simulation_create_sized(
+        Model model, IntPtr options, UIntPtr size, out Simulation simulation, out Error error);
     [DllImport(Library)] static extern int lar_simulation_advance(
         Simulation simulation, ulong steps, out Error error);
     [DllImport(Library, EntryPoint = "lar_model_node_count")]
@@ -64,7 +65,8 @@ static class Lariat {
     public static Simulation Create(Model model) {
         Simulation simulation;
         Error error;
-        Check(lar_simulation_create(model, IntPtr.Zero, out simulation, out error), error);
+        Check(lar_simulation_create_sized(model, IntPtr.Zero, UIntPtr.Zero, out simulation, out error),
+              error);
         return simulation;
     }
     public static void Advance(Simulation simulation, ulong steps) {

@@ -82,12 +82,11 @@ static void *haptic_thread(void *argument) {
         pose.position[0] = s->start.position[0] + 0.02 * sin(1.5 * t);
         pose.position[1] = s->start.position[1] + 0.02 * sin(1.1 * t);
         pose.position[2] = s->start.position[2] - 0.005 * (1 - cos(6 * t));
-        lar_tool_force felt;
+        double felt[3];
         lar_session_tool_move(s->session, 0, &pose, NULL);
-        if (!lar_session_tool_force(s->session, 0, NULL, &felt, NULL))
-            s->strongest = fmax(s->strongest,
-                                sqrt(felt.force[0] * felt.force[0] + felt.force[1] * felt.force[1] +
-                                     felt.force[2] * felt.force[2]));
+        if (!lar_session_tool_felt(s->session, 0, felt, NULL, NULL))
+            s->strongest =
+                fmax(s->strongest, sqrt(felt[0] * felt[0] + felt[1] * felt[1] + felt[2] * felt[2]));
         next.tv_nsec += 1000000;
         if (next.tv_nsec >= 1000000000) next.tv_sec++, next.tv_nsec -= 1000000000;
         clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &next, NULL);

@@ -45,6 +45,16 @@ extern "C" {
 #else
 #define LAR_API __attribute__((visibility("default")))
 #endif
+/* Compiled into the program, see "structs that grow" at the end. */
+#ifdef LARIAT_LIBRARY /* the library itself */
+#define LAR_SIZED
+#elif defined(__cplusplus)
+#define LAR_SIZED inline
+#elif defined(__GNUC__)
+#define LAR_SIZED static inline __attribute__((unused))
+#else
+#define LAR_SIZED static inline
+#endif
 
 /* ---- errors ---------------------------------------------------------------------------- */
 
@@ -65,8 +75,25 @@ typedef struct lar_error {
     char message[1016]; /* one sentence: file, line or element, cause and remedy */
 } lar_error;
 
-/* Version of the library, "major.minor.patch". */
+/* Version of this header: 10000 major + 100 minor + patch. */
+#define LARIAT_VERSION 100
+/* Version of the library, "major.minor.patch", and as a number. */
 LAR_API const char *lar_version(void);
+LAR_API int32_t lar_version_number(void);
+
+/* Functions for memory, from any thread; NULL says that there is none. `alignment` is a power of 2
+ * up to 2 MiB. What is resized, or released, was allocated with that of max_align_t, or any. */
+typedef struct lar_memory_hooks {
+    void *(*allocate)(void *context, size_t bytes, size_t alignment);
+    void *(*resize)(void *context, void *memory, size_t bytes);
+    void (*release)(void *context, void *memory);
+    void *context;
+} lar_memory_hooks;
+
+/* All memory of the library comes from these, and goes back there: called before all other calls,
+ * and once; LAR_ERROR_ARGUMENT later. Not what other libraries need that this one uses, while
+ * files are read and written, and stacks of threads. */
+LAR_API lar_status lar_memory_set(const lar_memory_hooks *hooks, lar_error *error);
 
 /* ---- model ------------------------------------------------------------------------------ */
 
@@ -106,8 +133,8 @@ typedef struct lar_mesh_arrays {
  * elements are left-handed they are turned, as those of files are. LAR_ERROR_MODEL names the
  * element, node or set that cannot be so; every node must belong to an element. The caller destroys
  * the model. */
-LAR_API lar_status lar_model_from_arrays(const lar_mesh_arrays *mesh, const char *scene,
-                                         lar_model **model, lar_error *error);
+LAR_SIZED lar_status lar_model_from_arrays(const lar_mesh_arrays *mesh, const char *scene,
+                                           lar_model **model, lar_error *error);
 
 /* Mass that elements move with and do not weigh, so that steps may be longer (scene key
  * `mass_scaling`); what it takes is the scene's to say. */
@@ -146,8 +173,8 @@ typedef struct lar_model_info {
 } lar_model_info;
 
 /* Counts, measures and the stable step: goes through all elements. `info` is the caller's. */
-LAR_API lar_status lar_model_inspect(const lar_model *model, lar_model_info *info,
-                                     lar_error *error);
+LAR_SIZED lar_status lar_model_inspect(const lar_model *model, lar_model_info *info,
+                                       lar_error *error);
 
 /* Counts, at once. */
 LAR_API int32_t lar_model_node_count(const lar_model *model);
@@ -190,8 +217,8 @@ typedef struct lar_set_info {
 } lar_set_info;
 
 /* Material `index` of lar_model_info.materials; LAR_ERROR_ARGUMENT beyond. */
-LAR_API lar_status lar_model_material(const lar_model *model, int32_t index,
-                                      lar_material_info *info, lar_error *error);
+LAR_SIZED lar_status lar_model_material(const lar_model *model, int32_t index,
+                                        lar_material_info *info, lar_error *error);
 
 /* The named sets, as lar_material_info for materials: set `index` of the count. */
 LAR_API int32_t lar_model_set_count(const lar_model *model);
@@ -313,8 +340,8 @@ typedef struct lar_tool_info {
 } lar_tool_info;
 
 LAR_API int32_t lar_model_tool_count(const lar_model *model);
-LAR_API lar_status lar_model_tool(const lar_model *model, int32_t index, lar_tool_info *info,
-                                  lar_error *error);
+LAR_SIZED lar_status lar_model_tool(const lar_model *model, int32_t index, lar_tool_info *info,
+                                    lar_error *error);
 
 /* What the tissue does to a tool. */
 typedef struct lar_tool_force {
@@ -354,8 +381,8 @@ typedef struct lar_mesh_quality {
 /* Compares a model's mesh with a surface (.stl .obj .vtk .vtp, in the model's metres times
  * `scale`), or with its embedded surface (against NULL); without either the deviations
  * and true_volume are 0. */
-LAR_API lar_status lar_model_quality(const lar_model *model, const char *against, double scale,
-                                     lar_mesh_quality *quality, lar_error *error);
+LAR_SIZED lar_status lar_model_quality(const lar_model *model, const char *against, double scale,
+                                       lar_mesh_quality *quality, lar_error *error);
 
 typedef struct lar_meshing lar_meshing;
 
@@ -384,16 +411,16 @@ typedef struct lar_meshing_options {
     const char *fibre_region; /* the name of the region that has them; NULL: all but bones */
 } lar_meshing_options;
 
-LAR_API lar_meshing_options lar_meshing_options_default(void);
+LAR_SIZED lar_meshing_options lar_meshing_options_default(void);
 
 /* Meshes one label image (.nii .nii.gz .nrrd .nhdr), or closed surfaces (.stl .obj .vtk .vtp), one
  * region each, where surfaces overlap the later one has the place; or the boundary of the regions
  * of one mesh (.msh .vtu .vtk .inp .feb) of tetrahedra, prisms, pyramids or hexahedra. World:
  * metres, for images +x right, +y front, +z head. docs/meshing.md. Works on all cores that the
  * process may use; what it makes does not depend on how many these are. `options` may be NULL. */
-LAR_API lar_status lar_meshing_create(const char *const *paths, int32_t count,
-                                      const lar_meshing_options *options, lar_meshing **meshing,
-                                      lar_error *error);
+LAR_SIZED lar_status lar_meshing_create(const char *const *paths, int32_t count,
+                                        const lar_meshing_options *options, lar_meshing **meshing,
+                                        lar_error *error);
 LAR_API void lar_meshing_destroy(lar_meshing *meshing);
 
 /* A label image (lar_image_open, lar_image_create). */
@@ -409,16 +436,17 @@ typedef struct lar_surface_arrays {
 
 /* As lar_meshing_create, without files: what it makes is the same. An image knows its labels'
  * names, so options.names is refused; surfaces are copied. */
-LAR_API lar_status lar_meshing_of_image(const lar_image *image, const lar_meshing_options *options,
-                                        lar_meshing **meshing, lar_error *error);
-LAR_API lar_status lar_meshing_of_surfaces(const lar_surface_arrays *surface, int32_t count,
-                                           const lar_meshing_options *options,
-                                           lar_meshing **meshing, lar_error *error);
+LAR_SIZED lar_status lar_meshing_of_image(const lar_image *image,
+                                          const lar_meshing_options *options, lar_meshing **meshing,
+                                          lar_error *error);
+LAR_SIZED lar_status lar_meshing_of_surfaces(const lar_surface_arrays *surface, int32_t count,
+                                             const lar_meshing_options *options,
+                                             lar_meshing **meshing, lar_error *error);
 
 /* What was made: the mesh in metres, and the true surface (the embedded one of a file). Either may
  * be NULL. The arrays live as long as the meshing. */
-LAR_API void lar_meshing_arrays(const lar_meshing *meshing, lar_mesh_arrays *mesh,
-                                lar_surface_arrays *surface);
+LAR_SIZED void lar_meshing_arrays(const lar_meshing *meshing, lar_mesh_arrays *mesh,
+                                  lar_surface_arrays *surface);
 /* The starter scene as a text for lar_model_from_arrays with that mesh; lives as long as the
  * meshing. */
 LAR_API lar_status lar_meshing_scene(lar_meshing *meshing, const char **scene, lar_error *error);
@@ -451,10 +479,10 @@ typedef struct lar_region_info {
     double usual_max; /* more than such organs hold in anybody [m^3]; 0: not known */
 } lar_region_info;
 
-LAR_API void lar_meshing_inspect(const lar_meshing *meshing, lar_meshing_info *info);
+LAR_SIZED void lar_meshing_inspect(const lar_meshing *meshing, lar_meshing_info *info);
 /* Region `index` of the count; LAR_ERROR_ARGUMENT beyond. */
-LAR_API lar_status lar_meshing_region(const lar_meshing *meshing, int32_t index,
-                                      lar_region_info *info, lar_error *error);
+LAR_SIZED lar_status lar_meshing_region(const lar_meshing *meshing, int32_t index,
+                                        lar_region_info *info, lar_error *error);
 
 /* Writes FOLDER/NAME.vtu (tags, named sets, fibres), NAME_surface.vtp (the true surface, embedded
  * in it) and NAME.yaml, a scene that runs; NAME is that of lar_meshing_info. The folder is made
@@ -477,10 +505,10 @@ typedef struct lar_image_info {
 LAR_API lar_status lar_image_open(const char *path, lar_image **image, lar_error *error);
 /* One of memory, copied. from->names of its labels have names: name[i] is that of label named[i];
  * both may be NULL where that is 0. */
-LAR_API lar_status lar_image_create(const lar_image_info *from, const char *const *name,
-                                    const int32_t *named, lar_image **image, lar_error *error);
+LAR_SIZED lar_status lar_image_create(const lar_image_info *from, const char *const *name,
+                                      const int32_t *named, lar_image **image, lar_error *error);
 LAR_API void lar_image_destroy(lar_image *image);
-LAR_API void lar_image_inspect(const lar_image *image, lar_image_info *info);
+LAR_SIZED void lar_image_inspect(const lar_image *image, lar_image_info *info);
 /* Name `index` of the count, which lives as long as the image, and its label (may be NULL); NULL
  * beyond. */
 LAR_API const char *lar_image_name(const lar_image *image, int32_t index, int32_t *label);
@@ -538,7 +566,7 @@ typedef struct lar_options {
 
 /* hex8, the widest instruction set, the model's time step, one processor. Start from these: options
  * may grow. */
-LAR_API lar_options lar_options_default(void);
+LAR_SIZED lar_options lar_options_default(void);
 
 /* What a division is chosen for. All 0: as fast as it goes, for a long time. */
 typedef struct lar_grid_aim {
@@ -565,17 +593,17 @@ typedef struct lar_grid_choice {
  * ("2x1x1") is taken as it is. Who only wants a simulation that is divided so gives grid "auto" in
  * the options. `aim` may be NULL. Fails only for a LARIAT_GRID that is none, for options that name
  * processes or schedule files besides, and as creating a simulation fails. */
-LAR_API lar_status lar_grid_choose(const lar_model *model, const lar_options *options,
-                                   const lar_grid_aim *aim, lar_grid_choice *choice,
-                                   lar_error *error);
+LAR_SIZED lar_status lar_grid_choose(const lar_model *model, const lar_options *options,
+                                     const lar_grid_aim *aim, lar_grid_choice *choice,
+                                     lar_error *error);
 /* Into the options: its grid, which lives as long as the choice does, or none for one processor.
  * NULL is fine. */
 LAR_API void lar_grid_take(const lar_grid_choice *choice, lar_options *options);
 
 /* Compiles the model for this processor and sets the state to rest. `options` may be NULL. The
  * model must outlive the simulation. */
-LAR_API lar_status lar_simulation_create(const lar_model *model, const lar_options *options,
-                                         lar_simulation **simulation, lar_error *error);
+LAR_SIZED lar_status lar_simulation_create(const lar_model *model, const lar_options *options,
+                                           lar_simulation **simulation, lar_error *error);
 LAR_API void lar_simulation_destroy(lar_simulation *simulation);
 /* A second simulation in the state of the first one: nodes, tools, settings, what tools felt, as
  * with lar_simulation_load_from. Model, options and what was compiled of the model are the same
@@ -594,7 +622,7 @@ typedef struct lar_simulation_info {
     double time_step; /* [s] */
 } lar_simulation_info;
 
-LAR_API void lar_simulation_inspect(const lar_simulation *simulation, lar_simulation_info *info);
+LAR_SIZED void lar_simulation_inspect(const lar_simulation *simulation, lar_simulation_info *info);
 
 /* Advances by `steps` time steps. On LAR_ERROR_UNSTABLE the message names element or node, place,
  * time and cause; the state is then the one after the failing step, or, with several processors,
@@ -644,7 +672,7 @@ typedef struct lar_energy {
 } lar_energy;
 
 /* Goes through all nodes and elements: as long as many steps. Asks for no memory. */
-LAR_API void lar_simulation_energy(const lar_simulation *simulation, lar_energy *energy);
+LAR_SIZED void lar_simulation_energy(const lar_simulation *simulation, lar_energy *energy);
 
 /* Values for a picture, one per node of the model. */
 typedef enum lar_field {
@@ -732,8 +760,8 @@ LAR_API void lar_simulation_force(const lar_simulation *simulation, int32_t node
 /* Those of the model, then options.hands hands, then options.spares that can be added: of shape
  * LAR_TOOL_NONE and called "" until they are. */
 LAR_API int32_t lar_simulation_tool_count(const lar_simulation *simulation);
-LAR_API lar_status lar_simulation_tool(const lar_simulation *simulation, int32_t index,
-                                       lar_tool_info *info, lar_error *error);
+LAR_SIZED lar_status lar_simulation_tool(const lar_simulation *simulation, int32_t index,
+                                         lar_tool_info *info, lar_error *error);
 
 /* From the present step on the tool moves evenly from where it is to `pose`, within `steps` (at
  * least 1) steps, and rests there: in the same steps on all processors. Taking hold and letting go
@@ -755,8 +783,8 @@ LAR_API lar_status lar_simulation_release(lar_simulation *simulation, int32_t to
 /* Where it is now. */
 LAR_API lar_status lar_simulation_tool_pose(const lar_simulation *simulation, int32_t tool,
                                             lar_tool_pose *pose, lar_error *error);
-LAR_API lar_status lar_simulation_tool_force(const lar_simulation *simulation, int32_t tool,
-                                             lar_tool_force *force, lar_error *error);
+LAR_SIZED lar_status lar_simulation_tool_force(const lar_simulation *simulation, int32_t tool,
+                                               lar_tool_force *force, lar_error *error);
 
 typedef enum lar_touch_kind {
     LAR_TOUCH_PRESSED = 0, /* the tool pushes a point of a face */
@@ -797,8 +825,9 @@ LAR_API lar_status lar_simulation_tool_touches(const lar_simulation *simulation,
  * no place is left, and for a size that does not fit the body: a radius between that at which faces
  * still feel it everywhere and half of the body's diagonal, a length up to five of these; and for a
  * `friction`, which only tools of the scene have. */
-LAR_API lar_status lar_simulation_add_tool(lar_simulation *simulation, const lar_tool_info *wanted,
-                                           int32_t *tool, lar_error *error);
+LAR_SIZED lar_status lar_simulation_add_tool(lar_simulation *simulation,
+                                             const lar_tool_info *wanted, int32_t *tool,
+                                             lar_error *error);
 /* Takes one that was added away, from the present step on: it lets go, and its place is free. */
 LAR_API lar_status lar_simulation_remove_tool(lar_simulation *simulation, int32_t tool,
                                               lar_error *error);
@@ -819,7 +848,7 @@ typedef struct lar_heavier {
     double largest_share; /* and at most */
 } lar_heavier;
 
-LAR_API void lar_simulation_heavier(const lar_simulation *simulation, lar_heavier *heavier);
+LAR_SIZED void lar_simulation_heavier(const lar_simulation *simulation, lar_heavier *heavier);
 
 /* What the search for contact did since the start, in pairs of a node and a face. */
 typedef struct lar_contact_info {
@@ -832,11 +861,12 @@ typedef struct lar_contact_info {
     double deepest;    /* immersion of these [m] */
 } lar_contact_info;
 
-LAR_API void lar_simulation_contact(const lar_simulation *simulation, lar_contact_info *info);
+LAR_SIZED void lar_simulation_contact(const lar_simulation *simulation, lar_contact_info *info);
 
 /* ---- going back, saving, loading ---------------------------------------------------------- */
 
-/* The state that lar_simulation_create made; tools at rest. */
+/* The state that lar_simulation_create made; tools at rest. The first time it asks for memory to
+ * keep that, and from the second time on it takes as long as lar_simulation_load_from. */
 LAR_API lar_status lar_simulation_reset(lar_simulation *simulation, lar_error *error);
 /* Writes state and tools to a file, whole or not at all (docs/formats.md, checkpoint). */
 LAR_API lar_status lar_simulation_save(const lar_simulation *simulation, const char *path,
@@ -877,8 +907,8 @@ typedef struct lar_checkpoint_info {
 } lar_checkpoint_info;
 
 /* Reads a saved state without taking it up. LAR_ERROR_FORMAT when it is none, or damaged. */
-LAR_API lar_status lar_checkpoint_inspect(const char *path, lar_checkpoint_info *info,
-                                          lar_error *error);
+LAR_SIZED lar_status lar_checkpoint_inspect(const char *path, lar_checkpoint_info *info,
+                                            lar_error *error);
 
 /* ---- results on disk -------------------------------------------------------------------- */
 
@@ -979,15 +1009,22 @@ typedef struct lar_session_options {
                                to a sound state and on from there (lar_session_status.recoveries) */
 } lar_session_options;
 
-LAR_API lar_session_options lar_session_options_default(void); /* pace 1, all others 0 */
+LAR_SIZED lar_session_options lar_session_options_default(void); /* pace 1, all others 0 */
 
 /* Takes the simulation over until the session is closed: no other call may use it, but
  * lar_simulation_field with lar_simulation_node_value, _element_value and _stored_energy, and what
  * is said to be constant (counts, names, time step). `options` may be NULL. */
-LAR_API lar_status lar_session_open(lar_simulation *simulation, const lar_session_options *options,
-                                    lar_session **session, lar_error *error);
+LAR_SIZED lar_status lar_session_open(lar_simulation *simulation,
+                                      const lar_session_options *options, lar_session **session,
+                                      lar_error *error);
 /* Starts the thread. */
 LAR_API lar_status lar_session_start(lar_session *session, lar_error *error);
+/* Instead of starting it: one tick now, in the thread that calls, for a host that has a clock of
+ * its own. What was asked for is done first; while the session is paused nothing is computed.
+ * `pace` means nothing then, and calls that wait are done at once between two ticks. From the first
+ * tick on it cannot be started any more. Where the run has stopped: why (lar_session_status.error).
+ */
+LAR_API lar_status lar_session_tick(lar_session *session, lar_error *error);
 /* Ends the thread within a tick, closes devices and the recording. NULL is fine. No other call may
  * be under way or come after it, and servers are closed before. The simulation may be used again,
  * and is the caller's to destroy. Closing fails only when a recording could not be completed. */
@@ -1001,7 +1038,7 @@ typedef struct lar_session_info {
     lar_session_options options;      /* no zeros where they stand for something; record: NULL */
 } lar_session_info;
 
-LAR_API void lar_session_inspect(const lar_session *session, lar_session_info *info);
+LAR_SIZED void lar_session_inspect(const lar_session *session, lar_session_info *info);
 
 /* Asked for here, done at the end of the tick under way, in this order. */
 LAR_API void lar_session_play(lar_session *session);
@@ -1041,12 +1078,12 @@ LAR_API double lar_session_activation(const lar_session *session, int32_t materi
 /* As lar_simulation_add_tool and lar_simulation_remove_tool, likewise. A tool that has a device is
  * not removed. What was added stays when a run goes back to a sound state by itself, and comes to
  * stand above the body that it finds there. */
-LAR_API lar_status lar_session_add_tool(lar_session *session, const lar_tool_info *wanted,
-                                        int32_t *tool, lar_error *error);
+LAR_SIZED lar_status lar_session_add_tool(lar_session *session, const lar_tool_info *wanted,
+                                          int32_t *tool, lar_error *error);
 LAR_API lar_status lar_session_remove_tool(lar_session *session, int32_t tool, lar_error *error);
 /* What a tool is, as of the last tick: as lar_simulation_tool. */
-LAR_API lar_status lar_session_tool_info(const lar_session *session, int32_t tool,
-                                         lar_tool_info *info, lar_error *error);
+LAR_SIZED lar_status lar_session_tool_info(const lar_session *session, int32_t tool,
+                                           lar_tool_info *info, lar_error *error);
 
 /* Where a tool's device is now: the tool follows, no faster than options.tool_speed. A tool that
  * has a device (lar_session_attach) does not listen. */
@@ -1080,9 +1117,16 @@ LAR_API lar_status lar_session_grasp_answer(const lar_session *session, int32_t 
                                             lar_grasp_answer *answer, lar_error *error);
 /* Of the last tick: pose and force, either may be NULL. The pose is where the tool is: tissue may
  * keep it from where its hand asks it to be. */
-LAR_API lar_status lar_session_tool_force(const lar_session *session, int32_t tool,
-                                          lar_tool_pose *pose, lar_tool_force *force,
-                                          lar_error *error);
+LAR_SIZED lar_status lar_session_tool_force(const lar_session *session, int32_t tool,
+                                            lar_tool_pose *pose, lar_tool_force *force,
+                                            lar_error *error);
+
+/* What a hand feels that leads a tool by lar_session_tool_move, of the last tick: what a driver in
+ * this process gives to its device. Spring and damper of the coupling between hand and tool, not
+ * the tissue itself: bounded, and passive (docs/devices.md). 0 while nobody leads the tool. Either
+ * may be NULL. */
+LAR_API lar_status lar_session_tool_felt(const lar_session *session, int32_t tool, double force[3],
+                                         double torque[3], lar_error *error);
 
 /* As lar_simulation_tool_touches, between two ticks: waits for that. */
 LAR_API lar_status lar_session_tool_touches(lar_session *session, int32_t tool, int32_t max,
@@ -1122,8 +1166,8 @@ typedef struct lar_device_status {
 } lar_device_status;
 
 /* As of the last second. A tool without a device has a status of zeros. */
-LAR_API lar_status lar_session_device(const lar_session *session, int32_t tool,
-                                      lar_device_status *status, lar_error *error);
+LAR_SIZED lar_status lar_session_device(const lar_session *session, int32_t tool,
+                                        lar_device_status *status, lar_error *error);
 
 typedef enum lar_session_state {
     LAR_SESSION_IDLE = 0, /* not started */
@@ -1194,7 +1238,7 @@ typedef struct lar_session_status {
     char slow_advice[256];     /* the same as a sentence, with what to do about it; "" */
 } lar_session_status;
 
-LAR_API void lar_session_status_get(const lar_session *session, lar_session_status *status);
+LAR_SIZED void lar_session_status_get(const lar_session *session, lar_session_status *status);
 
 /* All nodes at the end of one step. */
 typedef struct lar_snapshot {
@@ -1239,8 +1283,8 @@ typedef struct lar_recording_info {
 } lar_recording_info;
 
 /* Reads the beginning of a recording. LAR_ERROR_FORMAT when it is none. */
-LAR_API lar_status lar_recording_inspect(const char *path, lar_recording_info *info,
-                                         lar_error *error);
+LAR_SIZED lar_status lar_recording_inspect(const char *path, lar_recording_info *info,
+                                           lar_error *error);
 
 typedef struct lar_replay_report {
     uint64_t steps;     /* done */
@@ -1258,9 +1302,9 @@ typedef struct lar_replay_report {
  * `broken` says whether the recording ends with that, too. `callback` may be NULL: called with the
  * number of steps at the beginning, after every tick, reset and load, between two advances, so that
  * it may look at the simulation; 0 ends the replay. */
-LAR_API lar_status lar_replay(lar_simulation *simulation, const char *path,
-                              lar_step_callback *callback, void *context, lar_replay_report *report,
-                              lar_error *error);
+LAR_SIZED lar_status lar_replay(lar_simulation *simulation, const char *path,
+                                lar_step_callback *callback, void *context,
+                                lar_replay_report *report, lar_error *error);
 
 /* Plays a recording in the session, at its pace, with play, pause and step; it pauses at its end.
  * Tools follow the recording and nobody else meanwhile. NULL: ends that, and the run goes on from
@@ -1306,6 +1350,251 @@ LAR_API void lar_server_close(lar_server *server);            /* NULL is fine */
 /* 1 when the page that is served without a `folder` is there; 0 when a page stands in for it that
  * says how to get it, and where this build has no libwebsockets. */
 LAR_API int lar_server_has_page(void);
+
+/* ---- structs that grow ------------------------------------------------------------------------
+ *
+ * Later versions may add members at the end of a struct, behind its padding, and mean by 0 there
+ * what was before. A program may be older or newer than the library that it finds, so the calls
+ * above that are LAR_SIZED are compiled into the program: they do nothing but tell the library how
+ * large the program's own struct is. Nothing is written behind it; what only the program has is 0;
+ * what only the library has is as by default; and what a newer program asks for and the library
+ * does not know is LAR_ERROR_UNSUPPORTED. Other languages call those with a size, of their own
+ * struct.
+ *
+ * These stay as they are: lar_error, lar_array_set, lar_surface_arrays, lar_set_info,
+ * lar_surface_info, lar_embedded_info, lar_ray_hit, lar_model_contact_info, lar_tool_pose,
+ * lar_grid_aim, lar_memory_hooks, lar_touch, lar_rest, lar_grasp_answer, lar_tool_load,
+ * lar_server_options and all that is in another struct, but at its end. The library makes
+ * lar_snapshot, so that may grow.
+ */
+LAR_API lar_status lar_model_from_arrays_sized(const lar_mesh_arrays *mesh, size_t size,
+                                               const char *scene, lar_model **model,
+                                               lar_error *error);
+LAR_API lar_status lar_model_inspect_sized(const lar_model *model, lar_model_info *info,
+                                           size_t size, lar_error *error);
+LAR_API lar_status lar_model_material_sized(const lar_model *model, int32_t index,
+                                            lar_material_info *info, size_t size, lar_error *error);
+LAR_API lar_status lar_model_tool_sized(const lar_model *model, int32_t index, lar_tool_info *info,
+                                        size_t size, lar_error *error);
+LAR_API lar_status lar_model_quality_sized(const lar_model *model, const char *against,
+                                           double scale, lar_mesh_quality *quality, size_t size,
+                                           lar_error *error);
+LAR_API void lar_meshing_options_default_sized(lar_meshing_options *options, size_t size);
+LAR_API lar_status lar_meshing_create_sized(const char *const *paths, int32_t count,
+                                            const lar_meshing_options *options, size_t size,
+                                            lar_meshing **meshing, lar_error *error);
+LAR_API lar_status lar_meshing_of_image_sized(const lar_image *image,
+                                              const lar_meshing_options *options, size_t size,
+                                              lar_meshing **meshing, lar_error *error);
+LAR_API lar_status lar_meshing_of_surfaces_sized(const lar_surface_arrays *surface, int32_t count,
+                                                 const lar_meshing_options *options, size_t size,
+                                                 lar_meshing **meshing, lar_error *error);
+LAR_API void lar_meshing_arrays_sized(const lar_meshing *meshing, lar_mesh_arrays *mesh,
+                                      size_t size, lar_surface_arrays *surface);
+LAR_API void lar_meshing_inspect_sized(const lar_meshing *meshing, lar_meshing_info *info,
+                                       size_t size);
+LAR_API lar_status lar_meshing_region_sized(const lar_meshing *meshing, int32_t index,
+                                            lar_region_info *info, size_t size, lar_error *error);
+LAR_API lar_status lar_image_create_sized(const lar_image_info *from, size_t size,
+                                          const char *const *name, const int32_t *named,
+                                          lar_image **image, lar_error *error);
+LAR_API void lar_image_inspect_sized(const lar_image *image, lar_image_info *info, size_t size);
+LAR_API void lar_options_default_sized(lar_options *options, size_t size);
+LAR_API lar_status lar_grid_choose_sized(const lar_model *model, const lar_options *options,
+                                         size_t options_size, const lar_grid_aim *aim,
+                                         lar_grid_choice *choice, size_t choice_size,
+                                         lar_error *error);
+LAR_API lar_status lar_simulation_create_sized(const lar_model *model, const lar_options *options,
+                                               size_t size, lar_simulation **simulation,
+                                               lar_error *error);
+LAR_API void lar_simulation_inspect_sized(const lar_simulation *simulation,
+                                          lar_simulation_info *info, size_t size);
+LAR_API void lar_simulation_energy_sized(const lar_simulation *simulation, lar_energy *energy,
+                                         size_t size);
+LAR_API lar_status lar_simulation_tool_sized(const lar_simulation *simulation, int32_t index,
+                                             lar_tool_info *info, size_t size, lar_error *error);
+LAR_API lar_status lar_simulation_tool_force_sized(const lar_simulation *simulation, int32_t tool,
+                                                   lar_tool_force *force, size_t size,
+                                                   lar_error *error);
+LAR_API lar_status lar_simulation_add_tool_sized(lar_simulation *simulation,
+                                                 const lar_tool_info *wanted, size_t size,
+                                                 int32_t *tool, lar_error *error);
+LAR_API void lar_simulation_heavier_sized(const lar_simulation *simulation, lar_heavier *heavier,
+                                          size_t size);
+LAR_API void lar_simulation_contact_sized(const lar_simulation *simulation, lar_contact_info *info,
+                                          size_t size);
+LAR_API lar_status lar_checkpoint_inspect_sized(const char *path, lar_checkpoint_info *info,
+                                                size_t size, lar_error *error);
+LAR_API void lar_session_options_default_sized(lar_session_options *options, size_t size);
+LAR_API lar_status lar_session_open_sized(lar_simulation *simulation,
+                                          const lar_session_options *options, size_t size,
+                                          lar_session **session, lar_error *error);
+LAR_API void lar_session_inspect_sized(const lar_session *session, lar_session_info *info,
+                                       size_t size);
+LAR_API lar_status lar_session_add_tool_sized(lar_session *session, const lar_tool_info *wanted,
+                                              size_t size, int32_t *tool, lar_error *error);
+LAR_API lar_status lar_session_tool_info_sized(const lar_session *session, int32_t tool,
+                                               lar_tool_info *info, size_t size, lar_error *error);
+LAR_API lar_status lar_session_tool_force_sized(const lar_session *session, int32_t tool,
+                                                lar_tool_pose *pose, lar_tool_force *force,
+                                                size_t size, lar_error *error);
+LAR_API lar_status lar_session_device_sized(const lar_session *session, int32_t tool,
+                                            lar_device_status *status, size_t size,
+                                            lar_error *error);
+LAR_API void lar_session_status_get_sized(const lar_session *session, lar_session_status *status,
+                                          size_t size);
+LAR_API lar_status lar_recording_inspect_sized(const char *path, lar_recording_info *info,
+                                               size_t size, lar_error *error);
+LAR_API lar_status lar_replay_sized(lar_simulation *simulation, const char *path,
+                                    lar_step_callback *callback, void *context,
+                                    lar_replay_report *report, size_t size, lar_error *error);
+
+#ifndef LARIAT_LIBRARY
+LAR_SIZED lar_status lar_model_from_arrays(const lar_mesh_arrays *mesh, const char *scene,
+                                           lar_model **model, lar_error *error) {
+    return lar_model_from_arrays_sized(mesh, sizeof *mesh, scene, model, error);
+}
+LAR_SIZED lar_status lar_model_inspect(const lar_model *model, lar_model_info *info,
+                                       lar_error *error) {
+    return lar_model_inspect_sized(model, info, sizeof *info, error);
+}
+LAR_SIZED lar_status lar_model_material(const lar_model *model, int32_t index,
+                                        lar_material_info *info, lar_error *error) {
+    return lar_model_material_sized(model, index, info, sizeof *info, error);
+}
+LAR_SIZED lar_status lar_model_tool(const lar_model *model, int32_t index, lar_tool_info *info,
+                                    lar_error *error) {
+    return lar_model_tool_sized(model, index, info, sizeof *info, error);
+}
+LAR_SIZED lar_status lar_model_quality(const lar_model *model, const char *against, double scale,
+                                       lar_mesh_quality *quality, lar_error *error) {
+    return lar_model_quality_sized(model, against, scale, quality, sizeof *quality, error);
+}
+LAR_SIZED lar_meshing_options lar_meshing_options_default(void) {
+    lar_meshing_options options;
+    lar_meshing_options_default_sized(&options, sizeof options);
+    return options;
+}
+LAR_SIZED lar_status lar_meshing_create(const char *const *paths, int32_t count,
+                                        const lar_meshing_options *options, lar_meshing **meshing,
+                                        lar_error *error) {
+    return lar_meshing_create_sized(paths, count, options, sizeof *options, meshing, error);
+}
+LAR_SIZED lar_status lar_meshing_of_image(const lar_image *image,
+                                          const lar_meshing_options *options, lar_meshing **meshing,
+                                          lar_error *error) {
+    return lar_meshing_of_image_sized(image, options, sizeof *options, meshing, error);
+}
+LAR_SIZED lar_status lar_meshing_of_surfaces(const lar_surface_arrays *surface, int32_t count,
+                                             const lar_meshing_options *options,
+                                             lar_meshing **meshing, lar_error *error) {
+    return lar_meshing_of_surfaces_sized(surface, count, options, sizeof *options, meshing, error);
+}
+LAR_SIZED void lar_meshing_arrays(const lar_meshing *meshing, lar_mesh_arrays *mesh,
+                                  lar_surface_arrays *surface) {
+    lar_meshing_arrays_sized(meshing, mesh, sizeof *mesh, surface);
+}
+LAR_SIZED void lar_meshing_inspect(const lar_meshing *meshing, lar_meshing_info *info) {
+    lar_meshing_inspect_sized(meshing, info, sizeof *info);
+}
+LAR_SIZED lar_status lar_meshing_region(const lar_meshing *meshing, int32_t index,
+                                        lar_region_info *info, lar_error *error) {
+    return lar_meshing_region_sized(meshing, index, info, sizeof *info, error);
+}
+LAR_SIZED lar_status lar_image_create(const lar_image_info *from, const char *const *name,
+                                      const int32_t *named, lar_image **image, lar_error *error) {
+    return lar_image_create_sized(from, sizeof *from, name, named, image, error);
+}
+LAR_SIZED void lar_image_inspect(const lar_image *image, lar_image_info *info) {
+    lar_image_inspect_sized(image, info, sizeof *info);
+}
+LAR_SIZED lar_options lar_options_default(void) {
+    lar_options options;
+    lar_options_default_sized(&options, sizeof options);
+    return options;
+}
+LAR_SIZED lar_status lar_grid_choose(const lar_model *model, const lar_options *options,
+                                     const lar_grid_aim *aim, lar_grid_choice *choice,
+                                     lar_error *error) {
+    return lar_grid_choose_sized(model, options, sizeof *options, aim, choice, sizeof *choice,
+                                 error);
+}
+LAR_SIZED lar_status lar_simulation_create(const lar_model *model, const lar_options *options,
+                                           lar_simulation **simulation, lar_error *error) {
+    return lar_simulation_create_sized(model, options, sizeof *options, simulation, error);
+}
+LAR_SIZED void lar_simulation_inspect(const lar_simulation *simulation, lar_simulation_info *info) {
+    lar_simulation_inspect_sized(simulation, info, sizeof *info);
+}
+LAR_SIZED void lar_simulation_energy(const lar_simulation *simulation, lar_energy *energy) {
+    lar_simulation_energy_sized(simulation, energy, sizeof *energy);
+}
+LAR_SIZED lar_status lar_simulation_tool(const lar_simulation *simulation, int32_t index,
+                                         lar_tool_info *info, lar_error *error) {
+    return lar_simulation_tool_sized(simulation, index, info, sizeof *info, error);
+}
+LAR_SIZED lar_status lar_simulation_tool_force(const lar_simulation *simulation, int32_t tool,
+                                               lar_tool_force *force, lar_error *error) {
+    return lar_simulation_tool_force_sized(simulation, tool, force, sizeof *force, error);
+}
+LAR_SIZED lar_status lar_simulation_add_tool(lar_simulation *simulation,
+                                             const lar_tool_info *wanted, int32_t *tool,
+                                             lar_error *error) {
+    return lar_simulation_add_tool_sized(simulation, wanted, sizeof *wanted, tool, error);
+}
+LAR_SIZED void lar_simulation_heavier(const lar_simulation *simulation, lar_heavier *heavier) {
+    lar_simulation_heavier_sized(simulation, heavier, sizeof *heavier);
+}
+LAR_SIZED void lar_simulation_contact(const lar_simulation *simulation, lar_contact_info *info) {
+    lar_simulation_contact_sized(simulation, info, sizeof *info);
+}
+LAR_SIZED lar_status lar_checkpoint_inspect(const char *path, lar_checkpoint_info *info,
+                                            lar_error *error) {
+    return lar_checkpoint_inspect_sized(path, info, sizeof *info, error);
+}
+LAR_SIZED lar_session_options lar_session_options_default(void) {
+    lar_session_options options;
+    lar_session_options_default_sized(&options, sizeof options);
+    return options;
+}
+LAR_SIZED lar_status lar_session_open(lar_simulation *simulation,
+                                      const lar_session_options *options, lar_session **session,
+                                      lar_error *error) {
+    return lar_session_open_sized(simulation, options, sizeof *options, session, error);
+}
+LAR_SIZED void lar_session_inspect(const lar_session *session, lar_session_info *info) {
+    lar_session_inspect_sized(session, info, sizeof *info);
+}
+LAR_SIZED lar_status lar_session_add_tool(lar_session *session, const lar_tool_info *wanted,
+                                          int32_t *tool, lar_error *error) {
+    return lar_session_add_tool_sized(session, wanted, sizeof *wanted, tool, error);
+}
+LAR_SIZED lar_status lar_session_tool_info(const lar_session *session, int32_t tool,
+                                           lar_tool_info *info, lar_error *error) {
+    return lar_session_tool_info_sized(session, tool, info, sizeof *info, error);
+}
+LAR_SIZED lar_status lar_session_tool_force(const lar_session *session, int32_t tool,
+                                            lar_tool_pose *pose, lar_tool_force *force,
+                                            lar_error *error) {
+    return lar_session_tool_force_sized(session, tool, pose, force, sizeof *force, error);
+}
+LAR_SIZED lar_status lar_session_device(const lar_session *session, int32_t tool,
+                                        lar_device_status *status, lar_error *error) {
+    return lar_session_device_sized(session, tool, status, sizeof *status, error);
+}
+LAR_SIZED void lar_session_status_get(const lar_session *session, lar_session_status *status) {
+    lar_session_status_get_sized(session, status, sizeof *status);
+}
+LAR_SIZED lar_status lar_recording_inspect(const char *path, lar_recording_info *info,
+                                           lar_error *error) {
+    return lar_recording_inspect_sized(path, info, sizeof *info, error);
+}
+LAR_SIZED lar_status lar_replay(lar_simulation *simulation, const char *path,
+                                lar_step_callback *callback, void *context,
+                                lar_replay_report *report, lar_error *error) {
+    return lar_replay_sized(simulation, path, callback, context, report, sizeof *report, error);
+}
+#endif
 
 #ifdef __cplusplus
 }

@@ -129,6 +129,12 @@ template <class Callable> struct Steps {
 inline const char *version() {
     return lar_version();
 }
+inline std::int32_t version_number() {
+    return lar_version_number();
+}
+inline void memory_set(const lar_memory_hooks &hooks) {
+    detail::call(lar_memory_set, &hooks);
+}
 inline void demo_write(const std::string &folder) {
     detail::call(lar_demo_write, folder.c_str());
 }
@@ -563,6 +569,7 @@ class Session : public detail::Handle<lar_session, detail::close> {
         owned_.reset(detail::ask<lar_session *>(lar_session_open, simulation.get(), &options));
     }
     void start() { detail::call(lar_session_start, get()); }
+    void tick() { detail::call(lar_session_tick, get()); }
     /* The destructor does this too, and cannot say what went wrong. */
     void close() { detail::call(lar_session_close, owned_.release()); }
     lar_session_info inspect() const {
@@ -644,6 +651,12 @@ class Session : public detail::Handle<lar_session, detail::close> {
     }
     lar_tool_force tool_force(std::int32_t tool, lar_tool_pose *pose = nullptr) const {
         return detail::ask<lar_tool_force>(lar_session_tool_force, get(), tool, pose);
+    }
+    Vec3 tool_felt(std::int32_t tool, Vec3 *torque = nullptr) const {
+        Vec3 force{};
+        detail::call(lar_session_tool_felt, get(), tool, force.data(),
+                     torque ? torque->data() : static_cast<double *>(nullptr));
+        return force;
     }
     /* At most `max` points. */
     std::vector<lar_touch> tool_touches(std::int32_t tool, std::int32_t max = 1024) {

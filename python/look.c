@@ -152,31 +152,74 @@ static PyObject *simulation_ray(PyObject *me, PyObject *args, PyObject *keywords
 
 /* ---- stress and strain ---------------------------------------------------------------------- */
 
-static PyObject *tensors(PyObject *me, PyObject *args, PyObject *keywords, const char *call,
-                         const char *format, bool stress) {
-    static char *names[] = {"out", NULL};
+/* Hencky's strain ln(C) / 2 from Green and Lagrange's, (C - 1) / 2: by Jacobi's rotations, which
+ * keep small parts of a tensor as exact as large ones. */
+static void to_logarithmic(double strain[6]) {
+    double a[3][3] = {{strain[0], strain[3], strain[5]},
+                      {strain[3], strain[1], strain[4]},
+                      {strain[5], strain[4], strain[2]}};
+    double q[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    for (int turn = 0; turn < 24; turn++) {
+        const int i = turn % 3 == 2 ? 1 : 0, j = turn % 3 == 0 ? 1 : 2;
+        if (a[i][j] == 0) continue;
+        const double half = (a[j][j] - a[i][i]) / (2 * a[i][j]);
+        const double t = copysign(1, half) / (fabs(half) + sqrt(1 + half * half));
+        const double c = 1 / sqrt(1 + t * t), s = t * c;
+        for (int k = 0; k < 3; k++) {
+            const double x = a[k][i], y = a[k][j], p = q[k][i], r = q[k][j];
+            a[k][i] = c * x - s * y, a[k][j] = s * x + c * y;
+            q[k][i] = c * p - s * r, q[k][j] = s * p + c * r;
+        }
+        for (int k = 0; k < 3; k++) {
+            const double x = a[i][k], y = a[j][k];
+            a[i][k] = c * x - s * y, a[j][k] = s * x + c * y;
+        }
+    }
+    static const int row[] = {0, 1, 2, 0, 1, 2}, column[] = {0, 1, 2, 1, 2, 0};
+    for (int v = 0; v < 6; v++) strain[v] = 0;
+    for (int k = 0; k < 3; k++) {
+        const double part = 0.5 * log1p(2 * a[k][k]);
+        for (int v = 0; v < 6; v++) strain[v] += part * q[row[v]][k] * q[column[v]][k];
+    }
+}
+
+typedef enum tensor { STRESS, STRAIN, LOGARITHMIC } tensor;
+
+static PyObject *tensors(PyObject *me, PyObject *out, const char *call, tensor kind) {
     python_simulation *self = (python_simulation *)me;
-    PyObject *out = NULL;
-    if (!PyArg_ParseTupleAndKeywords(args, keywords, format, names, &out)) return NULL;
+    const int32_t elements = lar_model_element_count(self->model->model);
     python_target target;
-    if (!python_target_open(out, 'd', lar_model_element_count(self->model->model), 6, &target))
-        return NULL;
+    if (!python_target_open(out, 'd', elements, 6, &target)) return NULL;
     lar_simulation *simulation = python_simulation_take(self, call);
     if (!simulation) return python_target_close(&target, true);
     lar_error error;
     lar_status status;
-    PYTHON_UNLOCKED(status = lar_simulation_stresses(simulation, stress ? target.data : NULL,
-                                                     stress ? NULL : target.data, &error));
+    double(*value)[6] = target.data;
+    PYTHON_UNLOCKED({
+        status = lar_simulation_stresses(simulation, kind == STRESS ? value : NULL,
+                                         kind == STRESS ? NULL : value, &error);
+        for (int32_t e = 0; e < elements && !status && kind == LOGARITHMIC; e++)
+            to_logarithmic(value[e]);
+    });
     python_simulation_give(self);
     if (status) python_raise(&error);
     return python_target_close(&target, status != LAR_OK);
 }
 
 static PyObject *stresses(PyObject *me, PyObject *args, PyObject *keywords) {
-    return tensors(me, args, keywords, "stresses", "|O:stresses", true);
+    static char *names[] = {"out", NULL};
+    PyObject *out = NULL;
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, "|O:stresses", names, &out)) return NULL;
+    return tensors(me, out, "stresses", STRESS);
 }
+
 static PyObject *strains(PyObject *me, PyObject *args, PyObject *keywords) {
-    return tensors(me, args, keywords, "strains", "|O:strains", false);
+    static char *names[] = {"out", "logarithmic", NULL};
+    PyObject *out = NULL;
+    int logarithmic = 0;
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, "|O$p:strains", names, &out, &logarithmic))
+        return NULL;
+    return tensors(me, out, "strains", logarithmic ? LOGARITHMIC : STRAIN);
 }
 
 #define FUNCTION(f) ((PyCFunction)(void (*)(void))(f))
@@ -201,7 +244,7 @@ PyMethodDef python_look_methods[] = {
      "stresses($self, out=None)\n--\n\nMean Cauchy stress of every element now [Pa], viscous and "
      "active stress included," OUT_DOC},
     {"strains", FUNCTION(strains), METH_VARARGS | METH_KEYWORDS,
-     "strains($self, out=None)\n--\n\nGreen-Lagrange strain (F^T F - 1) / 2 of every element's "
-     "mean "
-     "deformation gradient F now," OUT_DOC},
+     "strains($self, out=None, *, logarithmic=False)\n--\n\nGreen-Lagrange strain (F^T F - 1) / 2 "
+     "of every element's mean deformation gradient F now, or Hencky's ln(F^T F) / 2, which is the "
+     "logarithm of lengths," OUT_DOC},
     {NULL, NULL, 0, NULL}};

@@ -118,12 +118,13 @@ static PyObject *make_material(const lar_model *model, int32_t index) {
     lar_material_info m;
     lar_error error;
     if (lar_model_material(model, index, &m, &error)) return python_raise(&error);
-    return Py_BuildValue("{s:s,s:s,s:i,s:d,s:d,s:d,s:i,s:d,s:s,s:d,s:i,s:d}", "name", m.name, "law",
-                         m.law, "elements", (int)m.elements, "density", m.density, "shear_modulus",
-                         m.shear_modulus, "bulk_modulus", m.bulk_modulus, "viscous_terms",
-                         (int)m.viscous_terms, "instant_shear_modulus", m.instant_shear_modulus,
-                         "fibres", m.fibres, "fibre_modulus", m.fibre_modulus, "fibre_families",
-                         (int)m.fibre_families, "fibre_dispersion", m.fibre_dispersion);
+    return Py_BuildValue(
+        "{s:s,s:s,s:i,s:d,s:d,s:d,s:i,s:d,s:s,s:d,s:i,s:d,s:d,s:d}", "name", m.name, "law", m.law,
+        "elements", (int)m.elements, "density", m.density, "shear_modulus", m.shear_modulus,
+        "bulk_modulus", m.bulk_modulus, "viscous_terms", (int)m.viscous_terms,
+        "instant_shear_modulus", m.instant_shear_modulus, "fibres", m.fibres, "fibre_modulus",
+        m.fibre_modulus, "fibre_families", (int)m.fibre_families, "fibre_dispersion",
+        m.fibre_dispersion, "active_along", m.active_along, "active_across", m.active_across);
 }
 static PyObject *get_materials(PyObject *me, void *unused) {
     (void)unused;
@@ -278,7 +279,8 @@ static PyGetSetDef model_properties[] = {
      "largest stable step and time step [s]. Goes through all elements.",
      NULL},
     {"materials", get_materials, NULL,
-     "list of dicts: name, law, elements, density [kg/m^3], moduli [Pa], viscous terms, fibres.",
+     "list of dicts: name, law, elements, density [kg/m^3], moduli [Pa], viscous terms, fibres, "
+     "active stress along and across these when all of them are active [Pa].",
      NULL},
     {"sets", get_sets, NULL, "list of dicts: name, kind (nodes, elements, faces), count.", NULL},
     {"tools", get_tools, NULL,

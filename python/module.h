@@ -9,6 +9,7 @@
  *     mesh.c          lariat.mesh                    meshing.c   class Meshing
  *     saved.c         class Saved: a state in memory     view.c      class View: the browser
  *     results.c       class Results: states on disk      look.c      rays, stress and strain
+ *     rest.c          Simulation.rest
  *     batch.c         class Batch: its life, advance     batch_state.c    arrays, tools, resets
  *     pool.c          its threads                        module.c    the module itself
  *
@@ -232,6 +233,10 @@ lar_simulation *python_simulation_look(python_simulation *self, const char *call
 /* The same, and taken until python_simulation_give: for calls that let go of the lock. */
 lar_simulation *python_simulation_take(python_simulation *self, const char *call);
 void python_simulation_give(python_simulation *self);
+/* One advance of the library, without the interpreter's lock; Ctrl-C ends it. */
+bool python_simulation_advance(python_simulation *self, unsigned long long steps);
+/* Whole steps of a time from 0 on. */
+bool python_seconds(PyObject *seconds, const lar_simulation *simulation, unsigned long long *steps);
 /* The index of a tool: a number or a name. */
 bool python_simulation_tool(lar_simulation *simulation, PyObject *source, int32_t *index);
 
@@ -240,7 +245,7 @@ void python_positions(const lar_simulation *simulation, double (*out)[3]);
 
 /* Rows of the class that stand in other files; each table ends with a row of NULL. */
 extern PyMethodDef python_state_methods[], python_change_methods[], python_tool_methods[],
-    python_look_methods[];
+    python_look_methods[], python_rest_methods[];
 extern PyGetSetDef python_change_properties[], python_tool_properties[];
 
 /* ---- threads of a batch ------------------------------------------------------------------------

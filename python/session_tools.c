@@ -102,6 +102,16 @@ static PyObject *wrench(PyObject *me, PyObject *tool) {
     return force_of(me, tool, "wrench", NULL, &force) ? python_wrench(&force) : NULL;
 }
 
+static PyObject *felt(PyObject *me, PyObject *tool) {
+    int32_t index;
+    double f[3], t[3];
+    lar_error error;
+    lar_session *session = look(me, tool, &index, "felt");
+    if (!session) return NULL;
+    if (lar_session_tool_felt(session, index, f, t, &error)) return python_raise(&error);
+    return Py_BuildValue("(dddddd)", f[0], f[1], f[2], t[0], t[1], t[2]);
+}
+
 static PyObject *tool_touches(PyObject *me, PyObject *tool) {
     enum { ROOM = 1024 }; /* between two looks the tick has moved on: one look has to do */
     int32_t index, count = 0;
@@ -224,6 +234,10 @@ PyMethodDef python_session_tool_methods[] = {
     {"tool_pose", tool_pose, METH_O, "tool_pose($self, tool)\n--\n\ndict, as of the last tick."},
     {"tool_force", tool_force, METH_O,
      "tool_force($self, tool)\n--\n\ndict, as Simulation.tool_force, of the last tick."},
+    {"felt", felt, METH_O,
+     "felt($self, tool)\n--\n\nWhat the hand feels that leads the tool by tool_move: force [N] and "
+     "torque [N m] of the coupling between both in the last tick, six floats. It is bounded and "
+     "passive: what a haptic device in this process is given."},
     {"wrench", wrench, METH_O,
      "wrench($self, tool)\n--\n\nForce [N] and torque [N m] of the last tick, six floats."},
     {"tool_touches", tool_touches, METH_O,

@@ -236,8 +236,7 @@ static int look_for_signals(void *context, uint64_t step) {
     return ++w->calls % 8 != 0 || python_watch_look(w);
 }
 
-/* One call of the library. */
-static bool advance_once(python_simulation *self, unsigned long long steps) {
+bool python_simulation_advance(python_simulation *self, unsigned long long steps) {
     lar_simulation *simulation = python_simulation_take(self, "advance");
     if (!simulation) return false;
     lar_error error;
@@ -267,7 +266,7 @@ static bool advance_with(PyObject *me, unsigned long long steps, PyObject *callb
     bool goes_on = true;
     while (*done < steps && goes_on) {
         unsigned long long piece = steps - *done < every ? steps - *done : every;
-        if (!advance_once((python_simulation *)me, piece)) return false;
+        if (!python_simulation_advance((python_simulation *)me, piece)) return false;
         *done += piece;
         if (!call_back(me, callback, &goes_on)) return false;
     }
@@ -300,16 +299,21 @@ static bool parse_advance(PyObject *const *args, Py_ssize_t count, PyObject *nam
            python_refuse_type("advance: expected steps or seconds=, and not both");
 }
 
-static bool steps_of(python_simulation *self, const advance_call *call, unsigned long long *steps) {
-    double seconds;
-    if (call->steps) return python_steps(call->steps, "steps", steps);
-    lar_simulation *simulation = python_simulation_look(self, "advance");
-    if (!simulation || !python_number(call->seconds, "seconds", &seconds)) return false;
-    double wanted = round(seconds / lar_simulation_time_step(simulation));
+bool python_seconds(PyObject *seconds, const lar_simulation *simulation,
+                    unsigned long long *steps) {
+    double time;
+    if (!python_number(seconds, "seconds", &time)) return false;
+    double wanted = round(time / lar_simulation_time_step(simulation));
     if (!(wanted >= 0 && wanted < 9e15))
-        return python_refuse("seconds: expected a time from 0 on, got %R", call->seconds);
+        return python_refuse("seconds: expected a time from 0 on, got %R", seconds);
     *steps = (unsigned long long)wanted;
     return true;
+}
+
+static bool steps_of(python_simulation *self, const advance_call *call, unsigned long long *steps) {
+    if (call->steps) return python_steps(call->steps, "steps", steps);
+    lar_simulation *simulation = python_simulation_look(self, "advance");
+    return simulation && python_seconds(call->seconds, simulation, steps);
 }
 
 static PyObject *simulation_advance(PyObject *me, PyObject *const *args, Py_ssize_t count,
@@ -323,7 +327,7 @@ static PyObject *simulation_advance(PyObject *me, PyObject *const *args, Py_ssiz
             python_refuse_type("advance: every= goes with callback=");
             return NULL;
         }
-        return advance_once(self, steps) ? PyLong_FromUnsignedLongLong(steps) : NULL;
+        return python_simulation_advance(self, steps) ? PyLong_FromUnsignedLongLong(steps) : NULL;
     }
     if (!PyCallable_Check(call.callback)) {
         python_refuse_type("callback: expected something to call, got %R",
@@ -460,11 +464,12 @@ static const char simulation_doc[] =
     "One thread at a time: a second one gets a StateError. close() or `with` free it early.";
 
 bool python_simulation_add(PyObject *module) {
-    PyMethodDef *const methods[] = {simulation_methods, python_state_methods, python_change_methods,
-                                    python_tool_methods, python_look_methods};
+    PyMethodDef *const methods[] = {simulation_methods,    python_state_methods,
+                                    python_change_methods, python_tool_methods,
+                                    python_look_methods,   python_rest_methods};
     PyGetSetDef *const properties[] = {simulation_properties, python_change_properties,
                                        python_tool_properties};
-    PyMethodDef *all = python_join_methods(methods, 5);
+    PyMethodDef *all = python_join_methods(methods, 6);
     PyGetSetDef *shown = python_join_properties(properties, 3);
     if (!all || !shown) return false;
     PyType_Slot slots[] = {{Py_tp_doc, (void *)(uintptr_t)simulation_doc},

@@ -8,6 +8,63 @@
 #include <sys/mman.h>
 #include <sys/stat.h>
 
+/* ---- the host's, or the C library's --------------------------------------------------------- */
+
+/* Set before anything else is asked for, and never again: what one allocates the other cannot free.
+ */
+static lar_memory_hooks host;
+static bool used; /* atomic: there was memory already */
+
+lar_status lar_memory_set(const lar_memory_hooks *hooks, lar_error *error) {
+    if (!hooks || !hooks->allocate || !hooks->resize || !hooks->release)
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "lar_memory_set needs functions that allocate, resize and release; none "
+                        "may be NULL");
+    if (__atomic_exchange_n(&used, true, __ATOMIC_ACQ_REL))
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "the library has asked for memory already, or been given functions for "
+                        "it; call lar_memory_set before all other calls, and once");
+    host = *hooks;
+    return LAR_OK;
+}
+
+static bool is_hosted(void) {
+    if (!__atomic_load_n(&used, __ATOMIC_ACQUIRE)) __atomic_store_n(&used, true, __ATOMIC_RELEASE);
+    return host.allocate != NULL;
+}
+
+void *lar_host_malloc(size_t bytes) {
+    return is_hosted() ? host.allocate(host.context, bytes, _Alignof(max_align_t))
+                       : (malloc)(bytes);
+}
+
+void *lar_host_calloc(size_t count, size_t size) {
+    if (!is_hosted()) return (calloc)(count, size);
+    if (size != 0 && count > SIZE_MAX / size) return NULL;
+    void *memory = lar_host_malloc(count * size);
+    return memory ? memset(memory, 0, count * size) : NULL;
+}
+
+void *lar_host_realloc(void *memory, size_t bytes) {
+    if (!is_hosted()) return (realloc)(memory, bytes);
+    return memory ? host.resize(host.context, memory, bytes) : lar_host_malloc(bytes);
+}
+
+void *lar_host_aligned(size_t alignment, size_t bytes) {
+    return is_hosted() ? host.allocate(host.context, bytes, alignment)
+                       : (aligned_alloc)(alignment, bytes);
+}
+
+void lar_host_free(void *memory) {
+    if (host.allocate) {
+        if (memory) host.release(host.context, memory);
+    } else {
+        (free)(memory);
+    }
+}
+
+/* ---- ours ------------------------------------------------------------------------------------ */
+
 void *lar_calloc(size_t count, size_t size) {
     if (count == 0 || size == 0) return calloc(1, 1);
     return calloc(count, size);

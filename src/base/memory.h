@@ -9,8 +9,26 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdlib.h>
 
 #include "base/error.h"
+
+/* Memory comes from the host where it gives functions for that (lar_memory_set). Every file of the
+ * library is compiled with this header in front (src/CMakeLists.txt), so that none asks for memory,
+ * or gives it back, beside it. What the C library allocates, as open_memstream does, goes back to
+ * it by (free)(memory). Other libraries have their own ways. */
+void *lar_host_malloc(size_t bytes);
+void *lar_host_calloc(size_t count, size_t size);
+void *lar_host_realloc(void *memory, size_t bytes);
+void *lar_host_aligned(size_t alignment, size_t bytes);
+void lar_host_free(void *memory);
+#ifdef LARIAT_LIBRARY
+#define malloc(bytes)                   lar_host_malloc(bytes)
+#define calloc(count, size)             lar_host_calloc(count, size)
+#define realloc(memory, bytes)          lar_host_realloc(memory, bytes)
+#define aligned_alloc(alignment, bytes) lar_host_aligned(alignment, bytes)
+#define free(memory)                    lar_host_free(memory)
+#endif
 
 /* calloc that refuses an overflowing product. count == 0 gives a valid pointer. NULL on
  * failure. Free with free(). */

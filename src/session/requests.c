@@ -36,16 +36,22 @@ bool lar_requests_wait(lar_requests *requests, int64_t deadline) {
     return wait_on(requests, &requests->bell, deadline);
 }
 
-bool lar_requests_next(lar_requests *requests, lar_request *request) {
-    /* Only the engine changes `taken`. */
-    if (__atomic_load_n(&requests->placed, __ATOMIC_ACQUIRE) == requests->taken) return false;
-    if (pthread_mutex_trylock(&requests->lock)) return false;
+bool lar_requests_take(lar_requests *requests, lar_request *request) {
+    if (requests->placed == requests->taken) return false;
     bool full = requests->placed - requests->taken == LAR_REQUESTS_MAX;
     *request = requests->ring[requests->taken % LAR_REQUESTS_MAX];
     requests->taken++;
     if (full) pthread_cond_broadcast(&requests->bell);
-    pthread_mutex_unlock(&requests->lock);
     return true;
+}
+
+bool lar_requests_next(lar_requests *requests, lar_request *request) {
+    /* Only the engine changes `taken`. */
+    if (__atomic_load_n(&requests->placed, __ATOMIC_ACQUIRE) == requests->taken) return false;
+    if (pthread_mutex_trylock(&requests->lock)) return false;
+    bool any = lar_requests_take(requests, request);
+    pthread_mutex_unlock(&requests->lock);
+    return any;
 }
 
 void lar_requests_answer(lar_requests *requests, lar_request_answer *answer) {

@@ -96,6 +96,8 @@ void lar_requests_place(lar_requests *requests, const lar_request *request);
 /* Waits on the bell, at most until `deadline` (base/clock.h); false when that has passed. */
 bool lar_requests_wait(lar_requests *requests, int64_t deadline);
 
+/* Under the lock. False when there is none. */
+bool lar_requests_take(lar_requests *requests, lar_request *request);
 /* The engine's thread, without the lock. False when there is none, or the lock is taken. */
 bool lar_requests_next(lar_requests *requests, lar_request *request);
 /* An answer is complete: whoever waits for it is told. Takes the lock: for what took long anyway.

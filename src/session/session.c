@@ -136,6 +136,7 @@ lar_status lar_session_open(lar_simulation *simulation, const lar_session_option
     session->simulation = simulation;
     session->time_step = lar_simulation_time_step(simulation);
     session->divided = lar_simulation_divided_steps(simulation, NULL);
+    session->good_step = lar_simulation_steps(simulation);
     lar_status status = choose(session, &asked, error);
     if (!status) status = make_tools(session, error);
     if (!status && !(session->view = lar_calloc(1, sizeof *session->view)))
@@ -175,6 +176,10 @@ lar_status lar_session_start(lar_session *session, lar_error *error) {
     pthread_mutex_lock(&session->requests.lock);
     if (session->started) {
         status = lar_fail(error, LAR_ERROR_ARGUMENT, "the session has been started already");
+    } else if (session->hosted) {
+        status = lar_fail(error, LAR_ERROR_ARGUMENT,
+                          "the session ticks by its host's clock (lar_session_tick); open another "
+                          "one to start it");
     } else {
         if (session->status.state == LAR_SESSION_IDLE)
             session->status.state =

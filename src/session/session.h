@@ -41,7 +41,7 @@ typedef struct lar_session_view {
     struct {
         lar_tool_info info;
         lar_tool_pose pose;
-        lar_tool_force force;
+        lar_tool_force force, felt;
         lar_tool_load load;
         lar_grasp_answer grasp;
         lar_device_status device; /* summed up from time to time only */
@@ -65,7 +65,7 @@ typedef struct lar_session_tool {
     lar_tool_force force;            /* what the tissue does to it */
     lar_tool_load load;              /* since the session was opened */
     lar_grasp_answer grasp;
-    lar_tool_force felt; /* what its device is told, behind the coupling */
+    lar_tool_force felt; /* what its hand feels and its device is told, behind the coupling */
 } lar_session_tool;
 
 struct lar_session {
@@ -83,6 +83,7 @@ struct lar_session {
     lar_snapshots snapshots;
     pthread_t thread;
     bool started; /* under requests.lock */
+    bool hosted;  /* the same: lar_session_tick instead of a thread */
 
     /* The engine's own. */
     lar_session_status status;
@@ -108,6 +109,8 @@ lar_recording_header lar_session_recording_header(const lar_session *session);
 
 void *lar_session_run(void *session);
 void lar_session_execute(lar_session *session, const lar_request *request);
+/* With a host's clock, under requests.lock: what was asked for since the last tick. */
+void lar_session_execute_asked(lar_session *session);
 /* The simulation is somewhere else now, and the run goes on from there. */
 lar_status lar_session_arrive(lar_session *session, lar_error *error);
 /* Plays from now on; rests; stops, because the run broke. */

@@ -46,6 +46,7 @@ void lar_session_publish(lar_session *session, bool quantiles) {
         view->tool[i].info = session->tool[i].info;
         view->tool[i].pose = session->tool[i].place;
         view->tool[i].force = session->tool[i].force;
+        view->tool[i].felt = session->tool[i].felt;
         view->tool[i].load = session->tool[i].load;
         view->tool[i].grasp = session->tool[i].grasp;
         if (quantiles && session->tool[i].device)
@@ -180,6 +181,16 @@ static void tick(lar_session *session) {
     count_steps(session, steps);
 }
 
+static void play(lar_session *session) {
+    const lar_player *player = session->player;
+    if (!player)
+        tick(session);
+    else if (player->goal > player->place || player->rests)
+        hurry(session);
+    else
+        play_tick(session);
+}
+
 /* ---- the thread ---------------------------------------------------------------------------- */
 
 static void execute_requests(lar_session *session) {
@@ -258,12 +269,7 @@ void *lar_session_run(void *argument) {
         execute_requests(session);
         if (session->ended) break;
         if (session->status.state == LAR_SESSION_PLAYING) {
-            if (!session->player)
-                tick(session);
-            else if (session->player->goal > session->player->place || session->player->rests)
-                hurry(session);
-            else
-                play_tick(session);
+            play(session);
             wait_for_tick(session);
             fade = fade_from_now();
         } else {
@@ -272,4 +278,60 @@ void *lar_session_run(void *argument) {
     }
     lar_pace_stop(&session->pace, lar_clock_ns());
     return NULL;
+}
+
+/* ---- a host's clock ------------------------------------------------------------------------ */
+
+void lar_session_execute_asked(lar_session *session) {
+    lar_request request;
+    while (lar_requests_take(&session->requests, &request)) lar_session_execute(session, &request);
+}
+
+/* The simulation is the session's own from now on. */
+static void begin_hosted(lar_session *session) {
+    session->hosted = true;
+    lar_simulation_reserve(session->simulation, true);
+    if (session->status.state != LAR_SESSION_IDLE) return;
+    if (session->options.paused)
+        session->status.state = LAR_SESSION_PAUSED;
+    else
+        lar_session_go_on(session);
+}
+
+/* Forces fade as in rest(), by ticks: a hundredth is left after FADE. */
+static void rest_hosted(lar_session *session) {
+    double seconds = (double)session->tick_steps * session->time_step;
+    lar_session_idle_tools(session, exp(-4.6 * seconds / FADE));
+    serve_snapshots(session);
+    lar_session_publish(session, lar_pace_look(&session->pace, lar_clock_ns()));
+}
+
+/* Under the lock, which keeps out those who do what they ask for themselves (calls.c). */
+static void host_tick(lar_session *session) {
+    if (!session->hosted) begin_hosted(session);
+    lar_simulation_reserve_here(session->simulation);
+    lar_session_execute_asked(session);
+    session->pace.pace = 0; /* nothing is late by a clock that is not ours */
+    if (session->status.state == LAR_SESSION_PLAYING)
+        play(session);
+    else
+        rest_hosted(session);
+    lar_simulation_reserve_here(NULL); /* between two ticks the host is a caller like others */
+}
+
+lar_status lar_session_tick(lar_session *session, lar_error *error) {
+    if (!session)
+        return lar_fail(error, LAR_ERROR_ARGUMENT, "lar_session_tick needs a session, not NULL");
+    lar_status status = LAR_OK;
+    pthread_mutex_lock(&session->requests.lock);
+    if (session->started)
+        status = lar_fail(error, LAR_ERROR_ARGUMENT,
+                          "the session has been started and ticks by itself; lar_session_tick is "
+                          "for one that has not been");
+    else
+        host_tick(session);
+    if (!status && session->status.state == LAR_SESSION_STOPPED)
+        status = lar_fail(error, session->status.error, "%s", session->status.message);
+    pthread_mutex_unlock(&session->requests.lock);
+    return status;
 }

@@ -87,6 +87,17 @@ lar_status lar_session_tool_force(const lar_session *session, int32_t tool, lar_
     return LAR_OK;
 }
 
+lar_status lar_session_tool_felt(const lar_session *session, int32_t tool, double force[3],
+                                 double torque[3], lar_error *error) {
+    lar_status status = lar_session_check_tool(session, tool, error);
+    if (status) return status;
+    const lar_tool_force *felt = &look_at_view(session)->tool[tool].felt;
+    if (force) memcpy(force, felt->force, sizeof felt->force);
+    if (torque) memcpy(torque, felt->torque, sizeof felt->torque);
+    end_look(session);
+    return LAR_OK;
+}
+
 lar_status lar_session_tool_load(const lar_session *session, int32_t tool, lar_tool_load *load,
                                  lar_error *error) {
     lar_status status = lar_session_check_tool(session, tool, error);

@@ -212,6 +212,7 @@ void lar_session_feel_tools(lar_session *session) {
     lar_session_look_at_spares(session); /* a recording that is played adds and removes, too */
     int64_t now = lar_clock_ns();
     double passed = session->felt_at ? 1e-9 * (double)(now - session->felt_at) : 0;
+    if (session->hosted) passed = (double)session->tick_steps * session->time_step;
     session->felt_at = now;
     lar_history_begin(&session->history);
     for (int32_t i = 0; i < session->tools; i++) {

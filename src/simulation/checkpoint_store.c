@@ -73,7 +73,7 @@ static bool is_left_over(int folder, const char *name, const char *found) {
 /* What processes have left that were killed while they saved to this path. */
 static void clean_up(const char *path) {
     const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
-    char *above = slash ? strndup(path, (size_t)(slash - path) + 1) : strdup(".");
+    char *above = slash ? lar_strndup(path, (size_t)(slash - path) + 1) : lar_strdup(".");
     DIR *folder = above ? opendir(above) : NULL;
     for (struct dirent *entry; folder && (entry = readdir(folder)) != NULL;)
         if (is_left_over(dirfd(folder), name, entry->d_name))

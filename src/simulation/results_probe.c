@@ -110,7 +110,7 @@ static lar_status add_line(lar_probe_file *file, const lar_model *model,
             status = lar_fail_memory(error, size, "a line of probes.csv");
     }
     if (!status) status = append(file, text, size, error);
-    free(text);
+    (free)(text); /* the C library's own */
     return status;
 }
 

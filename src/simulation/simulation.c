@@ -242,6 +242,7 @@ void lar_simulation_destroy(lar_simulation *simulation) {
     lar_interactions_destroy(&simulation->interactions);
     lar_strained_destroy(&simulation->strained);
     lar_state_destroy(&simulation->state);
+    lar_state_destroy(&simulation->start);
     lar_domain_leave(&simulation->domain);
     free(simulation);
 }

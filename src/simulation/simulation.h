@@ -20,6 +20,7 @@ typedef struct lar_simulation_scratch {
 struct lar_simulation {
     lar_domain domain; /* changed by lar_simulation_settle only */
     lar_state state;
+    lar_state start; /* the first one, once somebody has gone back there; else empty */
     lar_interactions interactions; /* of an advance without a computer */
     lar_strained strained;         /* the same */
     lar_needs needs;               /* the same */

@@ -11,14 +11,6 @@ static lar_status check_whole(const lar_simulation *simulation, lar_error *error
                                                                 : LAR_OK;
 }
 
-lar_status lar_simulation_reset(lar_simulation *simulation, lar_error *error) {
-    lar_status status = lar_simulation_check_zero(simulation, "lar_simulation_reset", error);
-    if (!status) status = check_whole(simulation, error);
-    if (status) return status;
-    lar_simulation_set_start(simulation);
-    return lar_simulation_take_up(simulation, error);
-}
-
 /* Only what carries the state from one step to the next. A run that breaks off may do so between
  * the parts of a step; copies are made between steps. */
 static void copy_state(const lar_state *from, lar_state *to) {
@@ -34,6 +26,37 @@ static void copy_state(const lar_state *from, lar_state *to) {
         memcpy(to->name, from->name, LAR_STATE_SIZE(from, of_node, of_history) * sizeof(type));
     LAR_STATE_ARRAYS(LAR_STATE_COPY)
 #undef LAR_STATE_COPY
+}
+
+/* Forces are of no step then, and what contact remembers is of another state. */
+static void put_state(lar_simulation *simulation, const lar_state *state) {
+    copy_state(state, &simulation->state);
+    memset(simulation->state.force, 0,
+           4 * (size_t)simulation->state.node_count * sizeof *simulation->state.force);
+    lar_interactions_forget(&simulation->interactions);
+}
+
+/* The start takes as long as ten steps to compute, and is always the same: who goes back there may
+ * do so often, so it is kept from the first time on, where there is memory for it. */
+static void go_to_start(lar_simulation *simulation) {
+    const lar_state *state = &simulation->state;
+    lar_state *start = &simulation->start;
+    if (start->u) {
+        put_state(simulation, start);
+        lar_tools_reset(&simulation->list, &simulation->tools);
+        return;
+    }
+    lar_simulation_set_start(simulation);
+    if (!lar_state_create(start, state->node_count, state->history_count, NULL))
+        copy_state(state, start);
+}
+
+lar_status lar_simulation_reset(lar_simulation *simulation, lar_error *error) {
+    lar_status status = lar_simulation_check_zero(simulation, "lar_simulation_reset", error);
+    if (!status) status = check_whole(simulation, error);
+    if (status) return status;
+    go_to_start(simulation);
+    return lar_simulation_take_up(simulation, error);
 }
 
 lar_status lar_simulation_copy(const lar_simulation *simulation, lar_state *state, lar_tools *tools,
@@ -55,12 +78,9 @@ static lar_status take_state(lar_simulation *simulation, const lar_state *state,
                              const double *history, const lar_tools *tools, lar_error *error) {
     lar_status status = check_whole(simulation, error);
     if (status) return status;
-    copy_state(state, &simulation->state);
+    put_state(simulation, state);
     if (history) lar_viscous_scatter(&simulation->domain, &simulation->state, history);
-    memset(simulation->state.force, 0,
-           4 * (size_t)simulation->state.node_count * sizeof *simulation->state.force);
     simulation->tools = *tools;
-    lar_interactions_forget(&simulation->interactions);
     return lar_simulation_take_up(simulation, error);
 }
 

@@ -10,10 +10,13 @@ continued { continued = /\\$/; next }
 END {
     while ((begin = index(text, "/*")) > 0)
         text = substr(text, 1, begin - 1) substr(text, begin + index(substr(text, begin), "*/") + 1)
+    gsub(/\) *\{[^{}]*\}/, ");", text)     # of inline functions
     count = split(text, part, ";")
     for (i = 1; i <= count; i++) {
         if (part[i] ~ /typedef/ || !match(part[i], /lar_[a-z_0-9]+\(/)) continue
         name = substr(part[i], RSTART, RLENGTH - 1)
+        if (name in seen) continue
+        seen[name] = 1
         rest = substr(part[i], RSTART + RLENGTH)
         sub(/\)[^)]*$/, "", rest)          # attributes have none of their own
         gsub(/\([^()]*\)/, "", rest)       # const double (*u)[3]

@@ -392,13 +392,18 @@ static void a_reset_goes_back_to_the_model(void **unused) {
         options.grid = grids[grid];
         lar_simulation *simulation = start_with(model, options);
         advance(simulation, 40);
-        uint64_t wanted = lar_simulation_hash(simulation);
-        run(simulation, 0, 4);
-        assert_int_equal(lar_simulation_reset(simulation, NULL), LAR_OK);
-        assert_true(lar_simulation_stiffness(simulation, 0) == 1);
-        assert_true(lar_simulation_damping(simulation) == model->damping);
-        advance(simulation, 40);
-        assert_int_equal(lar_simulation_hash(simulation), wanted);
+        uint64_t wanted = lar_simulation_hash(simulation), begin = 0;
+        /* The first time the start is computed, afterwards it is there. */
+        for (int again = 0; again < 3; again++) {
+            run(simulation, again, 4);
+            assert_int_equal(lar_simulation_reset(simulation, NULL), LAR_OK);
+            assert_true(lar_simulation_stiffness(simulation, 0) == 1);
+            assert_true(lar_simulation_damping(simulation) == model->damping);
+            if (again == 0) begin = lar_simulation_hash(simulation);
+            assert_int_equal(lar_simulation_hash(simulation), begin);
+            advance(simulation, 40);
+            assert_int_equal(lar_simulation_hash(simulation), wanted);
+        }
         lar_simulation_destroy(simulation);
     }
     lar_model_destroy(model);

@@ -155,6 +155,32 @@ class Tensors(unittest.TestCase):
             self.assertGreater(stress[0, place], 300)
             self.assertAlmostEqual(stress[0, 9 - place], 0, places=8)
 
+    def test_logarithmic_strain(self):
+        # Stretched by 1.2: the others' axes are held. Sheared by 0.2: by the principal stretches.
+        sim = self.pulled(0.2 * EDGE, "z")
+        self.assertAlmostEqual(sim.strains(logarithmic=True)[0, 2], math.log(1.2), places=12)
+        for axes, place in (("x", 5), ("y", 4)):
+            strain = self.pulled(0.2 * EDGE, axes).strains(logarithmic=True)
+            # C = ((1, g), (g, 1 + g^2)): stretches l and 1 / l with l - 1 / l = g, and its axes.
+            g = 0.2
+            stretch = (g + math.sqrt(g * g + 4)) / 2
+            turn = 0.5 * math.atan2(2 * g, -g * g)
+            part = math.log(stretch)
+            low = 0 if axes == "x" else 1
+            self.assertAlmostEqual(strain[0, place], part * math.sin(2 * turn), places=12)
+            self.assertAlmostEqual(strain[0, low], part * math.cos(2 * turn), places=12)
+            self.assertAlmostEqual(strain[0, 2], -part * math.cos(2 * turn), places=12)
+            self.assertEqual(strain[0, 1 - low], 0)
+        # A body that is only turned has none of either kind; a small strain is the same by both.
+        sim = lariat.Simulation(block())
+        sim.advance(20)
+        small = sim.strains(), sim.strains(logarithmic=True)
+        worst = max(abs(small[0][e, k]) for e in range(sim.model.element_count) for k in range(6))
+        self.assertGreater(worst, 0)
+        for e in range(sim.model.element_count):
+            for k in range(6):
+                self.assertLess(abs(small[0][e, k] - small[1][e, k]), 4 * worst * worst)
+
     def test_grids_and_out(self):
         model = lariat.Model(os.path.join(demo(), "uterus.yaml"))
         sims = [lariat.Simulation(model, **options) for options in

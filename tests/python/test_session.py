@@ -53,6 +53,12 @@ class Sessions(unittest.TestCase):
         wait_until(lambda: self.session.tool_force("probe")["touching"] > 0)
         self.assertGreater(len(self.session.tool_touches("probe")), 0)
         self.assertEqual(len(self.session.wrench("probe")), 6)
+        # What the hand feels is the coupling's, which comes to bear what the tissue does.
+        wait_until(lambda: self.session.wrench("probe")[2] > 0 and abs(
+            self.session.felt("probe")[2] / self.session.wrench("probe")[2] - 1) < 0.1)
+        self.assertEqual(self.session.felt(1), (0.0,) * 6)
+        with self.assertRaisesRegex(lariat.ArgumentError, "tool"):
+            self.session.felt("nobody's")
         place = (0.01, 0.01, 3 * EDGE)
         self.assertGreater(self.session.grasp(1, place), 0)
         self.session.tool_move(1, (0.01, 0.01, 3 * EDGE + 0.003))

@@ -49,6 +49,71 @@ class Bits(unittest.TestCase):
         self.assertEqual(len(set(hashes)), 1)
 
 
+class Rest(unittest.TestCase):
+    def test_a_block_sags_to_the_same_rest_on_every_grid(self):
+        model, steps, hashes = block(), set(), set()
+        for options in ({}, {"grid": "2x1x1"}, {"threads": 2}):
+            with lariat.Simulation(model, **options) as sim:
+                rest = sim.rest()
+                self.assertTrue(rest["reached"])
+                self.assertEqual(rest["steps"], sim.step)
+                self.assertLessEqual(rest["left"], rest["share"])
+                self.assertLess(rest["kinetic"], 1e-9 * rest["strain"])
+                steps.add(sim.step)
+                hashes.add(sim.hash())
+                top = sim.positions()[model.node_count - 1, 2]
+                sim.advance(seconds=0.2)
+                self.assertAlmostEqual(sim.positions()[model.node_count - 1, 2], top, places=8)
+        self.assertEqual((len(steps), len(hashes)), (1, 1))
+
+    @unittest.skipUnless(LARIAT, "LARIAT_COMMAND does not say where the command is")
+    def test_as_the_command_finds_it(self):
+        with tempfile.TemporaryDirectory() as folder:
+            scene = os.path.join(folder, "cube.yaml")
+            with open(os.path.join(folder, "cube.vtk"), "w", encoding="ascii") as file:
+                file.write("# vtk DataFile Version 3.0\ncube\nASCII\nDATASET UNSTRUCTURED_GRID\n"
+                           "POINTS 8 double\n0 0 0 1 0 0 1 1 0 0 1 0 0 0 1 1 0 1 1 1 1 0 1 1\n"
+                           "CELLS 1 9\n8 0 1 2 3 4 5 6 7\nCELL_TYPES 1\n12\n")
+            with open(scene, "w", encoding="ascii") as file:
+                file.write("lariat: 1\nmesh: cube.vtk\nscale: 0.01\ndamping: 30\n"
+                           "materials: [ { cells: all, law: neo-hookean, density: 1050, "
+                           "shear_modulus: 2.0e3, bulk_modulus: 2.0e4 } ]\n"
+                           "gravity: [0, 0, -9.81]\n"
+                           "fix: [ { nodes: { box: [[-1, -1, -0.001], [1, 1, 0.001]] }, axes: xyz } ]\n")
+            said = subprocess.run([LARIAT, "run", scene, "--until-rest"], check=True, text=True,
+                                  capture_output=True).stdout
+            wanted = int(re.search(r"state hash +([0-9a-f]{16})", said).group(1), 16)
+            sim = lariat.Simulation(lariat.Model(scene))
+            self.assertTrue(sim.rest()["reached"])
+            self.assertEqual(sim.hash(), wanted)
+
+    def test_ends(self):
+        sim, looks = lariat.Simulation(block()), []
+        rest = sim.rest(0.01)
+        self.assertFalse(rest["reached"])
+        self.assertAlmostEqual(sim.time, 0.01, delta=sim.time_step)
+        rest = sim.rest(callback=lambda sim: looks.append(sim.step) or len(looks) < 3)
+        self.assertEqual((rest["reached"], len(looks), looks[-1]), (False, 3, sim.step))
+        self.assertTrue(sim.rest(callback=lambda sim: None)["reached"])
+        # A callback that advances by itself, or has something to say against it all.
+        sim.reset()
+        self.assertTrue(sim.rest(callback=lambda sim: sim.advance(100) and None)["reached"])
+        sim.reset()
+        with self.assertRaises(ZeroDivisionError):
+            sim.rest(callback=lambda sim: 1 / 0)
+        for wrong in ({"seconds": -1}, {"seconds": float("nan")}):
+            with self.assertRaises(lariat.ArgumentError):
+                sim.rest(**wrong)
+        with self.assertRaises(TypeError):
+            sim.rest(callback=3)
+        with self.assertRaisesRegex(lariat.StateError, "closed"):
+            sim.rest(callback=lambda sim: sim.close())
+        # What nothing damps swings on.
+        swings = lariat.Simulation(block(damping=0))
+        with self.assertRaisesRegex(lariat.ModelError, "not at rest after .*damping"):
+            swings.rest()
+
+
 class States(unittest.TestCase):
     def test_saved_in_memory_and_on_disk_and_in_pickles(self):
         model = block()

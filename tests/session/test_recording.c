@@ -447,6 +447,27 @@ static void lost_states_end_a_recording(void **unused) {
     close_bench(&b);
 }
 
+/* Of a simulation that has been advanced before: nothing goes back in time behind the state that
+ * the recording begins with. */
+static void a_reset_before_the_first_tick_is_played(void **unused) {
+    (void)unused;
+    lar_model *model = hanging_block();
+    lar_simulation *simulation = start_with(model, block_options(NULL, 0));
+    lar_session_options options = lar_session_options_default();
+    lar_session *session = NULL;
+    lar_replay_report report;
+    options.record = PATH;
+    options.paused = 1;
+    DONE(lar_simulation_advance(simulation, 30, &failure));
+    DONE(lar_session_open(simulation, &options, &session, &failure));
+    DONE(lar_session_start(session, &failure));
+    DONE(lar_session_reset(session, &failure));
+    DONE(lar_session_close(session, &failure));
+    DONE(replay(PATH, NULL, 0, &report));
+    assert_true(report.different == UINT64_MAX);
+    finish(simulation, model);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(plays_on_every_grid),
@@ -463,6 +484,7 @@ int main(void) {
         cmocka_unit_test(a_file_has_one_recording),
         cmocka_unit_test(full_disks_are_told),
         cmocka_unit_test(lost_states_end_a_recording),
+        cmocka_unit_test(a_reset_before_the_first_tick_is_played),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -372,10 +372,9 @@ lar_status lar_starter_text(const lar_meshing *meshing, char **text, lar_error *
     size_t size = 0;
     FILE *file = open_memstream(&made, &size);
     if (file) put_scene(meshing, false, file);
-    if (!file || fclose(file) != 0) {
-        free(made);
-        return lar_fail_memory(error, size + 1, "a scene");
-    }
-    *text = made;
+    char *copy = file && fclose(file) == 0 && made ? lar_strdup(made) : NULL;
+    (free)(made); /* the C library's own */
+    if (!copy) return lar_fail_memory(error, size + 1, "a scene");
+    *text = copy;
     return LAR_OK;
 }

@@ -1,0 +1,98 @@
+/* Simulation.rest: on until the body is at rest, which is what a static answer is.
+ *
+ * The library says when to look (lar_rest): here are the advances between, Ctrl-C and the callback.
+ */
+#include "module.h"
+
+static PyObject *rest_dict(const lar_rest *rest, unsigned long long steps) {
+    PyObject *left = rest->looked ? PyFloat_FromDouble(rest->left) : Py_None;
+    if (!rest->looked) Py_INCREF(Py_None);
+    return Py_BuildValue("{s:N,s:K,s:N,s:d,s:d,s:d,s:d}", "reached", PyBool_FromLong(rest->reached),
+                         "steps", steps, "left", left, "share", rest->share, "kinetic",
+                         rest->kinetic, "strain", rest->strain, "since", rest->since);
+}
+
+/* Looking goes through all nodes and elements. */
+static bool look(python_simulation *self, lar_rest *rest) {
+    lar_simulation *simulation = python_simulation_take(self, "rest");
+    if (!simulation) return false;
+    PYTHON_UNLOCKED(lar_rest_look(rest, simulation));
+    python_simulation_give(self);
+    return true;
+}
+
+/* Up to `last`, or until it is at rest, or the callback says so: then *ended. */
+static bool run(python_simulation *self, lar_rest *rest, unsigned long long last,
+                PyObject *callback, bool *ended) {
+    unsigned long long step = lar_simulation_steps(self->simulation);
+    while (!rest->reached && step < last && !*ended) {
+        const unsigned long long next = rest->next < last ? rest->next : last;
+        /* A callback may have advanced it further. */
+        const unsigned long long steps = next > step ? next - step : 0;
+        if (!python_simulation_advance(self, steps) || !look(self, rest)) return false;
+        PyObject *answer = callback == Py_None
+                               ? Py_NewRef(Py_None)
+                               : PyObject_CallFunctionObjArgs(callback, (PyObject *)self, NULL);
+        if (!answer) return false;
+        *ended = answer == Py_False;
+        Py_DECREF(answer);
+        lar_simulation *simulation = python_simulation_look(self, "rest");
+        if (!simulation) return false;
+        step = lar_simulation_steps(simulation);
+    }
+    return true;
+}
+
+/* A body that swings on has no static answer: that is an error and not a number. */
+static PyObject *restless(const lar_rest *rest, double time) {
+    char left[64] = "nothing is known yet of its motion";
+    if (rest->looked)
+        snprintf(left, sizeof left, "its motion is still %.1e of the strain energy", rest->left);
+    lar_error error = {.status = LAR_ERROR_MODEL};
+    snprintf(error.message, sizeof error.message,
+             "rest: not at rest after %.4g s: %s, and at rest that is %.0e; give the scene more "
+             "`damping`, or a time to end after (seconds=)",
+             time, left, rest->share);
+    return python_raise(&error);
+}
+
+static PyObject *simulation_rest(PyObject *me, PyObject *args, PyObject *keywords) {
+    static char *names[] = {"seconds", "callback", NULL};
+    python_simulation *self = (python_simulation *)me;
+    PyObject *seconds = Py_None, *callback = Py_None;
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, "|O$O:rest", names, &seconds, &callback))
+        return NULL;
+    if (callback != Py_None && !PyCallable_Check(callback)) {
+        python_refuse_type("callback: expected something to call, got %R",
+                           (PyObject *)Py_TYPE(callback));
+        return NULL;
+    }
+    lar_simulation *simulation = python_simulation_look(self, "rest");
+    if (!simulation) return NULL;
+    lar_rest rest;
+    lar_rest_begin(&rest, simulation);
+    const unsigned long long first = lar_simulation_steps(simulation);
+    unsigned long long last = rest.limit, steps;
+    if (seconds != Py_None) {
+        if (!python_seconds(seconds, simulation, &steps)) return NULL;
+        if (steps < last - first) last = first + steps;
+    }
+    bool ended = false;
+    if (!run(self, &rest, last, callback, &ended)) return NULL;
+    const unsigned long long now = lar_simulation_steps(self->simulation);
+    if (!rest.reached && !ended && last == rest.limit)
+        return restless(&rest, lar_simulation_time(self->simulation));
+    return rest_dict(&rest, now - first);
+}
+
+PyMethodDef python_rest_methods[] = {
+    {"rest", (PyCFunction)(void (*)(void))simulation_rest, METH_VARARGS | METH_KEYWORDS,
+     "rest($self, seconds=None, *, callback=None)\n--\n\nAdvances until loads are constant and the "
+     "body is at rest: a static answer, in the same step on\nevery grid. A dict: reached, steps "
+     "that were done, left (motion that is left, as a share of the\nstrain energy; None: not "
+     "looked yet), share (at rest it is at most that), kinetic and strain\nenergy when last "
+     "looked [J], since (no load changes after that time [s]).\n\n"
+     "seconds   of simulated time at most; not reached then is no error\n"
+     "callback  called with the simulation some times in a period of a slow wave; False ends it\n\n"
+     "ModelError where the library gives up: a body without damping swings for good."},
+    {NULL, NULL, 0, NULL}};
