@@ -11,51 +11,36 @@
 #include "law/viscous_stress.h"
 #include "mechanics/hex8_gather.h"
 
-/* What the terms of some lanes do in a step; what comes next is mostly of the same material. */
-typedef struct viscous_fading {
-    lar_lane rate[LAR_VISCOUS_TERMS], less[LAR_VISCOUS_TERMS], rise[LAR_VISCOUS_TERMS];
-} viscous_fading;
+/* Coefficients of some lanes. What the terms do in a step stays where the rates do: the next lanes
+ * are mostly of the same material. */
+typedef struct viscous_lane {
+    lar_lane rate[LAR_VISCOUS_TERMS];
+    lar_viscous_lane c;
+} viscous_lane;
 
 /* Of no material yet. */
-LAR_INLINE void fading_begin(viscous_fading *fading) {
-    for (int i = 0; i < LAR_VISCOUS_TERMS; i++) {
-        fading->rate[i] = lar_lane_set(-1);
-        fading->less[i] = fading->rise[i] = lar_lane_set(0);
-    }
+LAR_INLINE void viscous_begin(viscous_lane *of) {
+    *of = (viscous_lane){0};
+    for (int i = 0; i < LAR_VISCOUS_TERMS; i++) of->rate[i] = lar_lane_set(-1);
 }
 
-__attribute__((noinline)) static void fading_change(double length, int term, lar_lane rate,
-                                                    viscous_fading *fading) {
-    fading->rate[term] = rate;
-    lar_viscous_fade(lar_lane_set(length), rate, &fading->less[term], &fading->rise[term]);
+__attribute__((noinline)) static void viscous_change(double length, int term, lar_lane rate,
+                                                     viscous_lane *of) {
+    of->rate[term] = rate;
+    lar_viscous_fade(lar_lane_set(length), rate, &of->c.less[term], &of->c.rise[term]);
 }
 
-LAR_INLINE void fading_of(const lar_viscous_block *block, int lane, int terms, double length,
-                          viscous_fading *fading) {
+LAR_INLINE void viscous_load(const lar_viscous_block *block, int lane, int terms, double length,
+                             viscous_lane *of) {
     for (int i = 0; i < terms; i++) {
-        lar_lane rate = lar_lane_load(&block->rate[i][lane]), last = fading->rate[i];
+        lar_lane rate = lar_lane_load(&block->rate[i][lane]), last = of->rate[i];
         unsigned same = lar_lane_not_greater(rate, last) & lar_lane_not_greater(last, rate);
-        if (__builtin_expect(same != (1U << LAR_LANES) - 1, 0))
-            fading_change(length, i, rate, fading);
+        if (__builtin_expect(same != (1U << LAR_LANES) - 1, 0)) viscous_change(length, i, rate, of);
+        of->c.share[i] = lar_lane_load(&block->share[i][lane]);
     }
-}
-
-/* Some lanes of a block. Returns those that are beyond the limit. */
-LAR_INLINE unsigned viscous_lanes(const lar_viscous_block *block, int lane, int terms,
-                                  bool isochoric, const viscous_fading *fading,
-                                  const double *before, double *after, const lar_lane F[9],
-                                  double limit, lar_lane P[9]) {
-    lar_viscous_lane c = {.rest = lar_lane_load(&block->rest[lane]),
-                          .unit = lar_lane_load(&block->unit[lane]),
-                          .inverse = lar_lane_load(&block->inverse[lane])};
-    for (int i = 0; i < terms; i++) {
-        c.share[i] = lar_lane_load(&block->share[i][lane]);
-        c.less[i] = fading->less[i];
-        c.rise[i] = fading->rise[i];
-    }
-    lar_lane size =
-        lar_viscous_stress(F, &c, terms, isochoric, before + lane, after + lane, LAR_BLOCK, P);
-    return lar_lane_not_greater(lar_lane_set(limit), size);
+    of->c.rest = lar_lane_load(&block->rest[lane]);
+    of->c.unit = lar_lane_load(&block->unit[lane]);
+    of->c.inverse = lar_lane_load(&block->inverse[lane]);
 }
 
 /* relax, with as many terms as are known when it is compiled. */
@@ -65,16 +50,16 @@ LAR_INLINE unsigned relax_terms(const lar_block_run *run, int terms, const lar_v
     double nowhere[LAR_HISTORY_MAX * LAR_BLOCK] __attribute__((aligned(64)));
     size_t size = (size_t)lar_history_values(terms) * LAR_BLOCK, part = 0;
     unsigned beyond = 0;
-    viscous_fading fading;
-    fading_begin(&fading);
+    viscous_lane of;
+    viscous_begin(&of);
     for (size_t i = (size_t)b; i < (size_t)b + count; i++)
         for (int lane = 0; lane < LAR_BLOCK; lane += LAR_LANES, part++) {
-            const lar_viscous_block *block = &run->relaxing[i];
-            double *history = step->history + i * size;
-            fading_of(block, lane, terms, step->length, &fading);
-            beyond |= viscous_lanes(block, lane, terms, run->isochoric, &fading, history,
-                                    step->keep ? history : nowhere, gradient[part],
-                                    limits->stress_square, record[part].F)
+            double *before = step->history + i * size + lane;
+            viscous_load(&run->relaxing[i], lane, terms, step->length, &of);
+            lar_lane stress =
+                lar_viscous_stress(gradient[part], &of.c, terms, run->isochoric, before,
+                                   step->keep ? before : nowhere, LAR_BLOCK, record[part].F);
+            beyond |= lar_lane_not_greater(lar_lane_set(limits->stress_square), stress)
                       << part * LAR_LANES;
         }
     return beyond;

@@ -18,7 +18,8 @@ const char *lar_bench_law_words(int index) {
     if (index < LAR_FIBRE_LAWS - 1) return lar_fibre_law_name[index + 1];
     index -= LAR_FIBRE_LAWS - 1;
     if (index == 0) return "hgo-pair";
-    return index <= LAR_VISCOUS_TERMS ? viscous[index - 1] : NULL;
+    if (index <= LAR_VISCOUS_TERMS) return viscous[index - 1];
+    return index == LAR_VISCOUS_TERMS + 1 ? "active" : NULL;
 }
 
 /* Gives the constants that moduli leave zero a quarter of the first one, and takes from that what
@@ -45,7 +46,9 @@ static void set_fibres(lar_material *material, lar_fibre_law law, bool paired) {
         [LAR_FIBRE_EXP_LINEAR] = {400, 10, 1e4, 1.2},
         [LAR_FIBRE_POW_LINEAR] = {5e3, 1.1, 2},
         [LAR_FIBRE_HGO] = {1e3, 0.8, 0.1}};
-    material->fibre = (lar_fibre){.law = law, .isochoric = true, .paired = paired};
+    material->fibre.law = law;
+    material->fibre.isochoric = true;
+    material->fibre.paired = paired;
     memcpy(material->fibre.parameter, number[law], sizeof number[law]);
 }
 
@@ -59,9 +62,13 @@ static void set_viscosity(lar_material *material, int terms) {
     }
 }
 
+enum { ACTIVE = LAR_LAW_COUNT + LAR_FIBRE_LAWS + LAR_VISCOUS_TERMS };
+
 /* One of the words by its place in "all". */
 static void set_word(lar_material *material, int word) {
-    if (word < LAR_LAW_COUNT)
+    if (word == ACTIVE)
+        material->fibre.along = 100; /* [Pa]: little, so that the block stays as it is */
+    else if (word < LAR_LAW_COUNT)
         material->law = (lar_law)word;
     else if (word < LAR_LAW_COUNT + LAR_FIBRE_LAWS - 1)
         set_fibres(material, (lar_fibre_law)(word - LAR_LAW_COUNT + 1), false);
@@ -71,7 +78,9 @@ static void set_word(lar_material *material, int word) {
         set_viscosity(material, word - LAR_LAW_COUNT - LAR_FIBRE_LAWS + 1);
 }
 
+enum { KINDS = 4 };
 static int word_kind(int word) {
+    if (word == ACTIVE) return 3;
     return word < LAR_LAW_COUNT ? 0 : word < LAR_LAW_COUNT + LAR_FIBRE_LAWS ? 1 : 2;
 }
 
@@ -81,8 +90,8 @@ static lar_status refuse_word(lar_span word, bool again, lar_error *error) {
     const char *known;
     if (again)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
-                        "'%.*s' is one too many; join at most one law, one of fibres and one of "
-                        "viscosity",
+                        "'%.*s' is one too many; join at most one law, one of fibres, one of "
+                        "viscosity and active",
                         (int)word.length, word.at);
     for (int i = 0; (known = lar_bench_law_words(i)); i++)
         length +=
@@ -94,7 +103,7 @@ static lar_status refuse_word(lar_span word, bool again, lar_error *error) {
 
 lar_status lar_bench_law_material(const char *words, lar_material *material, lar_error *error) {
     lar_span rest = {words, strlen(words)}, one;
-    bool taken[3] = {false}, more = true;
+    bool taken[KINDS] = {false}, more = true;
     *material = lar_bench_material();
     while (more) {
         const char *known;
