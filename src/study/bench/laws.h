@@ -29,12 +29,12 @@ typedef struct lar_bench_law_row {
     const char *isa;
 } lar_bench_law_row;
 
-/* The words that "all" stands for, one after the other: each law, each law of fibres and so many
- * viscous terms alone; NULL beyond. */
+/* The words that "all" stands for, one after the other: each law, each law of fibres, so many
+ * viscous terms and what is active alone; NULL beyond. */
 const char *lar_bench_law_words(int index);
 
 /* The material of some words joined by '+': a law (neo-Hookean without), a law of fibres,
- * "hgo-pair" for two families, "viscous" with one term or "viscous-2", "viscous-3".
+ * "hgo-pair" for two families, "viscous" with one term or "viscous-2", "viscous-3", and "active".
  * LAR_ERROR_ARGUMENT with the words that there are. */
 lar_status lar_bench_law_material(const char *words, lar_material *material, lar_error *error);
 
