@@ -241,6 +241,12 @@ typedef struct lar_surface_info {
 /* The arrays live as long as the model. `info` is the caller's. */
 LAR_API void lar_model_surface(const lar_model *model, lar_surface_info *info);
 
+/* Places and outward unit normals of its nodes, both [nodes][3] of the surface, or NULL, for who
+ * draws it when the nodes have moved by u, [nodes of the model][3]; NULL: at rest. A normal is the
+ * mean of the faces around, by their areas; 0 0 0 where these cancel. */
+LAR_API void lar_model_surface_move(const lar_model *model, const double (*u)[3], float (*place)[3],
+                                    float (*normal)[3]);
+
 /* The material of an element: index into those of lar_model_material; -1: no such element. */
 LAR_API int32_t lar_model_element_material(const lar_model *model, int32_t element);
 
@@ -1240,7 +1246,13 @@ typedef struct lar_session_status {
 
 LAR_SIZED void lar_session_status_get(const lar_session *session, lar_session_status *status);
 
-/* All nodes at the end of one step. */
+/* A tool at the end of a tick, as lar_session_tool_force has it. */
+typedef struct lar_snapshot_tool {
+    lar_tool_pose pose;
+    double force[3], torque[3]; /* [N] [N m] */
+} lar_snapshot_tool;
+
+/* All nodes at the end of one step, and the tools. */
 typedef struct lar_snapshot {
     uint64_t step;
     double time;    /* [s] */
@@ -1248,6 +1260,8 @@ typedef struct lar_snapshot {
     int32_t nodes;  /* of the model */
     double (*u)[3]; /* [nodes] displacements [m] */
     double kinetic; /* energy of its velocities, which are those of half a step before [J] */
+    int32_t tools;
+    lar_snapshot_tool *tool; /* [tools] */
 } lar_snapshot;
 
 /* Memory for snapshots of this session; lar_snapshot_destroy frees it, NULL is fine. */
@@ -1260,6 +1274,12 @@ LAR_API void lar_snapshot_destroy(lar_snapshot *snapshot);
  * it is the present state. Any number of threads may ask, each with a snapshot of its own. */
 LAR_API lar_status lar_session_snapshot(lar_session *session, lar_snapshot *snapshot,
                                         double seconds, lar_error *error);
+
+/* The same without waiting, for who draws when it is time to draw: asks with the first call, and
+ * fills `snapshot` in that one in which what was asked for has come; then *fresh is 1, and the next
+ * is asked for. Else *fresh is 0, and `snapshot` as it was. */
+LAR_API lar_status lar_session_snapshot_poll(lar_session *session, lar_snapshot *snapshot,
+                                             int32_t *fresh, lar_error *error);
 
 /* Ticks whose forces are kept. */
 enum { LAR_HISTORY_TICKS = 8192 };

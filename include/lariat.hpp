@@ -212,6 +212,9 @@ class Model : public detail::Handle<lar_model, lar_model_destroy> {
     void embedded_move(const Vec3 *u, Vec3 *place) const {
         lar_model_embedded_move(get(), detail::raw(u), detail::raw(place));
     }
+    void surface_move(const Vec3 *u, float (*place)[3], float (*normal)[3]) const {
+        lar_model_surface_move(get(), detail::raw(u), place, normal);
+    }
     /* u NULL: at rest. */
     std::vector<lar_ray_hit> rays(const std::vector<Vec3> &origin,
                                   const std::vector<Vec3> &direction, double longest,
@@ -560,6 +563,10 @@ class Snapshot : public detail::Handle<lar_snapshot, lar_snapshot_destroy> {
         if (!get()) return {nullptr, 0};
         return {detail::vectors(get()->u), static_cast<std::size_t>(get()->nodes)};
     }
+    Span<lar_snapshot_tool> tools() const {
+        if (!get()) return {nullptr, 0};
+        return {get()->tool, static_cast<std::size_t>(get()->tools)};
+    }
 };
 
 class Session : public detail::Handle<lar_session, detail::close> {
@@ -682,6 +689,10 @@ class Session : public detail::Handle<lar_session, detail::close> {
     }
     void snapshot(Snapshot &snapshot, double seconds) {
         detail::call(lar_session_snapshot, get(), snapshot.get(), seconds);
+    }
+    /* Whether what was asked for has come. */
+    bool snapshot_poll(Snapshot &snapshot) {
+        return detail::ask<std::int32_t>(lar_session_snapshot_poll, get(), snapshot.get()) != 0;
     }
     std::int32_t force_history(std::int32_t tool, std::uint64_t after, std::int32_t max,
                                float (*force)[3], std::uint64_t *last) const {

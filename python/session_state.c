@@ -113,6 +113,19 @@ static bool wait_for(const python_session *self, lar_session *session, lar_snaps
     return !status;
 }
 
+static PyObject *tools_of(const lar_snapshot *s) {
+    PyObject *list = PyList_New(0);
+    for (int32_t i = 0; i < s->tools && list; i++) {
+        const lar_snapshot_tool *t = &s->tool[i];
+        PyObject *one =
+            Py_BuildValue("{s:N,s:N,s:N}", "pose", python_pose_dict(&t->pose), "force",
+                          python_tuple(t->force, 3), "torque", python_tuple(t->torque, 3));
+        if (!one || PyList_Append(list, one)) Py_CLEAR(list);
+        Py_XDECREF(one);
+    }
+    return list;
+}
+
 static PyObject *snapshot(PyObject *me, PyObject *args, PyObject *keywords) {
     static char *names[] = {"timeout", NULL};
     python_session *self = (python_session *)me;
@@ -132,10 +145,10 @@ static PyObject *snapshot(PyObject *me, PyObject *args, PyObject *keywords) {
     else if (!(owner = PyCapsule_New(s, NULL, free_snapshot)))
         lar_snapshot_destroy(s);
     else if (wait_for(self, session, s, timeout))
-        answer =
-            Py_BuildValue("{s:K,s:d,s:K,s:N,s:d}", "step", (unsigned long long)s->step, "time",
-                          s->time, "hash", (unsigned long long)s->hash, "displacements",
-                          python_array_of(owner, s->u, 'd', s->nodes, 3), "kinetic", s->kinetic);
+        answer = Py_BuildValue("{s:K,s:d,s:K,s:N,s:d,s:N}", "step", (unsigned long long)s->step,
+                               "time", s->time, "hash", (unsigned long long)s->hash,
+                               "displacements", python_array_of(owner, s->u, 'd', s->nodes, 3),
+                               "kinetic", s->kinetic, "tools", tools_of(s));
     Py_XDECREF(owner);
     python_session_give(self);
     return answer;
@@ -159,5 +172,7 @@ PyMethodDef python_session_state_methods[] = {
     {"snapshot", FUNCTION(snapshot), METH_VARARGS | METH_KEYWORDS,
      "snapshot($self, timeout=5.0)\n--\n\nAll nodes at the end of a tick: a dict with step, time "
      "[s], hash, displacements (memoryview, float64 [nodes, 3], read only, the snapshot's own "
-     "memory) and kinetic energy [J]. PeerError when none came within so many seconds."},
+     "memory), kinetic energy [J] and tools: a list of dicts with pose, as of tool_pose, force [N] "
+     "and torque about the tip [N m] of the same tick. PeerError when none came within so many "
+     "seconds."},
     {NULL, NULL, 0, NULL}};

@@ -1,6 +1,7 @@
 /* What a model tells about its parts through the public header. */
 #include <string.h>
 
+#include "base/vector.h"
 #include "model/settings.h"
 
 int32_t lar_model_node_count(const lar_model *model) {
@@ -112,6 +113,43 @@ void lar_model_surface(const lar_model *model, lar_surface_info *info) {
                                .face = (const int32_t(*)[4])surface->corner,
                                .element = surface->element,
                                .node = surface->node};
+}
+
+static void surface_place(const lar_model *model, const double (*u)[3], int32_t node,
+                          double place[3]) {
+    for (int i = 0; i < 3; i++) place[i] = model->mesh.position[node][i] + (u ? u[node][i] : 0);
+}
+
+/* Half the cross product of a face's diagonals is its area, wherever its corners are. */
+static void add_normals(const lar_model *model, const double (*u)[3], float (*normal)[3]) {
+    const lar_surface *surface = &model->surface;
+    for (int32_t f = 0; f < surface->face_count; f++) {
+        double x[4][3], diagonal[2][3], area[3];
+        for (int a = 0; a < 4; a++) surface_place(model, u, surface->corner[f][a], x[a]);
+        for (int k = 0; k < 2; k++) lar_minus(x[k + 2], x[k], diagonal[k]);
+        lar_cross(diagonal[0], diagonal[1], area);
+        for (int a = 0; a < 4; a++)
+            for (int i = 0; i < 3; i++)
+                normal[surface->index_of[surface->corner[f][a]]][i] += (float)area[i];
+    }
+}
+
+void lar_model_surface_move(const lar_model *model, const double (*u)[3], float (*place)[3],
+                            float (*normal)[3]) {
+    int32_t nodes = model ? model->surface.node_count : 0;
+    for (int32_t n = 0; n < nodes && place; n++) {
+        double at[3];
+        surface_place(model, u, model->surface.node[n], at);
+        for (int i = 0; i < 3; i++) place[n][i] = (float)at[i];
+    }
+    if (!normal || nodes == 0) return;
+    memset(normal, 0, (size_t)nodes * sizeof *normal);
+    add_normals(model, u, normal);
+    for (int32_t n = 0; n < nodes; n++) {
+        double sum[3] = {(double)normal[n][0], (double)normal[n][1], (double)normal[n][2]};
+        double length = lar_length(sum);
+        for (int i = 0; i < 3; i++) normal[n][i] = length > 0 ? (float)(sum[i] / length) : 0;
+    }
 }
 
 int32_t lar_model_element_material(const lar_model *model, int32_t element) {

@@ -126,6 +126,8 @@ lar_status lar_session_keep_state(lar_session *session, lar_error *error);
 lar_status lar_session_begin_states(lar_session *session, lar_error *error);
 /* Whether the tool may follow its hand, whose place is `target`. */
 bool lar_session_follows(lar_session *session, int32_t tool);
+/* False when nobody has asked for a snapshot. The state is gathered. */
+bool lar_session_serve_snapshots(lar_session *session);
 /* Tells everybody how it stands; with `quantiles` also what has to be summed up. */
 void lar_session_publish(lar_session *session, bool quantiles);
 /* Sets it now, and in the recording. */

@@ -9,6 +9,8 @@ typedef struct frame {
     uint64_t step, hash;
     double time;
     bool hashed; /* by the first thread that took it */
+    int32_t tools;
+    lar_snapshot_tool tool[LAR_TOOLS_MAX];
 } frame;
 
 static size_t head_size(void) {
@@ -53,12 +55,16 @@ bool lar_snapshots_wanted(const lar_snapshots *snapshots) {
     return __atomic_load_n(&snapshots->asked, __ATOMIC_ACQUIRE) != snapshots->answered;
 }
 
-bool lar_snapshots_serve(lar_snapshots *snapshots, const lar_simulation *simulation) {
+void lar_snapshots_serve(lar_snapshots *snapshots, const lar_simulation *simulation,
+                         const lar_snapshot_tool *tool, int32_t tools) {
     uint64_t asked = __atomic_load_n(&snapshots->asked, __ATOMIC_ACQUIRE);
-    if (asked == snapshots->answered) return false;
     const lar_state *state = lar_simulation_state(simulation);
     frame *f = lar_triple_buffer_back(&snapshots->frames);
-    *f = (frame){.step = state->step, .time = (double)state->step * simulation->domain.time_step};
+    f->step = state->step;
+    f->time = (double)state->step * simulation->domain.time_step;
+    f->hashed = false;
+    f->tools = tools;
+    memcpy(f->tool, tool, (size_t)tools * sizeof *tool);
     lar_state copy = state_of(f, simulation);
     memcpy(copy.u, state->u, values_of(simulation) * sizeof *copy.u);
     memcpy(copy.v, state->v, values_of(simulation) * sizeof *copy.v);
@@ -67,7 +73,6 @@ bool lar_snapshots_serve(lar_snapshots *snapshots, const lar_simulation *simulat
     lar_triple_buffer_publish(&snapshots->frames);
     snapshots->answered = asked;
     __atomic_store_n(&snapshots->ready, asked, __ATOMIC_RELEASE);
-    return true;
 }
 
 lar_status lar_snapshots_take(lar_snapshots *snapshots, const lar_simulation *simulation,
@@ -83,6 +88,8 @@ lar_status lar_snapshots_take(lar_snapshots *snapshots, const lar_simulation *si
     snapshot->step = f->step;
     snapshot->time = f->time;
     snapshot->hash = f->hash;
+    snapshot->tools = f->tools;
+    memcpy(snapshot->tool, f->tool, (size_t)f->tools * sizeof *f->tool);
     for (lar_gid g = 0; g < domain->model->mesh.node_count; g++) {
         const double *u = state.u + 4 * (size_t)domain->layout.local[g];
         const double *v = state.v + (u - state.u);

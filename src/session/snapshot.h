@@ -34,7 +34,8 @@ lar_status lar_snapshots_take(lar_snapshots *snapshots, const lar_simulation *si
 
 /* The engine's thread: somebody has asked. */
 bool lar_snapshots_wanted(const lar_snapshots *snapshots);
-/* The engine's thread, between advances: false when nobody has asked. */
-bool lar_snapshots_serve(lar_snapshots *snapshots, const lar_simulation *simulation);
+/* The engine's thread, between advances, when somebody has asked; with the tools of that moment. */
+void lar_snapshots_serve(lar_snapshots *snapshots, const lar_simulation *simulation,
+                         const lar_snapshot_tool *tool, int32_t tools);
 
 #endif

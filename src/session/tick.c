@@ -56,12 +56,25 @@ void lar_session_publish(lar_session *session, bool quantiles) {
     lar_triple_buffer_publish(session->view);
 }
 
+bool lar_session_serve_snapshots(lar_session *session) {
+    lar_snapshot_tool tool[LAR_TOOLS_MAX];
+    if (!lar_snapshots_wanted(&session->snapshots)) return false;
+    for (int32_t i = 0; i < session->tools; i++) {
+        const lar_session_tool *from = &session->tool[i];
+        tool[i].pose = from->place;
+        memcpy(tool[i].force, from->force.force, sizeof tool[i].force);
+        memcpy(tool[i].torque, from->force.torque, sizeof tool[i].torque);
+    }
+    lar_snapshots_serve(&session->snapshots, session->simulation, tool, session->tools);
+    return true;
+}
+
 static void serve_snapshots(lar_session *session) {
     lar_error error;
     if (session->status.state == LAR_SESSION_PLAYING && lar_snapshots_wanted(&session->snapshots) &&
         lar_simulation_gather(session->simulation, &error))
         lar_session_stop(session, &error);
-    bool served = lar_snapshots_serve(&session->snapshots, session->simulation);
+    bool served = lar_session_serve_snapshots(session);
     session->pace.total.snapshots += served;
     if (served || session->requests.ring_the_bell) lar_requests_ring(&session->requests);
 }

@@ -191,19 +191,27 @@ int32_t lar_session_force_history(const lar_session *session, int32_t tool, uint
 
 /* ---- snapshots ----------------------------------------------------------------------------- */
 
+/* A snapshot, and what it was asked for. */
+typedef struct own_snapshot {
+    lar_snapshot shown;
+    uint64_t asked; /* by polling; 0: not yet */
+    lar_snapshot_tool tool[LAR_TOOLS_MAX];
+} own_snapshot;
+
 lar_status lar_snapshot_create(const lar_session *session, lar_snapshot **out, lar_error *error) {
     if (!session || !out)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "lar_snapshot_create needs a session and a place for the snapshot");
     int32_t nodes = session->simulation->domain.model->mesh.node_count;
-    lar_snapshot *snapshot = lar_calloc(1, sizeof *snapshot);
-    if (snapshot) snapshot->u = lar_calloc((size_t)nodes, sizeof *snapshot->u);
-    if (!snapshot || !snapshot->u) {
-        free(snapshot);
-        return lar_fail_memory(error, (size_t)nodes * sizeof *snapshot->u, "a snapshot");
+    own_snapshot *own = lar_calloc(1, sizeof *own);
+    if (own) own->shown.u = lar_calloc((size_t)nodes, sizeof *own->shown.u);
+    if (!own || !own->shown.u) {
+        free(own);
+        return lar_fail_memory(error, (size_t)nodes * sizeof *own->shown.u, "a snapshot");
     }
-    snapshot->nodes = nodes;
-    *out = snapshot;
+    own->shown.nodes = nodes;
+    own->shown.tool = own->tool;
+    *out = &own->shown;
     return LAR_OK;
 }
 
@@ -213,17 +221,28 @@ void lar_snapshot_destroy(lar_snapshot *snapshot) {
     free(snapshot);
 }
 
+static lar_status check_snapshot(const lar_session *session, const lar_snapshot *snapshot,
+                                 const char *call, lar_error *error) {
+    if (session && snapshot) return LAR_OK;
+    return lar_fail(error, LAR_ERROR_ARGUMENT,
+                    "%s needs a session and a snapshot; neither may be NULL", call);
+}
+
+/* Who has a thread is woken; for one that has none, who asks does what is asked for. */
+static void wake(lar_session *session) {
+    if (!session->started) lar_session_serve_snapshots(session);
+    pthread_cond_signal(&session->requests.work);
+}
+
 lar_status lar_session_snapshot(lar_session *session, lar_snapshot *snapshot, double seconds,
                                 lar_error *error) {
-    if (!session || !snapshot)
-        return lar_fail(error, LAR_ERROR_ARGUMENT,
-                        "lar_session_snapshot needs a session and a snapshot; neither may be NULL");
+    lar_status status = check_snapshot(session, snapshot, "lar_session_snapshot", error);
+    if (status) return status;
     int64_t limit = lar_clock_ns() + (int64_t)(1e9 * fmin(fmax(seconds, 0), 1e6));
     uint64_t number = lar_snapshots_ask(&session->snapshots);
     bool in_time = true;
     pthread_mutex_lock(&session->requests.lock);
-    if (!session->started) lar_snapshots_serve(&session->snapshots, session->simulation);
-    pthread_cond_signal(&session->requests.work);
+    wake(session);
     while (in_time && !lar_snapshots_ready(&session->snapshots, number))
         in_time = lar_requests_wait(&session->requests, limit);
     in_time = lar_snapshots_ready(&session->snapshots, number);
@@ -232,4 +251,26 @@ lar_status lar_session_snapshot(lar_session *session, lar_snapshot *snapshot, do
         return lar_fail(error, LAR_ERROR_PEER,
                         "no snapshot came within %g s: a tick takes longer; wait longer", seconds);
     return lar_snapshots_take(&session->snapshots, session->simulation, snapshot, error);
+}
+
+/* Never waits for a tick: who holds the lock now will look who has asked, and the next call wakes
+ * who sleeps. */
+lar_status lar_session_snapshot_poll(lar_session *session, lar_snapshot *snapshot, int32_t *fresh,
+                                     lar_error *error) {
+    own_snapshot *own = (own_snapshot *)snapshot;
+    bool runs = true;
+    if (fresh) *fresh = 0;
+    lar_status status = check_snapshot(session, snapshot, "lar_session_snapshot_poll", error);
+    if (status) return status;
+    if (pthread_mutex_trylock(&session->requests.lock) == 0) {
+        runs = session->started;
+        if (!runs || !own->asked) own->asked = lar_snapshots_ask(&session->snapshots);
+        wake(session);
+        pthread_mutex_unlock(&session->requests.lock);
+    }
+    if (!own->asked || !lar_snapshots_ready(&session->snapshots, own->asked)) return LAR_OK;
+    status = lar_snapshots_take(&session->snapshots, session->simulation, snapshot, error);
+    own->asked = runs ? lar_snapshots_ask(&session->snapshots) : 0;
+    if (fresh) *fresh = !status;
+    return status;
 }

@@ -33,6 +33,53 @@ static void add_up(const seen *s, double sum[3]) {
     assert_memory_equal(sum, back, sizeof back);
 }
 
+/* What draws the surface: places as they are, normals outwards, of a body that has turned as well.
+ */
+static void check_surface(const lar_model *model, const double (*u)[3], const double middle[3]) {
+    lar_surface_info surface;
+    lar_model_surface(model, &surface);
+    const double(*rest)[3] = lar_model_positions(model);
+    float(*place)[3] = lar_calloc((size_t)surface.nodes, sizeof *place);
+    float(*normal)[3] = lar_calloc((size_t)surface.nodes, sizeof *normal);
+    lar_model_surface_move(model, u, place, normal);
+    for (int32_t n = 0; n < surface.nodes; n++) {
+        double square = 0, out = 0;
+        for (int i = 0; i < 3; i++) {
+            double at = rest[surface.node[n]][i] + (u ? u[surface.node[n]][i] : 0);
+            assert_true(place[n][i] == (float)at);
+            square += (double)normal[n][i] * (double)normal[n][i];
+            out += (double)normal[n][i] * (at - middle[i]);
+        }
+        assert_true(fabs(square - 1) < 1e-6 && out > 0);
+    }
+    free(place);
+    free(normal);
+}
+
+static void surfaces_are_drawn_as_they_are(void **unused) {
+    (void)unused;
+    lar_model *model = brick_model(&soft_brick);
+    int32_t nodes = lar_model_node_count(model);
+    const double(*rest)[3] = lar_model_positions(model);
+    double(*u)[3] = lar_calloc((size_t)nodes, sizeof *u), low[3], high[3], middle[3];
+    for (int i = 0; i < 3; i++) low[i] = high[i] = rest[0][i];
+    for (int32_t n = 0; n < nodes; n++)
+        for (int i = 0; i < 3; i++) {
+            low[i] = fmin(low[i], rest[n][i]);
+            high[i] = fmax(high[i], rest[n][i]);
+        }
+    for (int i = 0; i < 3; i++) middle[i] = 0.5 * (low[i] + high[i]);
+    check_surface(model, NULL, middle);
+    for (int32_t n = 0; n < nodes; n++) /* a quarter of a turn about z */
+        for (int i = 0; i < 2; i++)
+            u[n][i] = (i ? 1 : -1) * (rest[n][1 - i] - middle[1 - i]) + middle[i] - rest[n][i];
+    check_surface(model, (const double(*)[3])u, middle);
+    lar_model_surface_move(NULL, NULL, NULL, NULL);
+    lar_model_surface_move(model, NULL, NULL, NULL);
+    free(u);
+    lar_model_destroy(model);
+}
+
 /* Each is where its nodes say, and those are a face of the surface. */
 static void check_points(const lar_simulation *simulation, const seen *s) {
     lar_simulation_info info;
@@ -228,6 +275,7 @@ static void processes_agree_and_so_do_states_that_are_loaded(void **unused) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(surfaces_are_drawn_as_they_are),
         cmocka_unit_test(they_add_up_to_what_the_tool_feels), cmocka_unit_test(the_same_everywhere),
         cmocka_unit_test(processes_agree_and_so_do_states_that_are_loaded)};
     return cmocka_run_group_tests(tests, NULL, NULL);

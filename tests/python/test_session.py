@@ -47,6 +47,8 @@ class Sessions(unittest.TestCase):
         self.session.close()
         self.assertEqual((self.sim.step, self.sim.hash()), (shot["step"], shot["hash"]))
         self.assertEqual(self.sim.displacements().tolist(), shot["displacements"].tolist())
+        self.assertGreater(len(shot["tools"]), 1)
+        self.assertEqual({tuple(sorted(t)) for t in shot["tools"]}, {("force", "pose", "torque")})
 
     def test_a_probe_presses_and_a_hand_lifts(self):
         self.session.tool_move("probe", (0.03, 0.025, 0.033))

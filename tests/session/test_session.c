@@ -238,6 +238,44 @@ static void late_snapshots_are_refused(void **unused) {
     close_bench(&b);
 }
 
+/* Polling never waits: the present state before the start, then one state after the other. */
+static void polled_snapshots_come_by_and_by(void **unused) {
+    (void)unused;
+    bench b = open_bench("2x1x1", 1, NULL);
+    lar_snapshot *snapshot = NULL, *waited = NULL;
+    int32_t fresh = 0, seen = 0;
+    uint64_t last = 0;
+    DONE(lar_snapshot_create(b.session, &snapshot, &failure));
+    DONE(lar_snapshot_create(b.session, &waited, &failure));
+    assert_int_equal(lar_session_snapshot_poll(b.session, NULL, &fresh, &failure),
+                     LAR_ERROR_ARGUMENT);
+    for (int i = 0; i < 3; i++) {
+        DONE(lar_session_snapshot_poll(b.session, snapshot, &fresh, &failure));
+        assert_true(fresh && snapshot->step == 0 && snapshot->tools == TOOLS);
+    }
+    DONE(lar_session_start(b.session, &failure));
+    for (int i = 0; i < 20000 && seen < 5; i++) {
+        DONE(lar_session_snapshot_poll(b.session, snapshot, &fresh, &failure));
+        assert_true(!fresh || snapshot->step >= last);
+        if (fresh) last = snapshot->step;
+        seen += fresh;
+        nap(0.001);
+    }
+    assert_int_equal(seen, 5);
+    lar_session_pause(b.session);
+    uint64_t end = await(&b, LAR_SESSION_PAUSED, last).step;
+    for (int i = 0; i < 20000 && snapshot->step < end; i++) {
+        DONE(lar_session_snapshot_poll(b.session, snapshot, &fresh, &failure));
+        nap(0.001);
+    }
+    assert_int_equal(snapshot->step, end);
+    DONE(lar_session_snapshot(b.session, waited, 30, &failure));
+    assert_true(snapshot->hash == waited->hash && snapshot->kinetic == waited->kinetic);
+    lar_snapshot_destroy(snapshot);
+    lar_snapshot_destroy(waited);
+    close_bench(&b);
+}
+
 /* ---- tools --------------------------------------------------------------------------------- */
 
 /* The ball is pressed onto the block: a force is felt, kept in the history, and fades in a pause.
@@ -258,6 +296,13 @@ static void tools_are_felt(void **unused) {
     assert_true(force.force[2] >= 1e-3);
     assert_true(force.touching > 0);
     assert_true(pose.position[2] < 0.025);
+    lar_snapshot *snapshot = NULL;
+    DONE(lar_snapshot_create(b.session, &snapshot, &failure));
+    DONE(lar_session_snapshot(b.session, snapshot, 30, &failure));
+    assert_int_equal(snapshot->tools, TOOLS);
+    assert_true(snapshot->tool[BALL].pose.position[2] < 0.025);
+    assert_true(snapshot->tool[HAND].force[2] == 0);
+    lar_snapshot_destroy(snapshot);
     float kept[64][3];
     uint64_t last = 0, tick = 0;
     int32_t count = 0;
@@ -459,6 +504,7 @@ int main(void) {
                                        cmocka_unit_test(status_is_finite_and_complete),
                                        cmocka_unit_test(snapshots_are_of_one_step),
                                        cmocka_unit_test(late_snapshots_are_refused),
+                                       cmocka_unit_test(polled_snapshots_come_by_and_by),
                                        cmocka_unit_test(tools_are_felt),
                                        cmocka_unit_test(wrong_calls_are_refused),
                                        cmocka_unit_test(goes_back_and_on),
