@@ -218,7 +218,7 @@ expect 0 "$LARIAT" bench kernel --law yeoh+hgo-pair+viscous-2 --elements 27 --sh
 says '^yeoh+hgo-pair+viscous-2  *[0-9.]* '
 for law in marble ogden++yeoh ogden+; do
     expect 2 "$LARIAT" bench kernel --law "$law"
-    complains 'there are all, neo-hookean, .*, viscous-3, or several'
+    complains 'there are all, neo-hookean, .*, viscous-3, active, or several'
 done
 expect 2 "$LARIAT" bench kernel --law ogden+yeoh
 complains "'yeoh' is one too many"
