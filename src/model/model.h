@@ -132,7 +132,7 @@ struct lar_model {
                               where they need it (step/mass_scaling.h); 0: nothing is added */
     double mass_share;     /* at most so much, as a part of the model's mass */
     double strained_share; /* strained elements may have so much more in place of steps in parts, as
-                              a part of the model's mass (step/heavier.h); 0: nothing */
+                              a part of the model's mass (step/mass/heavier.h); 0: nothing */
     double view[3];        /* where viewers look from at first, a unit vector; 0 0 0: they choose */
     double duration;       /* seconds that the description lasts, 0: open */
     bool until_rest;       /* a run goes on until the body is at rest, see model/rest.h */

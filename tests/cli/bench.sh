@@ -120,6 +120,8 @@ has_keys --numbers elements nodes steps time_step ns_per_element.double ns_per_e
 expect 0 "$LARIAT" bench precision "$SCRATCH/demo/uterus.yaml" --steps 20 --isa c
 says 'mixed'
 expect 2 "$LARIAT" bench precision --steps 19
+expect 1 "$LARIAT" bench precision "$SCRATCH/demo/uterus_live.yaml" --steps 20
+complains 'single precision knows no mass_scaling'
 
 # Against an earlier run. A baseline whose figures no machine reaches, or every one.
 earlier=$SCRATCH/earlier.json

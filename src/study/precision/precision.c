@@ -191,7 +191,7 @@ static lar_status check(const lar_precision_options *options, lar_error *error) 
                         "%s:%d: single precision knows no fibres; take a model without them",
                         lar_model_source(options->model),
                         lar_model_fibrous(options->model)->fibre.line);
-    if (!block && options->model->mass_step > 0)
+    if (!block && (options->model->mass_step > 0 || options->model->strained_share > 0))
         return lar_fail(error, LAR_ERROR_UNSUPPORTED,
                         "%s: single precision knows no mass_scaling; take a scene without it",
                         lar_model_source(options->model));
