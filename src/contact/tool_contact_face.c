@@ -32,12 +32,35 @@ double lar_grasp_stiffness_limit(const lar_tool_contact_face *face, double radiu
 /* Where the wall begins, in radii of the tool. */
 static const double WALL = 0.2;
 
+/* Unit normal of the surface where a point of the face is, outwards: that of its triangle, of two
+ * corners and the face's middle. 0 where that has no area. */
+static void normal_at(const lar_tool_contact_patch *patch, const double weight[4],
+                      double normal[3]) {
+    static const double MIDDLE[4] = {0.25, 0.25, 0.25, 0.25};
+    double middle[3], from[3], to[3];
+    int a = 0;
+    for (int b = 1; b < 4; b++)
+        if (weight[b] + weight[(b + 1) % 4] > weight[a] + weight[(a + 1) % 4]) a = b;
+    lar_face_mean((const double(*)[3])patch->x, MIDDLE, middle);
+    lar_minus(patch->x[a], middle, from);
+    lar_minus(patch->x[(a + 1) % 4], middle, to);
+    lar_cross(from, to, normal);
+    double length = lar_length(normal);
+    for (int i = 0; i < 3; i++) normal[i] = length > 0 ? normal[i] / length : 0;
+}
+
 /* A point that has been passed by the middle of the tool sees a normal that would push it on, out
  * of the body: its face then looks the same way as the push. It is let go, smoothly where the push
- * goes along the face. */
-static double facing(const lar_tool_contact_patch *patch, const double normal[3]) {
-    double against =
-        -(normal[0] * patch->out[0] + normal[1] * patch->out[1] + normal[2] * patch->out[2]);
+ * goes along the face. A crumpled face looks elsewhere as a whole than where the point is, and
+ * would let in what lies before it: of both, what keeps the tool outside counts. */
+static double facing(const lar_tool_contact_patch *patch, const double normal[3],
+                     const double weight[4]) {
+    double against = -lar_dot(normal, patch->out);
+    if (against < 0.2) {
+        double local[3];
+        normal_at(patch, weight, local);
+        against = fmax(against, -lar_dot(normal, local));
+    }
     return against <= 0 ? 0 : against < 0.2 ? 5 * against : 1;
 }
 
@@ -103,7 +126,7 @@ static void touch_point(lar_tool_contact_patch *patch, const lar_contact_law *la
         if (!(square < within)) continue;
         double depth = lar_segment_depth(segment, patch->radius, x, normal, &along);
         if (!(depth > 0)) continue;
-        double share = facing(patch, normal);
+        double share = facing(patch, normal, weight);
         if (share == 0) continue;
         patch->depth = fmax(patch->depth, share * depth);
         patch->covered += fmin(1, depth / (WALL * patch->radius));
@@ -131,9 +154,11 @@ static double touch_wall(lar_tool_contact_patch *patch, const lar_contact_law *l
     lar_face_segment_closest(&patch->body->now[s], (const double(*)[3])patch->x, &at);
     double depth = patch->radius - at.distance;
     if (!(depth > WALL * patch->radius)) return WALL * patch->radius - depth;
-    if (!(at.distance > 0)) /* the middle line goes through the face: out the way it came */
-        for (int i = 0; i < 3; i++) at.normal[i] = -patch->out[i];
-    double share = facing(patch, at.normal);
+    if (!(at.distance > 0)) { /* the middle line goes through the face: out the way it came */
+        normal_at(patch, at.weight, at.normal);
+        for (int i = 0; i < 3; i++) at.normal[i] = -at.normal[i];
+    }
+    double share = facing(patch, at.normal, at.weight);
     if (share == 0) return WALL * patch->radius - depth;
     patch->depth = fmax(patch->depth, share * depth);
     double force = push_point(patch, law, s, at.along, at.weight, at.normal,
