@@ -568,6 +568,9 @@ typedef struct lar_options {
     int32_t hands;     /* tools of shape LAR_TOOL_HAND besides the model's, after them */
     int32_t spares;    /* tools that may be added while it runs, after these: 0 to 4 */
     int search_always; /* not 0: contact is searched anew in every step; the same bits, slow */
+    double tick;       /* of a host's clock [s]; 0: none. A whole number of steps makes a tick then,
+                          exactly: an automatic step is shortened for that (1 ms and a step of 95 us:
+                          11 of 90.9), another one must fit */
 } lar_options;
 
 /* hex8, the widest instruction set, the model's time step, one processor. Start from these: options

@@ -80,17 +80,19 @@ static int word_of(const char *word, const char *name, const char *const *words,
 }
 
 static bool parse_options(PyObject *args, PyObject *keywords, PyObject **model, lar_options *o) {
-    static char *names[] = {"model",     "grid",   "threads",  "element",       "isa",
-                            "time_step", "scheme", "channels", "distribution",  "schedules",
-                            "hands",     "spares", "pin",      "search_always", NULL};
+    static char *names[] = {"model",        "grid",          "threads", "element",
+                            "isa",          "time_step",     "scheme",  "channels",
+                            "distribution", "schedules",     "hands",   "spares",
+                            "pin",          "search_always", "tick",    NULL};
     static const char *const elements[] = {"hex8", "hex8-full", "hex8-matrix"};
     static const char *const isas[] = {"auto", "c", "neon", "avx2", "avx512"};
     const char *element = "hex8", *isa = "auto";
     *o = lar_options_default();
-    if (!PyArg_ParseTupleAndKeywords(
-            args, keywords, "O!|$zissdzzzziiip:Simulation", names, python_model_type, model,
-            &o->grid, &o->threads, &element, &isa, &o->time_step, &o->scheme, &o->channels,
-            &o->distribution, &o->schedules, &o->hands, &o->spares, &o->pin, &o->search_always))
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, "O!|$zissdzzzziiipd:Simulation", names,
+                                     python_model_type, model, &o->grid, &o->threads, &element,
+                                     &isa, &o->time_step, &o->scheme, &o->channels,
+                                     &o->distribution, &o->schedules, &o->hands, &o->spares,
+                                     &o->pin, &o->search_always, &o->tick))
         return false;
     int kind = word_of(element, "element", elements, 3), lanes = word_of(isa, "isa", isas, 5);
     if (kind < 0 || lanes < 0) return false;
@@ -452,13 +454,15 @@ static PyMethodDef simulation_methods[] = {
 static const char simulation_doc[] =
     "Simulation(model, *, grid=None, threads=0, element='hex8', isa='auto', time_step=0.0,\n"
     "           scheme=None, channels=None, distribution=None, schedules=None, hands=0, spares=0,\n"
-    "           pin=0, search_always=False)\n--\n\n"
+    "           pin=0, search_always=False, tick=0.0)\n--\n\n"
     "The state that moves. The same bits, and the same hash, with any grid, threads and isa.\n\n"
     "grid       processors along x, y and z, \"2x1x1\": threads of this process; \"auto\": the "
     "fastest\n"
     "threads    of every processor; 0: one\n"
     "element    \"hex8\", \"hex8-full\" (eight Gauss points) or \"hex8-matrix\"\n"
     "time_step  seconds; 0: the model's\n"
+    "tick       seconds; a whole number of steps makes it, for which an automatic step is "
+    "shortened\n"
     "hands      tools that take hold of the surface, besides the model's, behind them\n"
     "spares     places for tools that are added while it runs, 0 to 4\n\n"
     "One thread at a time: a second one gets a StateError. close() or `with` free it early.";

@@ -264,6 +264,7 @@ class Simulation:
         spares: int = 0,
         pin: int = 0,
         search_always: bool = False,
+        tick: float = 0.0,
     ) -> Simulation: ...
     def advance(
         self,
@@ -378,6 +379,7 @@ class Batch:
         hands: int = 0,
         spares: int = 0,
         search_always: bool = False,
+        tick: float = 0.0,
     ) -> Batch: ...
     def advance(
         self,

@@ -13,6 +13,22 @@
 #include "step/mass_scaling.h"
 #include "step/viscous_history.h"
 
+/* Steps that fit into ticks of the host's clock: the longest that are not longer. */
+static lar_status fit_tick(lar_domain *domain, double tick, bool may_shorten, lar_error *error) {
+    static const double ROUNDING = 1e-9;
+    if (tick == 0) return LAR_OK;
+    if (!(tick > 0) || !isfinite(tick))
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "%s: a tick must be a positive number of seconds, or 0 for none",
+                        lar_model_source(domain->model));
+    double steps = fmax(1, ceil(tick / domain->time_step * (1 - ROUNDING)));
+    if (may_shorten) domain->time_step = tick / steps;
+    if (fabs(steps * domain->time_step - tick) <= ROUNDING * tick) return LAR_OK;
+    return lar_fail(error, LAR_ERROR_ARGUMENT,
+                    "%s: steps of %g s do not make a tick of %g s; use time_step: auto, or %.9g s",
+                    lar_model_source(domain->model), domain->time_step, tick, tick / steps);
+}
+
 static lar_status choose_step(lar_domain *domain, const lar_options *options, lar_error *error) {
     const lar_model *model = domain->model;
     size_t elements = (size_t)model->mesh.element_count;
@@ -30,7 +46,7 @@ static lar_status choose_step(lar_domain *domain, const lar_options *options, la
     double wanted = options->time_step != 0 ? options->time_step : model->time_step;
     if (wanted == 0) {
         domain->time_step = lar_auto_step(model, domain->stable_step);
-        return LAR_OK;
+        return fit_tick(domain, options->tick, true, error);
     }
     if (!(wanted > 0) || !isfinite(wanted))
         return lar_fail(error, LAR_ERROR_ARGUMENT,
@@ -43,7 +59,7 @@ static lar_status choose_step(lar_domain *domain, const lar_options *options, la
                         lar_model_source(model), wanted, domain->stable_step,
                         (long long)model->mesh.element_id[domain->stable_worst]);
     domain->time_step = wanted;
-    return LAR_OK;
+    return fit_tick(domain, options->tick, false, error);
 }
 
 static lar_status list_spares(lar_domain *domain, lar_error *error) {

@@ -188,6 +188,52 @@ static void other_threads_ask_meanwhile(void **unused) {
     close_bench(&b);
 }
 
+/* A host at a thousand hertz gets a thousandth of a second from every tick. */
+static void ticks_are_exact(void **unused) {
+    (void)unused;
+    lar_model *model = hanging_block();
+    lar_options options = block_options(NULL, 0);
+    double given = options.time_step;
+    options.time_step = 0;
+    lar_simulation *simulation = start_with(model, options);
+    double automatic = lar_simulation_time_step(simulation);
+    lar_simulation_destroy(simulation);
+
+    options.tick = 1e-3;
+    simulation = start_with(model, options);
+    double step = lar_simulation_time_step(simulation), steps = round(1e-3 / step);
+    print_message("automatic step %g s, of a tick of 1 ms %g s\n", automatic, step);
+    assert_true(step <= automatic && 1e-3 / (steps - 1) > automatic);
+    assert_true(fabs(steps * step - 1e-3) < 1e-15);
+    lar_session *session = NULL;
+    lar_session_info info;
+    DONE(lar_session_open(simulation, NULL, &session, &failure));
+    lar_session_inspect(session, &info);
+    assert_int_equal(info.tick_steps, steps);
+    for (int i = 0; i < 100; i++) DONE(lar_session_tick(session, &failure));
+    lar_session_close(session, NULL);
+    assert_true(fabs(lar_simulation_time(simulation) - 0.1) < 1e-12);
+    lar_simulation_destroy(simulation);
+
+    /* A step that is given must fit; what is no tick is refused. */
+    options.time_step = 0.37 * automatic;
+    assert_int_equal(lar_simulation_create(model, &options, &simulation, &failure),
+                     LAR_ERROR_ARGUMENT);
+    assert_non_null(strstr(failure.message, "do not make a tick of 0.001 s"));
+    options.time_step = 1e-3 / ceil(1e-3 / automatic + 1);
+    DONE(lar_simulation_create(model, &options, &simulation, &failure));
+    assert_true(lar_simulation_time_step(simulation) == options.time_step);
+    lar_simulation_destroy(simulation);
+    options.time_step = given;
+    for (int i = 0; i < 3; i++) {
+        options.tick = (double[]){-1e-3, NAN, INFINITY}[i];
+        assert_int_equal(lar_simulation_create(model, &options, &simulation, &failure),
+                         LAR_ERROR_ARGUMENT);
+        assert_non_null(strstr(failure.message, "a tick must be a positive number"));
+    }
+    lar_model_destroy(model);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(ticks_compute),
@@ -196,6 +242,7 @@ int main(void) {
         cmocka_unit_test(broken_runs_say_so),
         cmocka_unit_test(hands_feel),
         cmocka_unit_test(other_threads_ask_meanwhile),
+        cmocka_unit_test(ticks_are_exact),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
