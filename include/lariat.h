@@ -710,6 +710,37 @@ LAR_API lar_status lar_simulation_element_value(const lar_simulation *simulation
  * Either may be NULL. */
 LAR_API lar_status lar_simulation_stresses(const lar_simulation *simulation, double (*cauchy)[6],
                                            double (*strain)[6], lar_error *error);
+/* What pushes nodes. */
+typedef enum lar_cause {
+    LAR_CAUSE_ELEMENTS = 0, /* all that elements do: elastic, viscous and active stress, hourglass
+                               control, barriers of those that are nearly folded */
+    LAR_CAUSE_TOOL,         /* one tool: what it pushes, holds and rubs. Of tools that press the
+                               same node with friction the nearest has the friction of all */
+    LAR_CAUSE_BODIES,       /* contact of bodies with each other and themselves, with friction */
+    LAR_CAUSE_LOADS,        /* forces and pressures of the model, and forces that were set */
+    LAR_CAUSE_PLANES,       /* all planes, with friction */
+    LAR_CAUSE_SUPPORTS,     /* what fixes and moves nodes, along its axes */
+    LAR_CAUSE_GRAVITY,
+    LAR_CAUSE_DAMPING /* of the model; what contact and barriers damp is in their forces */
+} lar_cause;
+
+/* Forces on all nodes by one cause [N], [nodes][3] in the mesh's order, at the displacements and
+ * velocities of now: those that the next step begins with, so that all causes and tools together
+ * are each node's mass times (v+ - v-) / dt, within rounding; v are the velocities now and after
+ * that step, dt its length, where neither it nor the one before is divided
+ * (lar_simulation_step_parts). `tool` counts for LAR_CAUSE_TOOL.
+ *
+ * Elements, tools, bodies and loads give whole force units, whose sums over nodes are exact in any
+ * order up to 2^53 of them, some hundred times the strongest force of an element: bodies sum up to
+ * nothing, and a tool's forces to minus lar_tool_force.force after an advance by that one step, to
+ * the last bit (the torque within rounding), under the conditions that
+ * lar_simulation_tool_touches has. These are the same bits on every grid and instruction set; the
+ * others are doubles, whose last bits may depend on the instruction set.
+ *
+ * Changes nothing; takes as long as some steps, on processor 0. */
+LAR_API lar_status lar_simulation_nodal_forces(const lar_simulation *simulation, lar_cause cause,
+                                               int32_t tool, double (*force)[3], lar_error *error);
+
 /* What all elements store at u, and what their hourglass control does [J]. u and threads as above.
  * Not finite when an element is inside out. */
 LAR_API lar_status lar_simulation_stored_energy(const lar_simulation *simulation,
