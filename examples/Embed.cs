@@ -38,7 +38,7 @@ static class Lariat {
     [DllImport(Library)] static extern IntPtr lar_version();
     [DllImport(Library)] static extern IntPtr lar_model_positions(Model model);
     [DllImport(Library)] static extern int lar_model_open(byte[] path, out Model model, out Error error);
-    // lar_simulation_create, told how large the options are (none here): lariat.h, structs that grow.
+    // lar_simulation_create, told how large the options are (none here): lariat_sizes.h.
     [DllImport(Library)] static extern int lar_simulation_create_sized(
         Model model, IntPtr options, UIntPtr size, out Simulation simulation, out Error error);
     [DllImport(Library)] static extern int lar_simulation_advance(

@@ -398,6 +398,13 @@ class Simulation : public detail::Handle<lar_simulation, lar_simulation_destroy>
     /* Cauchy stress [Pa] and Green-Lagrange strain of every element; see lariat.h. */
     std::vector<Vec6> stresses() const { return tensors(true); }
     std::vector<Vec6> strains() const { return tensors(false); }
+    /* Forces on all nodes by one cause [N]. */
+    std::vector<Vec3> nodal_forces(lar_cause cause, std::int32_t tool = -1) const {
+        std::vector<Vec3> force(nodes());
+        detail::call(lar_simulation_nodal_forces, get(), cause, tool,
+                     reinterpret_cast<double(*)[3]>(force.data()));
+        return force;
+    }
     void stored_energy(const Vec3 *u, double &strain, double &hourglass) const {
         detail::call(lar_simulation_stored_energy, get(), detail::raw(u), &strain, &hourglass);
     }

@@ -1,4 +1,5 @@
-/* Looking at a body: rays against its surface, stress and strain of its elements. */
+/* Looking at a body: rays against its surface, stress and strain of its elements, forces on its
+ * nodes. */
 #include <math.h>
 
 #include "module.h"
@@ -222,6 +223,56 @@ static PyObject *strains(PyObject *me, PyObject *args, PyObject *keywords) {
     return tensors(me, out, "strains", logarithmic ? LOGARITHMIC : STRAIN);
 }
 
+/* ---- forces on nodes ------------------------------------------------------------------------ */
+
+static bool find_cause(const char *name, lar_cause *cause) {
+    static const char *const names[] = {
+        [LAR_CAUSE_ELEMENTS] = "elements", [LAR_CAUSE_TOOL] = "tool",
+        [LAR_CAUSE_BODIES] = "bodies",     [LAR_CAUSE_LOADS] = "loads",
+        [LAR_CAUSE_PLANES] = "planes",     [LAR_CAUSE_SUPPORTS] = "supports",
+        [LAR_CAUSE_GRAVITY] = "gravity",   [LAR_CAUSE_DAMPING] = "damping"};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        *cause = (lar_cause)i;
+        if (strcmp(name, names[i]) == 0) return true;
+    }
+    return python_refuse(
+        "nodal_forces: \"%s\" is no cause; there are elements, tool, bodies, loads, "
+        "planes, supports, gravity and damping",
+        name);
+}
+
+static PyObject *nodal_forces(PyObject *me, PyObject *args, PyObject *keywords) {
+    static char *names[] = {"cause", "tool", "out", NULL};
+    python_simulation *self = (python_simulation *)me;
+    const char *name;
+    PyObject *tool = Py_None, *out = NULL;
+    lar_cause cause;
+    int32_t index = -1;
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, "s|OO:nodal_forces", names, &name, &tool,
+                                     &out) ||
+        !find_cause(name, &cause))
+        return NULL;
+    if ((tool != Py_None) != (cause == LAR_CAUSE_TOOL)) {
+        python_refuse("nodal_forces: the cause \"tool\" needs a tool, and the others take none");
+        return NULL;
+    }
+    lar_simulation *simulation = python_simulation_look(self, "nodal_forces");
+    if (!simulation || (tool != Py_None && !python_simulation_tool(simulation, tool, &index)))
+        return NULL;
+    python_target target;
+    if (!python_target_open(out, 'd', lar_model_node_count(self->model->model), 3, &target))
+        return NULL;
+    simulation = python_simulation_take(self, "nodal_forces");
+    if (!simulation) return python_target_close(&target, true);
+    lar_error error;
+    lar_status status;
+    PYTHON_UNLOCKED(status =
+                        lar_simulation_nodal_forces(simulation, cause, index, target.data, &error));
+    python_simulation_give(self);
+    if (status) python_raise(&error);
+    return python_target_close(&target, status != LAR_OK);
+}
+
 #define FUNCTION(f) ((PyCFunction)(void (*)(void))(f))
 #define OUT_DOC                                                                                    \
     " float64 [elements, 6] as xx, yy, zz, xy, yz, zx: components of tensors, shear without a "    \
@@ -240,6 +291,15 @@ PyMethodDef python_look_methods[] = {
      "a dict of memoryviews: distances float64 [n] [m], inf where nothing is met; points [n, 3] "
      "[m] "
      "and normals [n, 3]; faces, elements and bodies int32 [n], -1 where nothing is met."},
+    {"nodal_forces", FUNCTION(nodal_forces), METH_VARARGS | METH_KEYWORDS,
+     "nodal_forces($self, cause, tool=None, out=None)\n--\n\nForces on all nodes by one cause [N], "
+     "float64 [nodes, 3], in the mesh's order: elements (stress of every kind, hourglass control "
+     "and barriers together), tool (with `tool`, by place or name: what it pushes, holds and "
+     "rubs), "
+     "bodies (contact with each other and themselves), loads (forces and pressures of the model, "
+     "forces that were set), planes, supports, gravity or damping. Those that the next step begins "
+     "with: all together are mass times acceleration, a tool's sum up to minus the force that it "
+     "feels in that step, to the last bit where the step is not divided. Into `out` where given."},
     {"stresses", FUNCTION(stresses), METH_VARARGS | METH_KEYWORDS,
      "stresses($self, out=None)\n--\n\nMean Cauchy stress of every element now [Pa], viscous and "
      "active stress included," OUT_DOC},

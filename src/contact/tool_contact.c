@@ -267,7 +267,13 @@ static void give(lar_tool_contact *contact, const lar_condition_context *context
         }
         lar_tool_sum_add(sum, context->shares, arm, whole);
     }
-    if (touches) lar_touch_settle(touches, total, context->scale);
+    if (!touches) return;
+    lar_touch_settle(touches, total, context->scale);
+    for (int a = 0; a < 4; a++) {
+        int64_t whole[3];
+        for (int i = 0; i < 3; i++) whole[i] = llrint(force[a][i] * context->scale);
+        lar_touch_push(touches, contact->faces->face[f].value[a], whole);
+    }
 }
 
 /* Nothing of a run that is about to break. */

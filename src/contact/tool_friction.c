@@ -217,6 +217,7 @@ static void rub_node(lar_tool_contact *contact, const lar_condition_context *con
         }
         lar_touch_note(contact->touches, &touch);
         lar_touch_settle(contact->touches, rubbed->force, context->scale);
+        lar_touch_push(contact->touches, value, rubbed->force);
     }
     double arm[3];
     lar_minus(x, tool->now.position, arm);

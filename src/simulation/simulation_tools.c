@@ -217,6 +217,12 @@ static double grasp_of(const lar_tool_sum *sum, double unit) {
     return fmax(0, fmin(jaw[0], jaw[1]));
 }
 
+/* In newtons. Whole units stand apart from the rest, so that what one step has summed up comes out
+ * to the last bit: minus the sum of lar_simulation_nodal_forces. */
+static double mean_of(lar_wide sum, lar_wide shares, double scale) {
+    return ((double)(sum / shares) + (double)(sum % shares) / (double)shares) / scale;
+}
+
 lar_status lar_simulation_tool_force(const lar_simulation *simulation, int32_t tool,
                                      lar_tool_force *force, lar_error *error) {
     lar_status status = check_tool(simulation, tool, force, error);
@@ -224,6 +230,7 @@ lar_status lar_simulation_tool_force(const lar_simulation *simulation, int32_t t
     const lar_tool_sum *sum = &simulation->report.tool[tool];
     double steps = simulation->report_steps ? (double)simulation->report_steps : 1;
     double unit = 1 / (LAR_STEP_SHARES * simulation->domain.scale * steps);
+    lar_wide shares = LAR_STEP_SHARES * (lar_wide)steps;
     const lar_tools *tools = &simulation->tools;
     const lar_interval *interval = interval_of(simulation);
     lar_tool_pose now, hand;
@@ -240,7 +247,7 @@ lar_status lar_simulation_tool_force(const lar_simulation *simulation, int32_t t
     force->limited = tools->follower[tool].lagging != 0;
     force->grasp_force = grasp_of(sum, unit);
     for (int i = 0; i < 3; i++) {
-        force->force[i] = (double)sum->force[i] * unit;
+        force->force[i] = mean_of(sum->force[i], shares, simulation->domain.scale);
         force->torque[i] = ((double)sum->torque[i] + (double)sum->rest[i] * LAR_TORQUE_REST) * unit;
     }
     return LAR_OK;

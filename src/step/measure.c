@@ -175,23 +175,31 @@ static double supported_velocity(const look *l, const lar_constraint *constraint
            dt;
 }
 
+/* The velocity half a step ahead of the node whose first plane is `entry`, without planes and with
+ * them. Returns the entry behind its last. */
+static int32_t stop_at_planes(const look *l, int32_t entry, double free[3], double ahead[3]) {
+    const lar_planes *planes = &l->domain->surroundings.planes;
+    int32_t value = planes->node[entry].value;
+    lar_condition_context context = l->context;
+    context.time_step = part_of_step(l);
+    for (int i = 0; i < 3; i++) { /* what supports hold goes on as it does */
+        const lar_plane_way *way = &planes->way[planes->node[entry].way];
+        bool held = way->slide[i] == 0 && way->normal[i] != 0;
+        free[i] = held ? l->state.v[value + i] : next_velocity(l, value + i);
+        ahead[i] = free[i];
+    }
+    return lar_planes_ahead(planes, &context, &l->state, entry, ahead);
+}
+
 /* Nodes that planes stop in this step: what add_kinetic has counted for them as free nodes, and
  * half of what the stop takes. */
 static void add_stops(const look *l, lar_energy *energy) {
     const lar_planes *planes = &l->domain->surroundings.planes;
-    lar_condition_context context = l->context;
-    context.time_step = part_of_step(l);
     double half = 0.5 * damping_of(l) * mean_step(l);
     for (int32_t entry = 0; entry < planes->count;) {
         int32_t value = planes->node[entry].value;
         double free[3], ahead[3], mass = l->domain->mass[value / 4];
-        for (int i = 0; i < 3; i++) { /* what supports hold goes on as it does */
-            const lar_plane_way *way = &planes->way[planes->node[entry].way];
-            bool held = way->slide[i] == 0 && way->normal[i] != 0;
-            free[i] = held ? l->state.v[value + i] : next_velocity(l, value + i);
-            ahead[i] = free[i];
-        }
-        entry = lar_planes_ahead(planes, &context, &l->state, entry, ahead);
+        entry = stop_at_planes(l, entry, free, ahead);
         for (int i = 0; i < 3; i++) {
             double change = ahead[i] - free[i], behind = l->state.v[value + i];
             energy->kinetic += 0.5 * mass * behind * change;
@@ -321,5 +329,127 @@ lar_status lar_measure_reaction(const lar_domain *domain, lar_measure_scratch *s
     }
     end_look(&l);
     free(wanted);
+    return LAR_OK;
+}
+
+/* ---- nodal forces by cause -----------------------------------------------------------------
+ *
+ * What acts from u_n on takes v-, half a step back, to v+, half a step ahead, over the mean step h:
+ *
+ *     m (v+ - v-) / h  =  elements + tools + bodies + loads + m g - c m (v- + v+) / 2
+ *                         + planes + supports
+ *
+ * Forces are summed up in whole units as the step sums them up. A plane's is what changes the free
+ * v+ into the one that it lets be, a support's is all that is left open.
+ */
+
+static void take_sums(const lar_domain *domain, const int64_t *sum, double sign,
+                      double (*force)[3]) {
+    for (lar_gid g = 0; g < domain->model->mesh.node_count; g++)
+        for (int i = 0; i < 3; i++) /* never -0 */
+            force[g][i] =
+                0.0 + sign * ((double)sum[4 * domain->layout.local[g] + i] / domain->scale);
+}
+
+static void take_weights(const look *l, double (*force)[3]) {
+    for (lar_gid g = 0; g < l->domain->model->mesh.node_count; g++)
+        for (int i = 0; i < 3; i++)
+            force[g][i] = lar_domain_weighs(l->domain, l->domain->layout.local[g]) * l->gravity[i];
+}
+
+/* Of held axes what the plane would change goes into the support. */
+static void take_planes(const look *l, double (*force)[3]) {
+    const lar_domain *domain = l->domain;
+    const lar_planes *planes = &domain->surroundings.planes;
+    double h = mean_step(l), half = 0.5 * damping_of(l) * h;
+    for (int32_t entry = 0; entry < planes->count;) {
+        lar_lid n = planes->node[entry].value / 4;
+        lar_gid g = domain->layout.global[n];
+        double free[3], ahead[3];
+        entry = stop_at_planes(l, entry, free, ahead);
+        for (int i = 0; i < 3; i++)
+            if (!(domain->surroundings.conditions.held[g] >> i & 1))
+                force[g][i] = domain->mass[n] * (1 + half) * (ahead[i] - free[i]) / h;
+    }
+}
+
+static void take_supports(const look *l, double (*force)[3]) {
+    const lar_conditions *conditions = &l->domain->surroundings.conditions;
+    for (int32_t i = 0; i < conditions->constraint_count; i++) {
+        const lar_constraint *c = &conditions->constraint[i];
+        force[l->domain->layout.global[c->value / 4]][c->value % 4] =
+            support_force(l, c, supported_velocity(l, c));
+    }
+}
+
+static void take_damping(const look *l, double (*force)[3]) {
+    const lar_domain *domain = l->domain;
+    const lar_planes *planes = &domain->surroundings.planes;
+    const lar_conditions *conditions = &domain->surroundings.conditions;
+    for (lar_gid g = 0; g < domain->model->mesh.node_count; g++) /* v+ first */
+        for (int i = 0; i < 3; i++) force[g][i] = next_velocity(l, 4 * domain->layout.local[g] + i);
+    for (int32_t entry = 0; entry < planes->count;) {
+        double free[3];
+        lar_gid g = domain->layout.global[planes->node[entry].value / 4];
+        entry = stop_at_planes(l, entry, free, force[g]);
+    }
+    for (int32_t i = 0; i < conditions->constraint_count; i++) {
+        const lar_constraint *c = &conditions->constraint[i];
+        force[domain->layout.global[c->value / 4]][c->value % 4] = supported_velocity(l, c);
+    }
+    for (lar_gid g = 0; g < domain->model->mesh.node_count; g++) {
+        lar_lid n = domain->layout.local[g];
+        for (int i = 0; i < 3; i++)
+            force[g][i] =
+                0.0 - 0.5 * damping_of(l) * domain->mass[n] * (force[g][i] + l->state.v[4 * n + i]);
+    }
+}
+
+static void take_part(const lar_domain *domain, lar_measure_scratch *scratch,
+                      const lar_state *state, lar_acting what, double (*force)[3]) {
+    lar_fault ignored = {0};
+    look l;
+    enter_look(domain, scratch, state, &l);
+    lar_step_forces_of(domain, l.interactions, what, &l.state, &ignored);
+    take_sums(domain, l.state.force, -1, force);
+    end_look(&l);
+}
+
+static lar_status take_tool(const lar_domain *domain, lar_measure_scratch *scratch,
+                            const lar_state *state, int32_t tool, double (*force)[3],
+                            lar_error *error) {
+    size_t values = 4 * (size_t)domain->layout.node_padded;
+    lar_touch_list list = {.tool = tool, .on_nodes = lar_calloc(values, sizeof *list.on_nodes)};
+    if (!list.on_nodes)
+        return lar_fail_memory(error, values * sizeof *list.on_nodes, "forces on nodes");
+    lar_measure_touches(domain, scratch, state, &list);
+    take_sums(domain, list.on_nodes, 1, force);
+    free(list.on_nodes);
+    return LAR_OK;
+}
+
+lar_status lar_measure_nodal_forces(const lar_domain *domain, lar_measure_scratch *scratch,
+                                    const lar_state *state, lar_cause cause, int32_t tool,
+                                    double (*force)[3], lar_error *error) {
+    look l;
+    if (cause == LAR_CAUSE_TOOL) return take_tool(domain, scratch, state, tool, force, error);
+    if (cause == LAR_CAUSE_ELEMENTS)
+        take_part(domain, scratch, state, LAR_ACTING_ELEMENTS, force);
+    else if (cause == LAR_CAUSE_BODIES)
+        take_part(domain, scratch, state, LAR_ACTING_BODIES, force);
+    else if (cause == LAR_CAUSE_LOADS)
+        take_part(domain, scratch, state, LAR_ACTING_LOADS, force);
+    if (cause < LAR_CAUSE_PLANES) return LAR_OK;
+    memset(force, 0, (size_t)domain->model->mesh.node_count * sizeof *force);
+    begin_look(domain, scratch, state, &l);
+    if (cause == LAR_CAUSE_GRAVITY)
+        take_weights(&l, force);
+    else if (cause == LAR_CAUSE_PLANES)
+        take_planes(&l, force);
+    else if (cause == LAR_CAUSE_SUPPORTS)
+        take_supports(&l, force);
+    else
+        take_damping(&l, force);
+    end_look(&l);
     return LAR_OK;
 }

@@ -28,6 +28,12 @@ void lar_measure_energy(const lar_domain *domain, lar_measure_scratch *scratch,
 void lar_measure_touches(const lar_domain *domain, lar_measure_scratch *scratch,
                          const lar_state *state, lar_touch_list *list);
 
+/* What one cause does to every node of the model at the time of the state [N], [nodes][3] by global
+ * node; `tool` counts for LAR_CAUSE_TOOL. Fails only for want of memory. */
+lar_status lar_measure_nodal_forces(const lar_domain *domain, lar_measure_scratch *scratch,
+                                    const lar_state *state, lar_cause cause, int32_t tool,
+                                    double (*force)[3], lar_error *error);
+
 /* What element e stores, hourglass and guard included [J]: the same bits on every grid. */
 double lar_measure_element_energy(const lar_domain *domain, const lar_state *state, lar_gid e);
 

@@ -312,6 +312,31 @@ static void add_friction(const lar_domain *domain, lar_interactions *interaction
     lar_tool_friction_add(contact, context, &leapfrog, domain->push, state);
 }
 
+/* Elements of a state that is looked at: no step follows. */
+static void recover_seen(const lar_domain *domain, lar_state *state, lar_fault *fault) {
+    if (domain->kind != LAR_ELEMENT_HEX8) {
+        lar_step_recover(domain, 0, domain->run_count, state, fault);
+        return;
+    }
+    for (int32_t r = 0; r < domain->run_count; r++) recover_run(domain, r, false, NULL, state);
+    lar_guard_apply_all(domain, state);
+}
+
+void lar_step_forces_of(const lar_domain *domain, lar_interactions *scratch, lar_acting what,
+                        lar_state *state, lar_fault *fault) {
+    lar_condition_context context = lar_domain_context(domain);
+    lar_step_enter(domain, scratch, &context, state);
+    lar_interactions_forget(scratch);
+    if (what == LAR_ACTING_LOADS)
+        apply_loads(domain, scratch, &context, lar_state_time(domain, state), state, fault);
+    else if (what == LAR_ACTING_TOOLS)
+        lar_tool_contact_apply(&scratch->tool_contact, &context, state);
+    else if (what == LAR_ACTING_BODIES)
+        add_body_contact(&scratch->body_contact, &context, state, fault);
+    else
+        recover_seen(domain, state, fault);
+}
+
 void lar_step_forces(const lar_domain *domain, lar_interactions *scratch, lar_state *state,
                      lar_fault *fault) {
     lar_condition_context context = lar_domain_context(domain);
@@ -319,12 +344,7 @@ void lar_step_forces(const lar_domain *domain, lar_interactions *scratch, lar_st
     lar_interactions_forget(scratch);
     act(domain, scratch, &context, state, fault);
     add_body_contact(&scratch->body_contact, &context, state, fault);
-    if (domain->kind != LAR_ELEMENT_HEX8) {
-        lar_step_recover(domain, 0, domain->run_count, state, fault);
-    } else {
-        for (int32_t r = 0; r < domain->run_count; r++) recover_run(domain, r, false, NULL, state);
-        lar_guard_apply_all(domain, state);
-    }
+    recover_seen(domain, state, fault);
     hold_up_added(domain, scratch, &context, state);
     add_friction(domain, scratch, &context, state);
 }

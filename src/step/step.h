@@ -93,6 +93,15 @@ void lar_step_end(const lar_domain *domain, const lar_interactions *interactions
  * take part in no step: contact is looked for anew. */
 void lar_step_forces(const lar_domain *domain, lar_interactions *scratch, lar_state *state,
                      lar_fault *fault);
+/* The same of one of these alone; of tools without their friction, which asks for all others. */
+typedef enum lar_acting {
+    LAR_ACTING_LOADS,
+    LAR_ACTING_TOOLS,
+    LAR_ACTING_BODIES,
+    LAR_ACTING_ELEMENTS
+} lar_acting;
+void lar_step_forces_of(const lar_domain *domain, lar_interactions *scratch, lar_acting what,
+                        lar_state *state, lar_fault *fault);
 
 /* Time of the state [s]. */
 static inline double lar_state_time(const lar_domain *domain, const lar_state *state) {

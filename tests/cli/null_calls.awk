@@ -1,7 +1,7 @@
-# Writes a table of all public calls from lariat.h, each with nothing but zeros: whatever is added
-# there is in it.
+# Writes a table of all public calls from lariat.h and lariat_sizes.h, each with nothing but zeros:
+# whatever is added there is in it.
 #
-#     awk -f null_calls.awk include/lariat.h >null_calls.h
+#     awk -f null_calls.awk include/lariat.h include/lariat_sizes.h >null_calls.h
 
 /^#/ { continued = /\\$/; next }
 continued { continued = /\\$/; next }

@@ -65,6 +65,26 @@ TEST_UNUSED static void act_at(lar_simulation *simulation, int tick) {
                steps);
 }
 
+/* tool_model with tools that rub. */
+TEST_UNUSED static lar_model *touched(double friction) {
+    lar_model *model = tool_model();
+    for (int i = 0; i < model->tool_count; i++) model->tool[i].friction = friction;
+    return model;
+}
+
+/* So gently that steps are seldom divided: ball and rod dip into the top and are drawn along it,
+ * the hand pulls at a corner, the grasper comes down with its jaws open. */
+TEST_UNUSED static void act_gently(lar_simulation *simulation, int tick) {
+    double t = tick, down = fmin(t, 8) * 0.0003;
+    place_tool(simulation, TEST_BALL, 0.03 + 0.0002 * t, 0.025, 0.0485 - down, 1, TICK_STEPS);
+    place_tool(simulation, TEST_ROD, 0.045, 0.01 + 0.0002 * t, 0.0485 - down, 1, TICK_STEPS);
+    if (tick == 0) place_tool(simulation, TEST_GRASPER, 0.03, 0.015, 0.0705, 1, 20 * TICK_STEPS);
+    const double corner[3] = {0.06, 0.05, 0.04};
+    if (tick == 0)
+        assert_int_equal(lar_simulation_grasp(simulation, TEST_HAND, corner, 1, NULL, NULL), 0);
+    place_tool(simulation, TEST_HAND, 0.06 + 0.0001 * t, 0.05, 0.04, 0, TICK_STEPS);
+}
+
 /* Ticks first .. last - 1. */
 TEST_UNUSED static void act(lar_simulation *simulation, int first, int last) {
     for (int tick = first; tick < last; tick++) {

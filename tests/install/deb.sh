@@ -56,8 +56,8 @@ holds() {
     done
 }
 holds liblariat0 'usr/lib/*/liblariat.so.0'
-holds liblariat-dev usr/include/lariat.h usr/include/lariat.hpp 'usr/lib/*/liblariat.so' \
-    'usr/lib/*/liblariat.a' 'usr/lib/*/pkgconfig/lariat.pc' 'usr/lib/*/cmake/Lariat/LariatConfig.cmake'
+holds liblariat-dev usr/include/lariat.h usr/include/lariat_sizes.h usr/include/lariat.hpp \
+    'usr/lib/*/liblariat.so' 'usr/lib/*/liblariat.a' 'usr/lib/*/pkgconfig/lariat.pc' 'usr/lib/*/cmake/Lariat/LariatConfig.cmake'
 holds lariat usr/bin/lariat usr/share/man/man1/lariat-run.1 usr/share/zsh/vendor-completions/_lariat
 holds lariat-viewer usr/share/lariat/viewer/index.html
 holds python3-lariat usr/lib/python3/dist-packages/lariat/_lariat.abi3.so \

@@ -1,8 +1,8 @@
-# Reads the public header, and then what `nm -A` says of the object files of a build; after
+# Reads the public headers, and then what `nm -A` says of the object files of a build; after
 # rooms.awk. Every function of ours that a room calls is defined in a room that it may use; the
 # command, what works for it and the viewers' server may call what is public, too.
 
-FILENAME ~ /lariat\.h$/ {
+FILENAME ~ /lariat(_sizes)?\.h$/ {
     if (match($0, /lar_[a-z0-9_]+\(/)) public[substr($0, RSTART, RLENGTH - 1)] = 1
     next
 }

@@ -7,9 +7,11 @@
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 
-# names HEADER SHORT: what nm says, from standard input.
+# check SHORT HEADER...: what nm says, from standard input.
 check() {
-    awk -v short="$2" -f "$here/rooms.awk" -f "$here/links.awk" "$1" -
+    short=$1
+    shift
+    awk -v short="$short" -f "$here/rooms.awk" -f "$here/links.awk" "$@" -
 }
 
 self_test() {
@@ -24,11 +26,11 @@ a.dir/server/v.c.o: U lar_low
 a.dir/server/v.c.o: U lar_public
 b.dir/cli/z.c.o: U lar_low
 b.dir/cli/z.c.o: U lar_public'
-    printf '%s\n' "$sound" | check "$scratch/lariat.h" 1 >/dev/null ||
+    printf '%s\n' "$sound" | check 1 "$scratch/lariat.h" >/dev/null ||
         { echo "links: sound calls are refused"; exit 1; }
     for planted in 'a.dir/base/x.c.o: U lar_public' 'b.dir/cli/z.c.o: U lar_inside' \
         'a.dir/server/v.c.o: U lar_inside'; do
-        if printf '%s\n%s\n' "$sound" "$planted" | check "$scratch/lariat.h" 1 >/dev/null; then
+        if printf '%s\n%s\n' "$sound" "$planted" | check 1 "$scratch/lariat.h" >/dev/null; then
             echo "links: not found: $planted"
             exit 1
         fi
@@ -44,6 +46,6 @@ case ${1:-} in
     find "$2/src/CMakeFiles" -name '*.o' | while read -r object; do
         source=${object#*.dir/}
         [ ! -e "$1/src/${source%.o}" ] || echo "$object"
-    done | xargs nm -A | check "$1/include/lariat.h" ""
+    done | xargs nm -A | check "" "$1/include/lariat.h" "$1/include/lariat_sizes.h"
     ;;
 esac

@@ -286,13 +286,53 @@ class Tools(unittest.TestCase):
             self.assertEqual(touch["kind"], "pressed")
             self.assertAlmostEqual(sum(touch["weights"]), 1)
             sums = [a + b for a, b in zip(sums, touch["force"])]
+        pushed = sim.nodal_forces("tool", "probe")
+        self.assertEqual(pushed.shape, (sim.model.node_count, 3))
         sim.advance(1)
         force = sim.tool_force(0)
-        for felt, summed in zip(force["force"], sums):
+        for axis, (felt, summed) in enumerate(zip(force["force"], sums)):
             self.assertAlmostEqual(felt, summed, places=9)
+            self.assertEqual(felt, -sum(pushed[n, axis] for n in range(sim.model.node_count)))
         self.assertEqual(sim.wrench("probe"), force["force"] + force["torque"])
         self.assertGreater(force["force"][2], 0)
         self.assertAlmostEqual(sim.tool_pose(0)["position"][2], 0.033, places=3)
+
+    def test_forces_on_nodes_are_mass_times_acceleration(self):
+        sim = lariat.Simulation(block())
+        nodes = sim.model.node_count
+        sim.tool_move("probe", (0.03, 0.025, 0.033), 500)
+        sim.advance(500)
+        before, total = sim.hash(), [0.0] * (3 * nodes)
+        out = array.array("d", total)
+        view = memoryview(out).cast("B").cast("d", (nodes, 3))
+        for cause in ("elements", "tool", "bodies", "loads", "planes", "supports", "gravity",
+                      "damping"):
+            sim.nodal_forces(cause, "probe" if cause == "tool" else None, out=view)
+            total = [a + b for a, b in zip(total, out)]
+        self.assertEqual(sim.hash(), before)
+        slow = sim.velocities()
+        self.assertEqual(sim.info["step_parts"], 1)
+        sim.advance(1)
+        fast, seen = sim.velocities(), 0
+        for n in range(nodes):
+            rate = [(fast[n, i] - slow[n, i]) / sim.time_step for i in range(3)]
+            if max(map(abs, rate)) < 0.1:
+                continue
+            seen += 1
+            mass = max(((abs(a), f / a) for a, f in zip(rate, total[3 * n:3 * n + 3])))[1]
+            self.assertTrue(0 < mass < sim.model.info["mass"])
+            for i in range(3):
+                self.assertAlmostEqual(total[3 * n + i], mass * rate[i], delta=1e-9)
+        self.assertGreater(seen, 20)
+
+    def test_causes_that_are_none(self):
+        sim = lariat.Simulation(block())
+        for call in (lambda: sim.nodal_forces("wind"), lambda: sim.nodal_forces("tool"),
+                     lambda: sim.nodal_forces("loads", 0), lambda: sim.nodal_forces("tool", "none"),
+                     lambda: sim.nodal_forces("tool", 9),
+                     lambda: sim.nodal_forces("loads", out=[1.0])):
+            with self.assertRaises((ValueError, TypeError)):
+                call()
 
     def test_a_hand_lifts(self):
         sim = lariat.Simulation(block(tools=[]), hands=1)
