@@ -43,6 +43,8 @@ python3-dev       -
 python3-venv      -"
 NUMPY_PACKAGES="
 python3-numpy     -"
+MATPLOTLIB_PACKAGES="
+python3-matplotlib -"
 BROWSER_PACKAGES="
 chromium          c:chromium"
 CLANG_PACKAGES="
@@ -242,6 +244,7 @@ for group in "$@"; do
         want "$BROWSER_PACKAGES" "the viewer is not tested in a browser" || true
         want "$REPORT_PACKAGES" "the report is not tested" || true
         want "$NUMPY_PACKAGES" "the Python module is not tested with numpy" || true
+        want "$MATPLOTLIB_PACKAGES" "the notebook is not run" || true
         ;;
     fuzz)
         need "$TEST_PACKAGES"

@@ -75,6 +75,7 @@ asked check
 wants libcmocka-dev
 wants libopenmpi-dev
 wants python3-numpy
+wants python3-matplotlib
 wants_no libmpich-dev
 
 # Packages: all that they are built with, as the control file says it.

@@ -4,9 +4,10 @@
 #   run.sh NAME SOURCE BUILD SCRATCH [WHY]    WHY: why there is nothing to test; "" when there is
 #
 # NAME is that of test_NAME.py; `docs` runs the blocks of docs/python.md and docs/environments.md;
-# `reference` makes docs/python-reference.md again and compares; `pip` installs a copy of the checkout
-# into an empty virtual environment, without network, and tests what is there then; `asan` builds the module once more with the sanitizers for addresses and undefined
-# behaviour, on the same library. (CMake leaves an empty WHY out of what it hands on.)
+# `notebook` those of the notebook there; `reference` makes docs/python-reference.md again and
+# compares; `pip` installs a copy of the checkout into an empty virtual environment, without network,
+# and tests what is there then; `asan` builds the module once more with the sanitizers for addresses
+# and undefined behaviour, on the same library. (CMake leaves an empty WHY out of what it hands on.)
 set -eu
 name=$1 source=$2 build=$3 scratch=$4 why=${5-}
 here=$source/tests/python
@@ -32,6 +33,10 @@ docs)
         (cd "$page" && PYTHONPATH="$build/python" "$python" -X faulthandler "$here/docs.py" \
             "$source/docs/$page.md") || exit 1
     done
+    ;;
+notebook)
+    PYTHONPATH="$build/python" "$python" -X faulthandler "$here/notebook.py" \
+        "$source/docs/notebooks/organ.ipynb" || exit
     ;;
 reference)
     PYTHONPATH="$build/python" "$python" "$here/reference.py" >"$scratch/page" || exit 1
