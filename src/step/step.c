@@ -188,6 +188,7 @@ void lar_step_enter(const lar_domain *domain, const lar_interactions *interactio
     context->forces =
         interactions->tool_contact.tools ? &interactions->tool_contact.tools->forces : NULL;
     context->hardness = division->hardness;
+    context->held = interactions->notes.mark;
     state->close = lar_division_is_close(division);
     context->shares = LAR_STEP_SHARES / state->parts;
 }
@@ -226,7 +227,7 @@ static void move_nodes(const lar_domain *domain, const lar_interactions *interac
                        lar_fault *fault) {
     /* Where contact is predicted from the fastest node, that is none of these. */
     bool predicts = interactions->body_contact.surface ||
-                    interactions->surroundings->planes.count > 0 ||
+                    interactions->tool_contact.plane_contact.planes->count > 0 ||
                     interactions->surroundings->faces.face_count > 0;
     uint64_t park_interval = predicts ? 4 : LAR_PARK_INTERVAL;
     lar_leapfrog leapfrog = leapfrog_at(domain, interactions, context, time, state);
@@ -357,16 +358,14 @@ void lar_step_begin(const lar_domain *domain, lar_interactions *interactions,
 
 void lar_step_move(const lar_domain *domain, lar_interactions *interactions,
                    const lar_condition_context *context, lar_state *state, lar_fault *fault) {
-    const lar_conditions *conditions = &interactions->surroundings->conditions;
     double time = lar_state_time(domain, state);
     hold_up_added(domain, interactions, context, state);
     add_friction(domain, interactions, context, state);
     lar_tool_friction_half_work(&interactions->tool_contact, context, state);
-    lar_conditions_observe(conditions, context, &interactions->notes, state);
+    lar_conditions_observe(context, &interactions->notes, state);
     lar_tool_contact_observe(&interactions->tool_contact, context, state);
     move_nodes(domain, interactions, context, time, state, fault);
-    state->external +=
-        lar_conditions_impose(conditions, context, time, &interactions->notes, state);
+    state->external += lar_conditions_impose(context, time, &interactions->notes, state);
     lar_tool_contact_stop(&interactions->tool_contact, context, state);
     lar_body_contact_moved(&interactions->body_contact, state, state->fastest * context->time_step);
 }
