@@ -5,8 +5,8 @@
 #include <string.h>
 
 /* Room for at most so many entries; the lists are still empty. */
-static lar_status allocate(lar_conditions *c, size_t nodes, size_t constraints, size_t forces,
-                           size_t pressures, lar_error *error) {
+LAR_SETUP static lar_status allocate(lar_conditions *c, size_t nodes, size_t constraints,
+                                     size_t forces, size_t pressures, lar_error *error) {
     c->held = lar_calloc(nodes, sizeof *c->held);
     c->constraint = lar_calloc(constraints, sizeof *c->constraint);
     c->force = lar_calloc(forces, sizeof *c->force);
@@ -80,9 +80,9 @@ static lar_status note_bearers(const lar_condition_share *share, int32_t nodes, 
     return LAR_OK;
 }
 
-lar_status lar_conditions_create(const lar_model *model, const int32_t *local,
-                                 const lar_condition_share *share, lar_conditions *c,
-                                 lar_error *error) {
+LAR_SETUP lar_status lar_conditions_create(const lar_model *model, const int32_t *local,
+                                           const lar_condition_share *share, lar_conditions *c,
+                                           lar_error *error) {
     *c = (lar_conditions){0};
     size_t constraints = 0, forces = 0, pressures = 0;
     for (int i = 0; i < model->fix_count; i++)
@@ -124,8 +124,8 @@ void lar_conditions_destroy(lar_conditions *c) {
     *c = (lar_conditions){0};
 }
 
-lar_status lar_condition_notes_create(const lar_conditions *c, lar_condition_notes *notes,
-                                      lar_error *error) {
+LAR_SETUP lar_status lar_condition_notes_create(const lar_conditions *c, lar_condition_notes *notes,
+                                                lar_error *error) {
     size_t moved = (size_t)(c->constraint_count - c->fixed_count), forces = (size_t)c->force_count;
     size_t pressures = (size_t)c->pressure_count;
     *notes = (lar_condition_notes){.constraint_count = c->constraint_count,
@@ -176,9 +176,10 @@ static void list_supports(lar_conditions *made, const lar_conditions *c, const l
     }
 }
 
-lar_status lar_condition_notes_set(const lar_conditions *c, const lar_model *model,
-                                   const lar_condition_share *share, const lar_supports *set,
-                                   lar_condition_notes *notes, lar_error *error) {
+LAR_SETUP lar_status lar_condition_notes_set(const lar_conditions *c, const lar_model *model,
+                                             const lar_condition_share *share,
+                                             const lar_supports *set, lar_condition_notes *notes,
+                                             lar_error *error) {
     size_t nodes = (size_t)model->mesh.node_count;
     lar_conditions made = {0};
     lar_moved_axis *moved = NULL;

@@ -20,6 +20,10 @@
 #include "model/settings.h"
 #include "model/supports.h"
 
+/* Of functions of sources that are compiled for speed: this one is called before steps, and need
+ * only be small. */
+#define LAR_SETUP __attribute__((cold))
+
 /* One axis of one node held at, or moved to, by * curve(t). */
 typedef struct lar_constraint {
     int32_t value; /* index into u and v: 4 * local node + axis */

@@ -14,8 +14,8 @@ static inline double dot(const double a[3], const double *b) {
 
 /* Supports are stronger than planes: a node gives way along its free axes only, and not at all when
  * these lie along the plane. */
-static void add_node(lar_planes *planes, const lar_contact *plane, const double position[3],
-                     int32_t value, unsigned held) {
+LAR_SETUP static void add_node(lar_planes *planes, const lar_contact *plane,
+                               const double position[3], int32_t value, unsigned held) {
     lar_plane_way way = {.held = plane->friction > 0 && held != 0};
     lar_plane_node node = {.value = value};
     double free = 0;
@@ -36,8 +36,8 @@ static void add_node(lar_planes *planes, const lar_contact *plane, const double 
     planes->rough = planes->rough || plane->friction > 0;
 }
 
-static void add_plane(lar_planes *planes, const lar_model *model, const int32_t *local,
-                      const lar_condition_share *share, int plane, uint8_t *held) {
+LAR_SETUP static void add_plane(lar_planes *planes, const lar_model *model, const int32_t *local,
+                                const lar_condition_share *share, int plane, uint8_t *held) {
     enum { SEEN = 0x80 };
     const lar_contact *contact = &model->contact[plane];
     for (int32_t f = 0; f < contact->face_count; f++)
@@ -58,9 +58,9 @@ static int by_node(const void *a, const void *b) {
     return (x->way > y->way) - (x->way < y->way);
 }
 
-lar_status lar_planes_create(const lar_model *model, const int32_t *local,
-                             const lar_condition_share *share, const lar_supports *set,
-                             lar_planes *planes, lar_error *error) {
+LAR_SETUP lar_status lar_planes_create(const lar_model *model, const int32_t *local,
+                                       const lar_condition_share *share, const lar_supports *set,
+                                       lar_planes *planes, lar_error *error) {
     *planes = (lar_planes){0};
     size_t max = 0, ways = 0;
     for (int i = 0; i < model->contact_count; i++)
@@ -92,8 +92,8 @@ void lar_planes_destroy(lar_planes *planes) {
     *planes = (lar_planes){0};
 }
 
-lar_status lar_plane_contact_create(const lar_planes *planes, lar_plane_contact *plane_contact,
-                                    lar_error *error) {
+LAR_SETUP lar_status lar_plane_contact_create(const lar_planes *planes,
+                                              lar_plane_contact *plane_contact, lar_error *error) {
     *plane_contact = (lar_plane_contact){.planes = planes};
     if (planes->count == 0) return LAR_OK;
     plane_contact->near = lar_calloc((size_t)planes->count, sizeof *plane_contact->near);
