@@ -36,13 +36,6 @@ static inline void lar_interactions_destroy(lar_interactions *interactions) {
     lar_planes_destroy(&interactions->planes);
 }
 
-/* Between steps: follows what was set of supports (surroundings.c). Asks for memory where that has
- * changed; when there is none nothing has changed. The context says which nodes the thread moves.
- */
-lar_status lar_interactions_set(lar_interactions *interactions,
-                                const lar_condition_context *context, const lar_supports *set,
-                                lar_error *error);
-
 /* The state has been replaced by another one: what contact knew of it, and had counted, is void. */
 static inline void lar_interactions_forget(lar_interactions *interactions) {
     lar_tool_contact_forget(&interactions->tool_contact);

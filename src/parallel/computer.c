@@ -345,8 +345,8 @@ static lar_status take_supports(lar_computer *computer, lar_error *error) {
     lar_status status = LAR_OK;
     for (int32_t i = 0; i < all_threads(computer) && !status; i++) {
         lar_worker *worker = &processor_of(computer, i)->worker[i % computer->threads];
-        status = lar_interactions_set(&worker->interactions, &worker->context,
-                                      &computer->tools->supports, error);
+        status = lar_step_support(&worker->context, &computer->tools->supports,
+                                  &worker->interactions, error);
     }
     return status;
 }

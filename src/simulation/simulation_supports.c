@@ -23,9 +23,9 @@ lar_status lar_simulation_support_here(lar_simulation *simulation, const lar_sup
     const lar_condition_context all = lar_domain_context(&simulation->domain);
     lar_interactions *measure = &simulation->scratch->measure.interactions;
     const lar_supports before = measure->notes.set;
-    lar_status status = lar_interactions_set(measure, &all, supports, error);
-    if (!status) status = lar_interactions_set(&simulation->interactions, &all, supports, error);
-    if (status) lar_interactions_set(measure, &all, &before, NULL);
+    lar_status status = lar_step_support(&all, supports, measure, error);
+    if (!status) status = lar_step_support(&all, supports, &simulation->interactions, error);
+    if (status) lar_step_support(&all, &before, measure, NULL);
     return status;
 }
 
