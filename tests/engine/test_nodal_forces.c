@@ -297,6 +297,9 @@ static void compare_grids(const lar_model *model, void (*go)(lar_simulation *), 
 
 static void act_for_a_while(lar_simulation *simulation) {
     act(simulation, 0, 8);
+    for (int32_t n = 0; n < 60; n += 7)
+        assert_int_equal(
+            lar_simulation_set_support(simulation, n, 1u + (unsigned)n % 7, n % 2, NULL), 0);
     advance(simulation, 3);
 }
 
