@@ -68,3 +68,27 @@ bool lar_supports_good(const lar_supports *supports, const lar_model *model) {
         good = lar_support_good(&supports->entry[k], model);
     return good;
 }
+
+static unsigned axes_there(lar_force_nodes nodes, unsigned axes, int32_t node) {
+    for (int32_t k = 0; k < nodes.count; k++)
+        if (nodes.node[k] == node) return axes;
+    return 0;
+}
+
+static unsigned axes_of(const lar_node_list *nodes, unsigned axes, int32_t node) {
+    return axes_there((lar_force_nodes){nodes->count, nodes->node}, axes, node);
+}
+
+unsigned lar_supports_at(const lar_supports *supports, const lar_model *model, int32_t node) {
+    unsigned held = 0;
+    for (int i = 0; i < model->fix_count; i++)
+        held |= axes_of(&model->fix[i].nodes, model->fix[i].axes, node);
+    for (int i = 0; i < model->move_count; i++)
+        held |= axes_of(&model->move[i].nodes, model->move[i].axes, node);
+    for (int32_t k = 0; k < supports->count; k++) {
+        const lar_support_entry *entry = &supports->entry[k];
+        unsigned axes = axes_there(nodes_of(model, entry), entry->axes, node);
+        held = entry->held ? held | axes : held & ~axes;
+    }
+    return held;
+}

@@ -43,4 +43,7 @@ bool lar_support_good(const lar_support_entry *entry, const lar_model *model);
 /* The same of all, for what comes from files and from other processes. */
 bool lar_supports_good(const lar_supports *supports, const lar_model *model);
 
+/* The axes that hold a node. */
+unsigned lar_supports_at(const lar_supports *supports, const lar_model *model, int32_t node);
+
 #endif

@@ -71,6 +71,6 @@ lar_status lar_simulation_set_support_on(lar_simulation *simulation, const char 
 }
 
 unsigned lar_simulation_support(const lar_simulation *simulation, int32_t node) {
-    if (!simulation || node < 0 || node >= simulation->domain.model->mesh.node_count) return 0;
-    return simulation->scratch->measure.interactions.notes.held[node] & LAR_AXIS_ALL;
+    if (!simulation) return 0;
+    return lar_supports_at(&simulation->tools.supports, simulation->domain.model, node);
 }

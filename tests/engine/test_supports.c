@@ -220,6 +220,27 @@ static void what_makes_no_sense_is_refused(void **unused) {
     finish(simulation, model);
 }
 
+/* What is told of nodes one by one is what all of them are marked with. */
+static void what_is_told_is_so(void **unused) {
+    (void)unused;
+    lar_model *model = make(true);
+    move_nodes(model, brick_side(&body, 0, -1), LAR_AXIS_Z, 0.01, add_ramp(model, 1));
+    lar_simulation *simulation = start(model);
+    uint8_t *mark = lar_calloc((size_t)model->mesh.node_count, 1);
+    for (uint32_t i = 0; i < 60; i++) {
+        unsigned axes = 1 + i * 5 % 7;
+        if (i % 3 == 0)
+            set_on(simulation, i % 2 ? "left" : "right", axes, i % 5 > 1);
+        else
+            set_at(simulation, (int32_t)(i * 37 % 210), axes, i % 5 > 1);
+        lar_supports_mark(&simulation->tools.supports, model, mark);
+        for (int32_t n = 0; n < model->mesh.node_count; n++)
+            assert_int_equal(lar_simulation_support(simulation, n), mark[n] & LAR_AXIS_ALL);
+    }
+    free(mark);
+    finish(simulation, model);
+}
+
 /* ---- energy --------------------------------------------------------------------------------- */
 
 /* Held and released again and again, in a body that swings. */
@@ -422,6 +443,7 @@ int main(void) {
                                        cmocka_unit_test(what_moves_is_stopped_and_let_go),
                                        cmocka_unit_test(the_last_word_counts),
                                        cmocka_unit_test(what_makes_no_sense_is_refused),
+                                       cmocka_unit_test(what_is_told_is_so),
                                        cmocka_unit_test(every_joule_is_accounted_for),
                                        cmocka_unit_test(a_plane_stops_what_is_released),
                                        cmocka_unit_test(the_hash_is_the_same_everywhere),
