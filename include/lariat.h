@@ -672,9 +672,10 @@ LAR_API void lar_simulation_velocities(const lar_simulation *simulation, double 
  * remember. The same for every instruction set, thread count and division of the model. */
 LAR_API uint64_t lar_simulation_hash(const lar_simulation *simulation);
 
-/* Energies now, in joules. external = work done by loads, prescribed motion and tools since the
- * start, damping = energy taken out, contact = stored in contacts and lost in them, viscous = what
- * the viscous terms of materials have taken, most of it for good; strain = what is left in the end;
+/* Energies now, in joules. external = work done by loads, prescribed motion, supports that are set
+ * and tools since the start, damping = energy taken out, contact = stored in contacts and lost in
+ * them, viscous = what the viscous terms of materials have taken, most of it for good; strain =
+ * what is left in the end;
  * kinetic + strain + hourglass + damping + contact + viscous = external (+ start). */
 typedef struct lar_energy {
     double kinetic, strain, hourglass, external, damping, contact, viscous;
@@ -722,7 +723,7 @@ typedef enum lar_cause {
     LAR_CAUSE_BODIES,       /* contact of bodies with each other and themselves, with friction */
     LAR_CAUSE_LOADS,        /* forces and pressures of the model, and forces that were set */
     LAR_CAUSE_PLANES,       /* all planes, with friction */
-    LAR_CAUSE_SUPPORTS,     /* what fixes and moves nodes, along its axes */
+    LAR_CAUSE_SUPPORTS,     /* what fixes, holds and moves nodes, along its axes */
     LAR_CAUSE_GRAVITY,
     LAR_CAUSE_DAMPING /* of the model; what contact and barriers damp is in their forces */
 } lar_cause;

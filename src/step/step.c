@@ -196,7 +196,7 @@ void lar_step_enter(const lar_domain *domain, const lar_interactions *interactio
 
 /* ---- supports that are set ------------------------------------------------------------------ */
 
-/* Whoever is fixed to a plane's nodes does not stop at it; whoever is released does. */
+/* Nodes give way to planes along their free axes, which are others then. */
 LAR_SETUP static lar_status set_supports(lar_interactions *interactions, const lar_model *model,
                                          const lar_condition_share *share, const lar_supports *set,
                                          lar_error *error) {
