@@ -672,9 +672,10 @@ LAR_API void lar_simulation_velocities(const lar_simulation *simulation, double 
  * remember. The same for every instruction set, thread count and division of the model. */
 LAR_API uint64_t lar_simulation_hash(const lar_simulation *simulation);
 
-/* Energies now, in joules. external = work done by loads, prescribed motion and tools since the
- * start, damping = energy taken out, contact = stored in contacts and lost in them, viscous = what
- * the viscous terms of materials have taken, most of it for good; strain = what is left in the end;
+/* Energies now, in joules. external = work done by loads, prescribed motion, supports that are set
+ * and tools since the start, damping = energy taken out, contact = stored in contacts and lost in
+ * them, viscous = what the viscous terms of materials have taken, most of it for good; strain =
+ * what is left in the end;
  * kinetic + strain + hourglass + damping + contact + viscous = external (+ start). */
 typedef struct lar_energy {
     double kinetic, strain, hourglass, external, damping, contact, viscous;
@@ -722,7 +723,7 @@ typedef enum lar_cause {
     LAR_CAUSE_BODIES,       /* contact of bodies with each other and themselves, with friction */
     LAR_CAUSE_LOADS,        /* forces and pressures of the model, and forces that were set */
     LAR_CAUSE_PLANES,       /* all planes, with friction */
-    LAR_CAUSE_SUPPORTS,     /* what fixes and moves nodes, along its axes */
+    LAR_CAUSE_SUPPORTS,     /* what fixes, holds and moves nodes, along its axes */
     LAR_CAUSE_GRAVITY,
     LAR_CAUSE_DAMPING /* of the model; what contact and barriers damp is in their forces */
 } lar_cause;
@@ -786,6 +787,22 @@ LAR_API lar_status lar_simulation_set_force(lar_simulation *simulation, int32_t 
 /* The same on every node of a set of nodes (lar_model_set): so much on each of them. */
 LAR_API lar_status lar_simulation_set_force_on(lar_simulation *simulation, const char *set,
                                                const double force[3], lar_error *error);
+/* Axes of nodes. */
+enum { LAR_AXIS_X = 1, LAR_AXIS_Y = 2, LAR_AXIS_Z = 4, LAR_AXIS_ALL = 7 };
+/* Supports that can be set at a time; one on a set counts once for all axes together. */
+enum { LAR_SUPPORTS_MAX = 128 };
+/* `held` not 0: from now on these axes (LAR_AXIS_X | ..., 1 to 7) of a node stand still where they
+ * are, as with a clamp or a stitch. 0: they are free, also of what the model fixes or moves: the
+ * node goes on from where it is with the velocity that it has, from rest where it was fixed. The
+ * other axes stay as they are; of what is said of one axis the last counts. What moves along a
+ * curve of the model and is stopped does not take it up again before a reset. A body that stops in
+ * one step is hit: its kinetic energy there is negative work of the support.
+ * LAR_ERROR_ARGUMENT for another node or axis, and beyond LAR_SUPPORTS_MAX; LAR_ERROR_MEMORY. */
+LAR_API lar_status lar_simulation_set_support(lar_simulation *simulation, int32_t node,
+                                              unsigned axes, int held, lar_error *error);
+/* The same of every node of a set of nodes (lar_model_set). */
+LAR_API lar_status lar_simulation_set_support_on(lar_simulation *simulation, const char *set,
+                                                 unsigned axes, int held, lar_error *error);
 /* As they are now. The stiffness and the activation of a material that does not exist are 0. */
 LAR_API void lar_simulation_gravity(const lar_simulation *simulation, double gravity[3]);
 LAR_API double lar_simulation_damping(const lar_simulation *simulation);
@@ -794,6 +811,8 @@ LAR_API double lar_simulation_stiffness(const lar_simulation *simulation, int32_
 LAR_API double lar_simulation_activation(const lar_simulation *simulation, int32_t material);
 /* What was set on a node and on sets that it is in, together [N]; 0 for no such node. */
 LAR_API void lar_simulation_force(const lar_simulation *simulation, int32_t node, double force[3]);
+/* The axes that hold or move a node, by the model and by what was set; 0 for no such node. */
+LAR_API unsigned lar_simulation_support(const lar_simulation *simulation, int32_t node);
 
 /* ---- tools and contact of a simulation ---------------------------------------------------- */
 
@@ -1109,6 +1128,10 @@ LAR_API lar_status lar_session_set_force(lar_session *session, int32_t node, con
                                          lar_error *error);
 LAR_API lar_status lar_session_set_force_on(lar_session *session, const char *set,
                                             const double force[3], lar_error *error);
+LAR_API lar_status lar_session_set_support(lar_session *session, int32_t node, unsigned axes,
+                                           int held, lar_error *error);
+LAR_API lar_status lar_session_set_support_on(lar_session *session, const char *set, unsigned axes,
+                                              int held, lar_error *error);
 /* As they were at the end of the last tick. */
 LAR_API void lar_session_gravity(const lar_session *session, double gravity[3]);
 LAR_API double lar_session_damping(const lar_session *session);

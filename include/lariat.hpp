@@ -430,6 +430,12 @@ class Simulation : public detail::Handle<lar_simulation, lar_simulation_destroy>
     void set_force_on(const std::string &set, std::nullptr_t) {
         detail::call(lar_simulation_set_force_on, get(), set.c_str(), nullptr);
     }
+    void set_support(std::int32_t node, unsigned axes, bool held) {
+        detail::call(lar_simulation_set_support, get(), node, axes, held);
+    }
+    void set_support_on(const std::string &set, unsigned axes, bool held) {
+        detail::call(lar_simulation_set_support_on, get(), set.c_str(), axes, held);
+    }
     Vec3 gravity() const {
         Vec3 gravity{};
         lar_simulation_gravity(get(), gravity.data());
@@ -447,6 +453,7 @@ class Simulation : public detail::Handle<lar_simulation, lar_simulation_destroy>
         lar_simulation_force(get(), node, force.data());
         return force;
     }
+    unsigned support(std::int32_t node) const { return lar_simulation_support(get(), node); }
 
     std::int32_t tool_count() const { return lar_simulation_tool_count(get()); }
     lar_tool_info tool(std::int32_t index) const {
@@ -626,6 +633,12 @@ class Session : public detail::Handle<lar_session, detail::close> {
     }
     void set_force_on(const std::string &set, std::nullptr_t) {
         detail::call(lar_session_set_force_on, get(), set.c_str(), nullptr);
+    }
+    void set_support(std::int32_t node, unsigned axes, bool held) {
+        detail::call(lar_session_set_support, get(), node, axes, held);
+    }
+    void set_support_on(const std::string &set, unsigned axes, bool held) {
+        detail::call(lar_session_set_support_on, get(), set.c_str(), axes, held);
     }
     Vec3 gravity() const {
         Vec3 gravity{};

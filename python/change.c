@@ -1,5 +1,5 @@
-/* Gravity, damping, stiffness, activation and forces on nodes, of a simulation and of a session:
- * the same words for both, because the library has the same calls for both. */
+/* Gravity, damping, stiffness, activation, forces on nodes and supports, of a simulation and of a
+ * session: the same words for both, because the library has the same calls for both. */
 #include "module.h"
 
 /* A number for each material: the library's calls. */
@@ -17,6 +17,9 @@ typedef struct changes {
     set_for_material *set_stiffness, *activate;
     lar_status (*set_force)(void *it, int32_t node, const double force[3], lar_error *error);
     lar_status (*set_force_on)(void *it, const char *set, const double force[3], lar_error *error);
+    lar_status (*set_support)(void *it, int32_t node, unsigned axes, int held, lar_error *error);
+    lar_status (*set_support_on)(void *it, const char *set, unsigned axes, int held,
+                                 lar_error *error);
     void (*gravity)(const void *it, double gravity[3]);
     double (*damping)(const void *it);
     of_material *stiffness, *activation;
@@ -47,6 +50,14 @@ typedef struct changes {
                                           lar_error *error) {                                      \
         return lar_##kind##_set_force_on(it, set, force, error);                                   \
     }                                                                                              \
+    static lar_status kind##_set_support(void *it, int32_t node, unsigned axes, int held,          \
+                                         lar_error *error) {                                       \
+        return lar_##kind##_set_support(it, node, axes, held, error);                              \
+    }                                                                                              \
+    static lar_status kind##_set_support_on(void *it, const char *set, unsigned axes, int held,    \
+                                            lar_error *error) {                                    \
+        return lar_##kind##_set_support_on(it, set, axes, held, error);                            \
+    }                                                                                              \
     static void kind##_gravity(const void *it, double gravity[3]) {                                \
         lar_##kind##_gravity(it, gravity);                                                         \
     }                                                                                              \
@@ -71,8 +82,8 @@ typedef struct changes {
     static const changes kind##_changes = {                                                        \
         kind##_take,        kind##_look,         kind##_give,          kind##_model,               \
         kind##_set_gravity, kind##_set_damping,  kind##_set_stiffness, kind##_activate,            \
-        kind##_set_force,   kind##_set_force_on, kind##_gravity,       kind##_damping,             \
-        kind##_stiffness,   kind##_activation};
+        kind##_set_force,   kind##_set_force_on, kind##_set_support,   kind##_set_support_on,      \
+        kind##_gravity,     kind##_damping,      kind##_stiffness,     kind##_activation};
 
 static const lar_model *simulation_model(PyObject *me) {
     return ((python_simulation *)me)->model->model;
@@ -226,6 +237,57 @@ static PyObject *clear_forces(PyObject *me, PyObject *nothing) {
     return done(me, c, status, &error);
 }
 
+/* The axes that a word of x, y and z names; 0: it is none. */
+static unsigned axes_of(const char *word) {
+    unsigned axes = 0;
+    for (; *word; word++) {
+        if (*word < 'x' || *word > 'z' || axes & 1u << (*word - 'x')) return 0;
+        axes |= 1u << (*word - 'x');
+    }
+    return axes;
+}
+
+static PyObject *set_support(PyObject *me, PyObject *args, PyObject *keywords) {
+    static char *names[] = {"where", "held", "axes", NULL};
+    const changes *c = changes_of(me);
+    PyObject *where;
+    const char *word = "xyz", *set = NULL;
+    int32_t node = -1;
+    int held = 1;
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, "O|ps:set_support", names, &where, &held,
+                                     &word) ||
+        !python_where(where, &set, &node))
+        return NULL;
+    unsigned axes = axes_of(word);
+    if (!axes) {
+        python_refuse("axes: '%s' is none of 'x', 'y', 'z', 'xy', ..., 'xyz'", word);
+        return NULL;
+    }
+    void *it = c->take(me, "set_support");
+    if (!it) return NULL;
+    lar_error error;
+    lar_status status;
+    PYTHON_UNLOCKED(status = set ? c->set_support_on(it, set, axes, held, &error)
+                                 : c->set_support(it, node, axes, held, &error));
+    return done(me, c, status, &error);
+}
+
+static PyObject *support(PyObject *me, PyObject *args, PyObject *keywords) {
+    static char *names[] = {"node", NULL};
+    int node, count = 0;
+    char word[4];
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, "i:support", names, &node)) return NULL;
+    lar_simulation *simulation = python_simulation_look((python_simulation *)me, "support");
+    if (!simulation) return NULL;
+    if (node < 0 || node >= lar_model_node_count(simulation_model(me))) {
+        python_refuse("node: there is no node %d", node);
+        return NULL;
+    }
+    for (int i = 0; i < 3; i++)
+        if (lar_simulation_support(simulation, node) >> i & 1) word[count++] = (char)('x' + i);
+    return PyUnicode_FromStringAndSize(word, count);
+}
+
 static PyObject *force(PyObject *me, PyObject *args, PyObject *keywords) {
     static char *names[] = {"node", NULL};
     int node;
@@ -263,6 +325,11 @@ static PyObject *force(PyObject *me, PyObject *args, PyObject *keywords) {
          "(an int), or on every node of a set (its name), so much on each; None: none any more. "  \
          "128 "                                                                                    \
          "can be set at a time."},                                                                 \
+        {"set_support", FUNCTION(set_support), METH_VARARGS | METH_KEYWORDS,                       \
+         "set_support($self, where, held=True, axes='xyz')\n--\n\nHolds a node (an int), or "      \
+         "every node of a set (its name), where it is, on these axes, as a clamp or a stitch "     \
+         "does; held=False: releases it, also from what the model fixes or moves. Of what is "     \
+         "said of an axis the last counts. 128 can be set at a time."},                            \
     {                                                                                              \
         "clear_forces", clear_forces, METH_NOARGS,                                                 \
             "clear_forces($self)\n--\n\nAll forces that were set are gone."                        \
@@ -273,6 +340,9 @@ PyMethodDef python_change_methods[] = {
     {"force", FUNCTION(force), METH_VARARGS | METH_KEYWORDS,
      "force($self, node)\n--\n\nWhat was set on a node and on sets that it is in, together [N], a "
      "tuple."},
+    {"support", FUNCTION(support), METH_VARARGS | METH_KEYWORDS,
+     "support($self, node)\n--\n\nThe axes that hold or move a node now, by the model or by what "
+     "was set: 'xyz', 'z', '', ..."},
     {NULL, NULL, 0, NULL}};
 PyMethodDef python_session_change_methods[] = {SHARED_METHODS, {NULL, NULL, 0, NULL}};
 

@@ -226,17 +226,21 @@ bool python_material(const lar_model *model, PyObject *source, int32_t *index) {
            python_refuse("material: there is none called %R; Model.materials lists them", source);
 }
 
+bool python_where(PyObject *where, const char **set, int32_t *node) {
+    if (PyUnicode_Check(where))
+        *set = PyUnicode_AsUTF8AndSize(where, NULL);
+    else if (!int32_of(where, "where: a node or the name of a set of nodes", node))
+        return false;
+    return !PyErr_Occurred();
+}
+
 bool python_force_parse(PyObject *args, PyObject *keywords, python_force_call *call) {
     static char *names[] = {"where", "force", NULL};
     PyObject *where, *force = Py_None;
     *call = (python_force_call){.node = -1};
     if (!PyArg_ParseTupleAndKeywords(args, keywords, "O|O:set_force", names, &where, &force))
         return false;
-    if (PyUnicode_Check(where))
-        call->set = PyUnicode_AsUTF8AndSize(where, NULL);
-    else if (!int32_of(where, "where: a node or the name of a set of nodes", &call->node))
-        return false;
-    if (PyErr_Occurred()) return false;
+    if (!python_where(where, &call->set, &call->node)) return false;
     if (force == Py_None) return true;
     call->force = call->vector;
     return python_vector(force, "force", 3, call->vector);

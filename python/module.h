@@ -174,6 +174,8 @@ typedef struct python_force_call {
     double vector[3];
     const double *force; /* NULL: none any more */
 } python_force_call;
+/* A node, or the name of a set of nodes. */
+bool python_where(PyObject *where, const char **set, int32_t *node);
 bool python_force_parse(PyObject *args, PyObject *keywords, python_force_call *call);
 
 /* ---- arrays --------------------------------------------------------------------------------- */

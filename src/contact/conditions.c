@@ -5,8 +5,8 @@
 #include <string.h>
 
 /* Room for at most so many entries; the lists are still empty. */
-static lar_status allocate(lar_conditions *c, size_t nodes, size_t constraints, size_t forces,
-                           size_t pressures, lar_error *error) {
+LAR_SETUP static lar_status allocate(lar_conditions *c, size_t nodes, size_t constraints,
+                                     size_t forces, size_t pressures, lar_error *error) {
     c->held = lar_calloc(nodes, sizeof *c->held);
     c->constraint = lar_calloc(constraints, sizeof *c->constraint);
     c->force = lar_calloc(forces, sizeof *c->force);
@@ -34,6 +34,17 @@ static void add_constraints(lar_conditions *c, const int32_t *local,
                     (lar_constraint){.value = 4 * local[node] + axis, .curve = curve, .by = by};
         c->held[node] |= (uint8_t)fresh;
     }
+}
+
+/* Those of the model, but for the axes that `held` has already. */
+static void list_constraints(lar_conditions *c, const lar_model *model, const int32_t *local,
+                             const lar_condition_share *share) {
+    for (int i = 0; i < model->fix_count; i++)
+        add_constraints(c, local, share, &model->fix[i].nodes, model->fix[i].axes, 0, -1);
+    c->fixed_count = c->constraint_count;
+    for (int i = 0; i < model->move_count; i++)
+        add_constraints(c, local, share, &model->move[i].nodes, model->move[i].axes,
+                        model->move[i].by, model->move[i].curve);
 }
 
 static void add_pressure(lar_conditions *c, const lar_mesh *mesh, const int32_t *local,
@@ -69,9 +80,9 @@ static lar_status note_bearers(const lar_condition_share *share, int32_t nodes, 
     return LAR_OK;
 }
 
-lar_status lar_conditions_create(const lar_model *model, const int32_t *local,
-                                 const lar_condition_share *share, lar_conditions *c,
-                                 lar_error *error) {
+LAR_SETUP lar_status lar_conditions_create(const lar_model *model, const int32_t *local,
+                                           const lar_condition_share *share, lar_conditions *c,
+                                           lar_error *error) {
     *c = (lar_conditions){0};
     size_t constraints = 0, forces = 0, pressures = 0;
     for (int i = 0; i < model->fix_count; i++)
@@ -89,12 +100,7 @@ lar_status lar_conditions_create(const lar_model *model, const int32_t *local,
     }
     c->local = local;
 
-    for (int i = 0; i < model->fix_count; i++)
-        add_constraints(c, local, share, &model->fix[i].nodes, model->fix[i].axes, 0, -1);
-    c->fixed_count = c->constraint_count;
-    for (int i = 0; i < model->move_count; i++)
-        add_constraints(c, local, share, &model->move[i].nodes, model->move[i].axes,
-                        model->move[i].by, model->move[i].curve);
+    list_constraints(c, model, local, share);
     for (int i = 0; i < model->load_count; i++) add_forces(c, local, share, &model->load[i]);
     for (int i = 0; i < model->pressure_count; i++)
         for (int32_t k = 0; k < model->pressure[i].count; k++) {
@@ -118,11 +124,15 @@ void lar_conditions_destroy(lar_conditions *c) {
     *c = (lar_conditions){0};
 }
 
-lar_status lar_condition_notes_create(const lar_conditions *c, lar_condition_notes *notes,
-                                      lar_error *error) {
+LAR_SETUP lar_status lar_condition_notes_create(const lar_conditions *c, lar_condition_notes *notes,
+                                                lar_error *error) {
     size_t moved = (size_t)(c->constraint_count - c->fixed_count), forces = (size_t)c->force_count;
     size_t pressures = (size_t)c->pressure_count;
-    *notes = (lar_condition_notes){.moved = lar_calloc(moved, sizeof *notes->moved),
+    *notes = (lar_condition_notes){.constraint_count = c->constraint_count,
+                                   .fixed_count = c->fixed_count,
+                                   .constraint = c->constraint,
+                                   .held = c->held,
+                                   .moved = lar_calloc(moved, sizeof *notes->moved),
                                    .force = lar_calloc(forces, sizeof *notes->force),
                                    .pressure = lar_calloc(pressures, sizeof *notes->pressure)};
     if (notes->moved && notes->force && notes->pressure) return LAR_OK;
@@ -133,11 +143,68 @@ lar_status lar_condition_notes_create(const lar_conditions *c, lar_condition_not
                            "supports and loads");
 }
 
-void lar_condition_notes_destroy(lar_condition_notes *notes) {
+static void free_supports(lar_condition_notes *notes) {
+    if (notes->mark) free(notes->constraint);
+    free(notes->mark);
     free(notes->moved);
+}
+
+void lar_condition_notes_destroy(lar_condition_notes *notes) {
+    free_supports(notes);
     free(notes->force);
     free(notes->pressure);
     *notes = (lar_condition_notes){0};
+}
+
+/* How many axes are held at most. */
+static size_t count_axes(const uint8_t *mark, size_t nodes) {
+    size_t count = 0;
+    for (size_t n = 0; n < nodes; n++) count += mark[n] & LAR_AXIS_ALL ? 3 : 0;
+    return count;
+}
+
+/* Those of the model where nothing else was set, and behind them what is held where it is. */
+static void list_supports(lar_conditions *made, const lar_conditions *c, const lar_model *model,
+                          const lar_condition_share *share, const uint8_t *mark) {
+    int32_t nodes = model->mesh.node_count;
+    for (int32_t n = 0; n < nodes; n++) made->held[n] = mark[n] / LAR_SUPPORT_SET;
+    list_constraints(made, model, c->local, share);
+    for (int32_t n = 0; n < nodes; n++) {
+        made->held[n] = 0;
+        add_constraints(made, c->local, share, &(lar_node_list){1, &n},
+                        mark[n] & (mark[n] / LAR_SUPPORT_SET), 0, LAR_CURVE_HERE);
+    }
+}
+
+LAR_SETUP lar_status lar_condition_notes_set(const lar_conditions *c, const lar_model *model,
+                                             const lar_condition_share *share,
+                                             const lar_supports *set, lar_condition_notes *notes,
+                                             lar_error *error) {
+    size_t nodes = (size_t)model->mesh.node_count;
+    lar_conditions made = {0};
+    lar_moved_axis *moved = NULL;
+    uint8_t *mark = lar_calloc(nodes, 1);
+    if (!mark) return lar_fail_memory(error, nodes, "supports");
+    lar_supports_mark(set, model, mark);
+    size_t axes = count_axes(mark, nodes);
+    lar_status status = allocate(&made, nodes, axes, 0, 0, error);
+    if (!status && !(moved = lar_calloc(axes, sizeof *moved)))
+        status = lar_fail_memory(error, axes * sizeof *moved, "supports");
+    if (!status) {
+        list_supports(&made, c, model, share, mark);
+        free_supports(notes);
+        notes->constraint_count = made.constraint_count;
+        notes->fixed_count = made.fixed_count;
+        notes->constraint = made.constraint;
+        notes->held = notes->mark = mark;
+        notes->moved = moved;
+        notes->set = *set;
+        made.constraint = NULL;
+        mark = NULL;
+    }
+    free(mark);
+    lar_conditions_destroy(&made);
+    return status;
 }
 
 static double factor_at(const lar_model *model, int curve, double time) {
@@ -274,46 +341,48 @@ int32_t lar_conditions_load(const lar_conditions *c, const lar_condition_context
     return set >= 0 ? set : beyond;
 }
 
-void lar_conditions_observe(const lar_conditions *c, const lar_condition_context *context,
-                            lar_condition_notes *notes, lar_state *state) {
+void lar_conditions_observe(const lar_condition_context *context, lar_condition_notes *notes,
+                            lar_state *state) {
     /* The support takes it: a large reaction is no fast node. */
-    for (int32_t i = 0; i < c->fixed_count; i++) state->force[c->constraint[i].value] = 0;
-    for (int32_t i = c->fixed_count; i < c->constraint_count; i++) {
-        int32_t value = c->constraint[i].value;
+    for (int32_t i = 0; i < notes->fixed_count; i++) state->force[notes->constraint[i].value] = 0;
+    for (int32_t i = notes->fixed_count; i < notes->constraint_count; i++) {
+        lar_constraint *constraint = &notes->constraint[i];
+        int32_t value = constraint->value;
         int64_t *force = &state->force[value];
-        notes->moved[i - c->fixed_count] =
+        notes->moved[i - notes->fixed_count] =
             (lar_moved_axis){(double)*force / context->scale, state->v[value]};
+        if (constraint->curve == LAR_CURVE_HERE) constraint->by = state->u[value];
         *force = 0;
     }
 }
 
 double lar_constraint_value(const lar_model *model, const lar_constraint *constraint, double time) {
-    if (constraint->curve < 0) return 0;
+    if (constraint->curve < 0) return constraint->by;
     return constraint->by * lar_curve_value(&model->curve[constraint->curve], time);
 }
 
 /* The kernel moved what stands still as if it were free, and counted that as damped motion. */
-static double hold(const lar_conditions *c, const double *weight, lar_state *state) {
+static double hold(const lar_condition_notes *notes, const double *weight, lar_state *state) {
     double counted = 0, *restrict u = state->u, *restrict v = state->v;
-    for (int32_t i = 0; i < c->fixed_count; i++) {
-        int32_t value = c->constraint[i].value;
+    for (int32_t i = 0; i < notes->fixed_count; i++) {
+        int32_t value = notes->constraint[i].value;
         counted += weight[value / 4] * v[value] * v[value];
         u[value] = v[value] = 0;
     }
     return counted;
 }
 
-double lar_conditions_impose(const lar_conditions *c, const lar_condition_context *context,
-                             double time, const lar_condition_notes *notes, lar_state *state) {
+double lar_conditions_impose(const lar_condition_context *context, double time,
+                             const lar_condition_notes *notes, lar_state *state) {
     const lar_model *model = context->model;
     double damping = lar_damping_of(model, context->settings), gravity[3], work = 0;
     double dt = context->time_step, step = context->mean_step;
     double share = damping * step / context->whole_step;
     lar_gravity_at(model, context->settings, time, gravity);
-    state->damped -= share * hold(c, context->weight, state);
-    for (int32_t i = c->fixed_count; i < c->constraint_count; i++) {
-        const lar_constraint *constraint = &c->constraint[i];
-        const lar_moved_axis *noted = &notes->moved[i - c->fixed_count];
+    state->damped -= share * hold(notes, context->weight, state);
+    for (int32_t i = notes->fixed_count; i < notes->constraint_count; i++) {
+        const lar_constraint *constraint = &notes->constraint[i];
+        const lar_moved_axis *noted = &notes->moved[i - notes->fixed_count];
         double *u = &state->u[constraint->value], *v = &state->v[constraint->value];
         double mass = context->mass[constraint->value / 4];
         double weight = context->weight[constraint->value / 4];

@@ -18,13 +18,21 @@
 #include "layout/state.h"
 #include "model/forces.h"
 #include "model/settings.h"
+#include "model/supports.h"
+
+/* Of functions of sources that are compiled for speed: this one is called before steps, and need
+ * only be small. */
+#define LAR_SETUP __attribute__((cold))
 
 /* One axis of one node held at, or moved to, by * curve(t). */
 typedef struct lar_constraint {
     int32_t value; /* index into u and v: 4 * local node + axis */
-    int32_t curve; /* -1: held */
-    double by;
+    int32_t curve; /* -1: held at 0; LAR_CURVE_HERE */
+    double by;     /* of LAR_CURVE_HERE: where it is, as of the step under way [m] */
 } lar_constraint;
+
+/* Held where it is: a support that was set (model/supports.h). */
+enum { LAR_CURVE_HERE = -2 };
 
 /* A dead force on one node. */
 typedef struct lar_point_force {
@@ -61,6 +69,12 @@ typedef struct lar_moved_axis {
 
 /* What a thread notes of its conditions in the step under way. */
 typedef struct lar_condition_notes {
+    /* The supports in effect: those of the conditions, or what has been set in their place. */
+    int32_t constraint_count, fixed_count; /* as in the conditions; at last those held here */
+    lar_constraint *constraint;
+    const uint8_t *held;      /* as the conditions'; of what was set: lar_supports_mark */
+    uint8_t *mark;            /* own, as `constraint` then: supports were set; else NULL */
+    lar_supports set;         /* that these follow */
     lar_moved_axis *moved;    /* [constraint_count - fixed_count] */
     double (*force)[3];       /* [force_count] [N] */
     double (*pressure)[4][3]; /* [pressure_count] on the corners [N] */
@@ -71,6 +85,7 @@ typedef struct lar_condition_context {
     const lar_model *model;
     const lar_settings *settings; /* NULL: as the model says */
     const lar_forces *forces;     /* that were set; NULL: none */
+    const uint8_t *held;          /* [nodes of the model] axes, where supports were set, or NULL */
     double scale;                 /* force units per newton */
     double time_step;             /* of the step, or the part of it, under way [s] */
     double whole_step;            /* [s] */
@@ -105,6 +120,11 @@ lar_status lar_condition_notes_create(const lar_conditions *conditions, lar_cond
                                       lar_error *error);
 void lar_condition_notes_destroy(lar_condition_notes *notes); /* idempotent */
 
+/* Between steps: from now on the notes follow what was set. With a share (NULL: all) as above. */
+lar_status lar_condition_notes_set(const lar_conditions *conditions, const lar_model *model,
+                                   const lar_condition_share *share, const lar_supports *set,
+                                   lar_condition_notes *notes, lar_error *error);
+
 /* Adds the loads at `time` to state->force. Returns a node (local) whose loads are too large for
  * the force sums, so that the run must stop; -1 when there is none. */
 int32_t lar_conditions_load(const lar_conditions *conditions, const lar_condition_context *context,
@@ -118,13 +138,13 @@ double lar_conditions_half_work(const lar_conditions *conditions,
 
 /* After the elements, before the nodes move: remembers residual force and velocity where motion is
  * prescribed, and takes the residual from every supported value: it goes into the ground. */
-void lar_conditions_observe(const lar_conditions *conditions, const lar_condition_context *context,
-                            lar_condition_notes *notes, lar_state *state);
+void lar_conditions_observe(const lar_condition_context *context, lar_condition_notes *notes,
+                            lar_state *state);
 
 /* After the nodes moved from `time`: imposes supports and motion at time + dt; returns the work
  * that moving the supports took [J]. */
-double lar_conditions_impose(const lar_conditions *conditions, const lar_condition_context *context,
-                             double time, const lar_condition_notes *notes, lar_state *state);
+double lar_conditions_impose(const lar_condition_context *context, double time,
+                             const lar_condition_notes *notes, lar_state *state);
 
 /* Displacement of a constraint at `time` [m]. */
 double lar_constraint_value(const lar_model *model, const lar_constraint *constraint, double time);

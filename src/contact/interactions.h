@@ -12,6 +12,7 @@ typedef struct lar_interactions {
     lar_condition_notes notes;     /* of supports, prescribed motion and loads */
     lar_tool_contact tool_contact; /* tools and planes */
     lar_body_contact body_contact; /* bodies */
+    lar_planes planes;             /* where supports were set; in place of the surroundings' */
 } lar_interactions;
 
 /* Notes, and contact of tools and planes; bodies are left to the caller (lar_body_contact_create,
@@ -32,6 +33,7 @@ static inline void lar_interactions_destroy(lar_interactions *interactions) {
     lar_condition_notes_destroy(&interactions->notes);
     lar_tool_contact_destroy(&interactions->tool_contact);
     lar_body_contact_destroy(&interactions->body_contact);
+    lar_planes_destroy(&interactions->planes);
 }
 
 /* The state has been replaced by another one: what contact knew of it, and had counted, is void. */

@@ -12,19 +12,10 @@ static inline double dot(const double a[3], const double *b) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-static void mark_held(const lar_model *model, uint8_t *held) {
-    for (int i = 0; i < model->fix_count; i++)
-        for (int32_t k = 0; k < model->fix[i].nodes.count; k++)
-            held[model->fix[i].nodes.node[k]] |= (uint8_t)model->fix[i].axes;
-    for (int i = 0; i < model->move_count; i++)
-        for (int32_t k = 0; k < model->move[i].nodes.count; k++)
-            held[model->move[i].nodes.node[k]] |= (uint8_t)model->move[i].axes;
-}
-
 /* Supports are stronger than planes: a node gives way along its free axes only, and not at all when
  * these lie along the plane. */
-static void add_node(lar_planes *planes, const lar_contact *plane, const double position[3],
-                     int32_t value, unsigned held) {
+LAR_SETUP static void add_node(lar_planes *planes, const lar_contact *plane,
+                               const double position[3], int32_t value, unsigned held) {
     lar_plane_way way = {.held = plane->friction > 0 && held != 0};
     lar_plane_node node = {.value = value};
     double free = 0;
@@ -45,8 +36,8 @@ static void add_node(lar_planes *planes, const lar_contact *plane, const double 
     planes->rough = planes->rough || plane->friction > 0;
 }
 
-static void add_plane(lar_planes *planes, const lar_model *model, const int32_t *local,
-                      const lar_condition_share *share, int plane, uint8_t *held) {
+LAR_SETUP static void add_plane(lar_planes *planes, const lar_model *model, const int32_t *local,
+                                const lar_condition_share *share, int plane, uint8_t *held) {
     enum { SEEN = 0x80 };
     const lar_contact *contact = &model->contact[plane];
     for (int32_t f = 0; f < contact->face_count; f++)
@@ -67,9 +58,9 @@ static int by_node(const void *a, const void *b) {
     return (x->way > y->way) - (x->way < y->way);
 }
 
-lar_status lar_planes_create(const lar_model *model, const int32_t *local,
-                             const lar_condition_share *share, lar_planes *planes,
-                             lar_error *error) {
+LAR_SETUP lar_status lar_planes_create(const lar_model *model, const int32_t *local,
+                                       const lar_condition_share *share, const lar_supports *set,
+                                       lar_planes *planes, lar_error *error) {
     *planes = (lar_planes){0};
     size_t max = 0, ways = 0;
     for (int i = 0; i < model->contact_count; i++)
@@ -86,7 +77,7 @@ lar_status lar_planes_create(const lar_model *model, const int32_t *local,
         lar_planes_destroy(planes);
         return lar_fail_memory(error, max * sizeof *planes->node, "the nodes before planes");
     }
-    mark_held(model, held);
+    lar_supports_mark(set, model, held);
     for (int i = 0; i < model->contact_count; i++)
         if (model->contact[i].kind == LAR_CONTACT_PLANE)
             add_plane(planes, model, local, share, i, held);
@@ -101,8 +92,8 @@ void lar_planes_destroy(lar_planes *planes) {
     *planes = (lar_planes){0};
 }
 
-lar_status lar_plane_contact_create(const lar_planes *planes, lar_plane_contact *plane_contact,
-                                    lar_error *error) {
+LAR_SETUP lar_status lar_plane_contact_create(const lar_planes *planes,
+                                              lar_plane_contact *plane_contact, lar_error *error) {
     *plane_contact = (lar_plane_contact){.planes = planes};
     if (planes->count == 0) return LAR_OK;
     plane_contact->near = lar_calloc((size_t)planes->count, sizeof *plane_contact->near);

@@ -72,10 +72,10 @@ typedef struct lar_plane_contact {
     bool known;           /* `near` belongs to the state */
 } lar_plane_contact;
 
-/* `local` and `share` as for lar_conditions_create. */
+/* `local` and `share` as for lar_conditions_create; `set`: supports that were set, or NULL. */
 lar_status lar_planes_create(const lar_model *model, const int32_t *local,
-                             const lar_condition_share *share, lar_planes *planes,
-                             lar_error *error);
+                             const lar_condition_share *share, const lar_supports *set,
+                             lar_planes *planes, lar_error *error);
 void lar_planes_destroy(lar_planes *planes); /* idempotent */
 
 /* `planes` outlive it. */

@@ -6,7 +6,7 @@ lar_status lar_surroundings_add_contact(const lar_model *model, const int32_t *l
                                         const lar_condition_share *share, const lar_tool_list *list,
                                         lar_surroundings *surroundings, lar_error *error) {
     surroundings->list = list;
-    lar_status status = lar_planes_create(model, local, share, &surroundings->planes, error);
+    lar_status status = lar_planes_create(model, local, share, NULL, &surroundings->planes, error);
     if (status || !list || list->count == 0) return status;
     status = lar_tool_faces_create(model, local, share, &surroundings->faces, error);
     if (status || !lar_tool_friction_any(list)) return status;

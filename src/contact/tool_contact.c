@@ -58,9 +58,9 @@ static lar_status allocate_faces(const lar_model *model, int32_t count, lar_tool
     return lar_fail_memory(error, (size_t)count * sizeof *faces->face, "the faces before tools");
 }
 
-lar_status lar_tool_faces_create(const lar_model *model, const int32_t *local,
-                                 const lar_condition_share *share, lar_tool_faces *faces,
-                                 lar_error *error) {
+LAR_SETUP lar_status lar_tool_faces_create(const lar_model *model, const int32_t *local,
+                                           const lar_condition_share *share, lar_tool_faces *faces,
+                                           lar_error *error) {
     const lar_surface *surface = &model->surface;
     int32_t count = 0;
     *faces = (lar_tool_faces){0};
@@ -115,9 +115,10 @@ static lar_status allocate(lar_tool_contact *contact, lar_error *error) {
                 : lar_fail_memory(error, count * sizeof *contact->loaded, "the faces before tools");
 }
 
-lar_status lar_tool_contact_create(const lar_tool_faces *faces, const lar_planes *planes,
-                                   const lar_tool_list *list, const lar_tools *tools, bool always,
-                                   lar_tool_contact *contact, lar_error *error) {
+LAR_SETUP lar_status lar_tool_contact_create(const lar_tool_faces *faces, const lar_planes *planes,
+                                             const lar_tool_list *list, const lar_tools *tools,
+                                             bool always, lar_tool_contact *contact,
+                                             lar_error *error) {
     *contact = (lar_tool_contact){.list = list, .tools = tools, .faces = faces, .always = always};
     lar_status status = lar_plane_contact_create(planes, &contact->plane_contact, error);
     if (!status && faces->face_count > 0) status = allocate(contact, error);

@@ -68,7 +68,8 @@ typedef struct lar_tool_contact_group {
 /* A node of the surface that may rub on tools (tool_friction.h). */
 typedef struct lar_tool_rub_node {
     double rest[3]; /* [m] */
-    bool held;      /* by a support */
+    int32_t node;   /* of the model */
+    bool held;      /* by a support of it */
 } lar_tool_rub_node;
 
 /* The faces before tools. */

@@ -43,6 +43,7 @@ lar_status lar_tool_friction_list(const lar_model *model, const int32_t *local,
         if (node[n] < 0) continue;
         place[n] = faces->rub_count++;
         faces->rub_value[place[n]] = 4 * n;
+        faces->rub[place[n]].node = node[n];
         memcpy(faces->rub[place[n]].rest, model->mesh.position[node[n]], sizeof faces->rub->rest);
     }
     for (int32_t i = 0; i < conditions->constraint_count && !status; i++) {
@@ -224,6 +225,10 @@ static void rub_node(lar_tool_contact *contact, const lar_condition_context *con
     lar_tool_sum_add(&contact->sum[tool->tool], context->shares, arm, rubbed->force);
 }
 
+static inline bool is_held(const lar_tool_rub_node *node, const lar_condition_context *context) {
+    return context->held ? context->held[node->node] & LAR_AXIS_ALL : node->held;
+}
+
 void lar_tool_friction_add(lar_tool_contact *contact, const lar_condition_context *context,
                            const lar_leapfrog *leapfrog, const double *push, lar_state *state) {
     rough_tool rough[LAR_TOOLS_MAX];
@@ -234,7 +239,7 @@ void lar_tool_friction_add(lar_tool_contact *contact, const lar_condition_contex
         if (!(press[0] | press[1] | press[2])) continue;
         const int64_t sum[3] = {press[0], press[1], press[2]};
         memset(press, 0, sizeof sum);
-        if (contact->faces->rub[i].held) continue;
+        if (is_held(&contact->faces->rub[i], context)) continue;
         if (count == 0) count = place_tools(contact, context, state, rough);
         rub_node(contact, context, leapfrog, push, rough, count, i, sum, state);
     }

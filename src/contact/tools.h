@@ -19,6 +19,7 @@
 
 #include "model/forces.h"
 #include "model/settings.h"
+#include "model/supports.h"
 
 enum { LAR_GRASPS_MAX = 256 };
 
@@ -129,6 +130,7 @@ typedef struct lar_tools {
     lar_step_division division;
     lar_settings settings;
     lar_forces forces;
+    lar_supports supports;
     lar_heavy_now heavier;
     lar_spare_tool spare[LAR_SPARES_MAX];
     lar_tool_motion motion[LAR_TOOLS_MAX]; /* where tools really go */

@@ -28,11 +28,14 @@ typedef struct lar_force_nodes {
     const int32_t *node;
 } lar_force_nodes;
 
+static inline lar_force_nodes lar_nodes_of(const lar_model *model, const int32_t *of, bool on_set) {
+    if (!on_set) return (lar_force_nodes){1, of};
+    const lar_set *set = &model->mesh.set[*of];
+    return (lar_force_nodes){set->count, set->index};
+}
 static inline lar_force_nodes lar_force_nodes_of(const lar_model *model,
                                                  const lar_force_entry *entry) {
-    if (!entry->on_set) return (lar_force_nodes){1, &entry->of};
-    const lar_set *set = &model->mesh.set[entry->of];
-    return (lar_force_nodes){set->count, set->index};
+    return lar_nodes_of(model, &entry->of, entry->on_set);
 }
 
 /* Puts the entry in the place of that for the same node or set; zeros remove it. False: no place is

@@ -12,8 +12,6 @@
 #include "model/mesh/mesh.h"
 #include "model/mesh/surface.h"
 
-enum { LAR_AXIS_X = 1, LAR_AXIS_Y = 2, LAR_AXIS_Z = 4, LAR_AXIS_ALL = 7 };
-
 /* A list of node indices, owned. */
 typedef struct lar_node_list {
     int32_t count;

@@ -341,11 +341,23 @@ static void take_settings(lar_computer *computer) {
         lar_thread_pool_run(computer->pool, stiffen_on_thread, computer);
 }
 
+static lar_status take_supports(lar_computer *computer, lar_error *error) {
+    lar_status status = LAR_OK;
+    for (int32_t i = 0; i < all_threads(computer) && !status; i++) {
+        lar_worker *worker = &processor_of(computer, i)->worker[i % computer->threads];
+        status = lar_step_support(&worker->context, &computer->tools->supports,
+                                  &worker->interactions, error);
+    }
+    return status;
+}
+
 /* `first`: of the stretches of an advance. */
 static lar_status advance_here(lar_computer *computer, uint64_t until, bool first,
                                lar_error *error) {
     computer->until = until;
     take_settings(computer);
+    lar_status status = take_supports(computer, error);
+    if (status) return status;
     for (int32_t i = 0; i < all_threads(computer); i++) {
         lar_interactions *interactions =
             &processor_of(computer, i)->worker[i % computer->threads].interactions;
@@ -479,6 +491,7 @@ static lar_status take_tools(lar_computer *computer, const void *payload, size_t
                 lar_settings_good(&tools->settings, computer->whole->time_step) &&
                 lar_forces_good(&tools->forces, computer->whole->model,
                                 lar_domain_force_max(computer->whole)) &&
+                lar_supports_good(&tools->supports, computer->whole->model) &&
                 lar_spares_good(tools->spare, computer->list->spares) &&
                 lar_heavier_now_good(computer->whole, &tools->heavier);
     if (!fits) return refuse_order(error);

@@ -227,6 +227,26 @@ lar_status lar_session_set_force_on(lar_session *session, const char *of, const 
                   : set(session, force_of(LAR_SETTING_FORCE_ON, index, force), NULL, error);
 }
 
+static lar_status set_support(lar_session *session, lar_setting_kind kind, int32_t of,
+                              unsigned axes, int held, lar_error *error) {
+    return set(session, (lar_setting){.kind = kind, .of = of, .value = {axes, held != 0}}, NULL,
+               error);
+}
+
+lar_status lar_session_set_support(lar_session *session, int32_t node, unsigned axes, int held,
+                                   lar_error *error) {
+    return set_support(session, LAR_SETTING_SUPPORT, node, axes, held, error);
+}
+
+lar_status lar_session_set_support_on(lar_session *session, const char *of, unsigned axes, int held,
+                                      lar_error *error) {
+    int32_t index;
+    lar_status status = check_session(session, error);
+    if (!status)
+        status = lar_simulation_force_set(session->simulation->domain.model, of, &index, error);
+    return status ? status : set_support(session, LAR_SETTING_SUPPORT_ON, index, axes, held, error);
+}
+
 lar_status lar_session_add_tool(lar_session *session, const lar_tool_info *wanted, int32_t *tool,
                                 lar_error *error) {
     if (!wanted || (unsigned)wanted->shape >= LAR_TOOL_HAND)

@@ -173,11 +173,11 @@ static lar_status set(lar_session *session, const lar_request *request, lar_erro
     if (session->player)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "a recording is being played; leave it to change gravity, damping, "
-                        "stiffness, activation, tools and forces");
+                        "stiffness, activation, tools, forces and supports");
     if (session->status.state == LAR_SESSION_STOPPED)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "the run has broken off; reset it or load a state before gravity, damping, "
-                        "stiffness, activation, tools and forces are changed");
+                        "stiffness, activation, tools, forces and supports are changed");
     lar_setting setting = request->setting;
     lar_status status = check_device(session, &setting, error);
     if (!status && setting.kind == LAR_SETTING_ADD_TOOL) {

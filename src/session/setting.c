@@ -11,6 +11,15 @@ static lar_status add_tool(const lar_setting *setting, lar_simulation *simulatio
     return lar_simulation_add_tool_at(simulation, &wanted, setting->of / LAR_TOOL_HAND, error);
 }
 
+/* Anything may stand in a file. */
+static lar_status set_support(const lar_setting *setting, lar_simulation *simulation,
+                              lar_error *error) {
+    double axes = setting->value[0];
+    return lar_simulation_set_support_of(
+        simulation, setting->of, setting->kind == LAR_SETTING_SUPPORT_ON,
+        axes >= 1 && axes <= LAR_AXIS_ALL ? (unsigned)axes : 0, setting->value[1] != 0, error);
+}
+
 lar_status lar_setting_apply(const lar_setting *setting, lar_simulation *simulation,
                              lar_error *error) {
     switch (setting->kind) {
@@ -29,6 +38,9 @@ lar_status lar_setting_apply(const lar_setting *setting, lar_simulation *simulat
                                         setting->of < 0 ? NULL : setting->value, error);
     case LAR_SETTING_FORCE_ON:
         return lar_simulation_set_force_at(simulation, setting->of, setting->value, error);
+    case LAR_SETTING_SUPPORT:
+    case LAR_SETTING_SUPPORT_ON:
+        return set_support(setting, simulation, error);
     case LAR_SETTING_ACTIVATION:
         return lar_simulation_activate(simulation, setting->of, setting->value[0], error);
     default:

@@ -24,9 +24,10 @@
  * 32 shares. A state with added tools has an odd version from 5 on, any other one an even one. One
  * with forces that were set on nodes has version 8 or 9, one with an activation that was set 10 or
  * 11, with forces or without, one with strained elements that are heavier, or may soon be, 12 or
- * 13, with all of that; others are written as they always were. */
+ * 13, with supports that were set 14 or 15, each with all of the others; others are written as they
+ * always were. */
 enum { BEFORE_SETTINGS = 3, BEFORE_THIRDS = 5, VERSION = 6, FORCES = 8, ACTIVE = 10 };
-enum { HEAVIER = 12, NEWEST = 13 };
+enum { HEAVIER = 12, SUPPORTED = 14, NEWEST = 15 };
 enum { BYTE_ORDER_MARK = 0x01020304 };
 
 typedef struct file_head {
@@ -51,6 +52,7 @@ _Static_assert(sizeof(lar_tool_motion) == 152 && sizeof(lar_grasp) == 72, "the f
 _Static_assert(sizeof(lar_tool_follower) == 240, "the format");
 _Static_assert(LAR_NODE_VALUES == 7, "the format");
 _Static_assert(sizeof(lar_force_entry) == 32 && offsetof(lar_forces, entry) == 8, "the format");
+_Static_assert(sizeof(lar_support_entry) == 8 && offsetof(lar_supports, entry) == 8, "the format");
 _Static_assert(sizeof(lar_heavy) == 40 && offsetof(lar_heavy_list, of) == 24, "the format");
 _Static_assert(sizeof(lar_spare_tool) == 104 && LAR_SPARES_MAX == 4, "the format");
 
@@ -58,9 +60,10 @@ _Static_assert(sizeof(lar_spare_tool) == 104 && LAR_SPARES_MAX == 4, "the format
 typedef struct file_shape {
     uint32_t version;
     int32_t tools, grasps;
-    size_t history;  /* values that viscous elements remember: as many as the model says */
-    int32_t forces;  /* that were set; of versions that have them */
-    int32_t heavier; /* strained elements that stand in it, likewise */
+    size_t history;   /* values that viscous elements remember: as many as the model says */
+    int32_t forces;   /* that were set; of versions that have them */
+    int32_t heavier;  /* strained elements that stand in it, likewise */
+    int32_t supports; /* that were set, likewise */
 } file_shape;
 
 static bool has_added(uint32_t version) {
@@ -91,10 +94,17 @@ static size_t heavier_bytes(const file_shape *shape) {
     return offsetof(lar_heavy_list, of) + (size_t)shape->heavier * sizeof(lar_heavy);
 }
 
+/* The same of supports. */
+static size_t supports_bytes(const file_shape *shape) {
+    if (shape->version < SUPPORTED) return 0;
+    return offsetof(lar_supports, entry) + (size_t)shape->supports * sizeof(lar_support_entry);
+}
+
 static size_t file_bytes(const file_shape *shape, size_t nodes) {
     size_t tools = (size_t)shape->tools, grasps = (size_t)shape->grasps;
     return sizeof(file_head) + settings_bytes(shape->version) + forces_bytes(shape) +
-           heavier_bytes(shape) + tools * (sizeof(lar_tool_motion) + sizeof(lar_tool_follower)) +
+           heavier_bytes(shape) + supports_bytes(shape) +
+           tools * (sizeof(lar_tool_motion) + sizeof(lar_tool_follower)) +
            grasps * sizeof(lar_grasp) + nodes * LAR_NODE_VALUES * sizeof(double) +
            shape->history * sizeof(double) + sizeof(uint64_t);
 }
@@ -150,13 +160,15 @@ static file_shape shape_of(const lar_domain *whole, const lar_tools *tools) {
     const lar_tool_list *list = whole->surroundings.list;
     int32_t spares = lar_spares_needed(tools->spare);
     const lar_heavy_list *heavier = &tools->strained;
-    uint32_t version = some_strained(heavier)                    ? HEAVIER
+    uint32_t version = tools->supports.count > 0                 ? SUPPORTED
+                       : some_strained(heavier)                  ? HEAVIER
                        : lar_settings_activate(&tools->settings) ? ACTIVE
                        : tools->forces.count > 0                 ? FORCES
                                                                  : VERSION;
     return (file_shape){.version = version + (spares > 0),
                         .forces = tools->forces.count,
                         .heavier = heavier->count,
+                        .supports = tools->supports.count,
                         .tools = (list ? lar_spares_first(list) : 0) + spares,
                         .grasps = tools->grasp_count,
                         .history = lar_viscous_total(whole)};
@@ -171,6 +183,7 @@ static unsigned char *fill_tools(unsigned char *at, const file_shape *shape,
     if (has_added(shape->version)) at = append(at, tools->spare, sizeof tools->spare);
     at = append(at, &tools->forces, forces_bytes(shape));
     at = append(at, &tools->strained, heavier_bytes(shape));
+    at = append(at, &tools->supports, supports_bytes(shape));
     at = append(at, tools->motion, count * sizeof tools->motion[0]);
     at = append(at, tools->follower, count * sizeof tools->follower[0]);
     return append(at, tools->grasps, grasps * sizeof tools->grasps[0]);
@@ -434,24 +447,23 @@ static const unsigned char *extract(const unsigned char *at, void *to, size_t by
     return at + bytes;
 }
 
-/* How many forces there are: they stand behind the settings. -1: the file ends before. */
-static int32_t forces_in(const file_head *head, const lar_bytes *bytes) {
+/* A number of entries, which stands before them: 0 up to `max`. -1: the file ends before. */
+static int32_t count_at(const lar_bytes *bytes, size_t at, int32_t max) {
     int32_t count;
-    size_t at = sizeof *head + settings_bytes(head->version);
-    if (head->version < FORCES) return 0;
     if (bytes->size < at + sizeof count) return -1;
     memcpy(&count, bytes->data + at, sizeof count);
-    return count <= LAR_FORCES_MAX ? count : -1;
+    return count <= max ? count : -1;
 }
 
-/* The same of strained elements, which stand behind the forces. */
-static int32_t heavier_in(const file_head *head, const file_shape *before, const lar_bytes *bytes) {
-    int32_t count;
-    size_t at = sizeof *head + settings_bytes(head->version) + forces_bytes(before);
-    if (head->version < HEAVIER) return 0;
-    if (before->forces < 0 || bytes->size < at + sizeof count) return -1;
-    memcpy(&count, bytes->data + at, sizeof count);
-    return count <= LAR_HEAVY_LIST ? count : -1;
+/* Forces stand behind the settings, strained elements behind them, and then supports. */
+static void count_entries(const file_head *head, const lar_bytes *bytes, file_shape *shape) {
+    size_t at = sizeof *head + settings_bytes(head->version);
+    if (head->version >= FORCES) shape->forces = count_at(bytes, at, LAR_FORCES_MAX);
+    if (head->version >= HEAVIER && shape->forces >= 0)
+        shape->heavier = count_at(bytes, at + forces_bytes(shape), LAR_HEAVY_LIST);
+    if (head->version >= SUPPORTED && shape->forces >= 0 && shape->heavier >= 0)
+        shape->supports =
+            count_at(bytes, at + forces_bytes(shape) + heavier_bytes(shape), LAR_SUPPORTS_MAX);
 }
 
 /* What fill_tools writes; *at moves behind it. */
@@ -469,6 +481,7 @@ static bool take_tools(const file_head *head, const file_shape *shape, const lar
     if (has_added(head->version)) *at = extract(*at, tools->spare, sizeof tools->spare);
     *at = extract(*at, &tools->forces, forces_bytes(shape));
     *at = extract(*at, &tools->strained, heavier_bytes(shape));
+    *at = extract(*at, &tools->supports, supports_bytes(shape));
     *at = extract(*at, tools->motion, count * sizeof tools->motion[0]);
     *at = extract(*at, tools->follower, count * sizeof tools->follower[0]);
     for (size_t i = 0; i < count && head->version <= BEFORE_THIRDS; i++)
@@ -479,7 +492,10 @@ static bool take_tools(const file_head *head, const file_shape *shape, const lar
                 lar_forces_good(&tools->forces, whole->model, lar_domain_force_max(whole)) &&
                 lar_spares_good(tools->spare, list ? list->spares : 0) &&
                 lar_heavier_good(whole, &tools->strained) &&
-                some_strained(&tools->strained) == (head->version >= HEAVIER);
+                lar_supports_good(&tools->supports, whole->model) &&
+                (tools->supports.count > 0) == (head->version >= SUPPORTED) &&
+                (head->version >= SUPPORTED ||
+                 some_strained(&tools->strained) == (head->version >= HEAVIER));
     for (int32_t i = 0; good && i < tools->count; i++) {
         const lar_tool tool = lar_spare_tool_of(list, tools->spare, i);
         good = good_motion(&tools->motion[i]) && near_enough(&tool, &tools->motion[i]) &&
@@ -505,14 +521,13 @@ lar_status lar_checkpoint_parse(const char *path, const lar_bytes *bytes, const 
     file_shape shape = {.version = head.version,
                         .tools = head.tools,
                         .grasps = head.grasps,
-                        .history = lar_viscous_total(whole),
-                        .forces = forces_in(&head, bytes)};
-    shape.heavier = heavier_in(&head, &shape, bytes);
+                        .history = lar_viscous_total(whole)};
+    count_entries(&head, bytes, &shape);
     int32_t constant = list ? lar_spares_first(list) : 0;
     int32_t spares = head.tools < constant ? -1 : head.tools - constant;
     if (spares < 0 || spares > (has_added(head.version) ? LAR_SPARES_MAX : 0) || head.grasps < 0 ||
         head.grasps > LAR_GRASPS_MAX || shape.forces < 0 || shape.heavier < 0 ||
-        bytes->size != file_bytes(&shape, nodes))
+        shape.supports < 0 || bytes->size != file_bytes(&shape, nodes))
         return refuse(error, path, "its parts have sizes that do not fit; take another checkpoint");
     if (spares > 0 && spares > list->spares)
         return lar_fail(error, LAR_ERROR_MODEL,

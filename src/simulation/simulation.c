@@ -394,7 +394,9 @@ lar_status lar_simulation_take_up(lar_simulation *simulation, lar_error *error) 
     simulation->report_steps = 0;
     simulation->measured = simulation->taken = 0;
     lar_simulation_settle(simulation);
-    return simulation->computer ? lar_computer_scatter(simulation->computer, error) : LAR_OK;
+    lar_status status = lar_simulation_support_here(simulation, &simulation->tools.supports, error);
+    if (status || !simulation->computer) return status;
+    return lar_computer_scatter(simulation->computer, error);
 }
 
 /* In one process gathering cannot fail and waits until somebody looks; between processes it can,

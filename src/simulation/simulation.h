@@ -87,6 +87,11 @@ lar_status lar_simulation_create_state(lar_simulation *simulation, bool search_a
  * the tissues bear. */
 void lar_simulation_settle(lar_simulation *simulation);
 
+/* The steps of the whole model, and who looks at it, follow these supports from now on, or
+ * nothing has changed: without memory. */
+lar_status lar_simulation_support_here(lar_simulation *simulation, const lar_supports *supports,
+                                       lar_error *error);
+
 /* External work that a change between steps does [J]; the state is whole. */
 void lar_simulation_add_external(lar_simulation *simulation, double work);
 
@@ -104,6 +109,9 @@ lar_status lar_added_tool_check(const lar_tool_info *wanted, lar_error *error);
 /* lar_simulation_set_force_on by index of the set, which recordings have, and the index. */
 lar_status lar_simulation_set_force_at(lar_simulation *simulation, int32_t set,
                                        const double force[3], lar_error *error);
+/* lar_simulation_set_support and _on, likewise. */
+lar_status lar_simulation_set_support_of(lar_simulation *simulation, int32_t of, bool on_set,
+                                         unsigned axes, bool held, lar_error *error);
 lar_status lar_simulation_force_set(const lar_model *model, const char *name, int32_t *index,
                                     lar_error *error);
 

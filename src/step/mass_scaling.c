@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "model/supports.h"
+
 /* ---- how much ------------------------------------------------------------------------------- */
 
 static void sum_up(const lar_model *model, const lar_element_rate *rate, lar_mass_scaling *told) {
@@ -142,22 +144,13 @@ static double most_gained(const lar_model *model, const double (*mass)[2],
     return largest(A);
 }
 
-static void mark_held(const lar_model *model, unsigned char *held) {
-    for (int i = 0; i < model->fix_count; i++)
-        for (int32_t k = 0; k < model->fix[i].nodes.count; k++)
-            held[model->fix[i].nodes.node[k]] |= (unsigned char)model->fix[i].axes;
-    for (int i = 0; i < model->move_count; i++)
-        for (int32_t k = 0; k < model->move[i].nodes.count; k++)
-            held[model->move[i].nodes.node[k]] |= (unsigned char)model->move[i].axes;
-}
-
 static lar_status find_slowing(const lar_model *model, const lar_element_rate *rate,
                                const lar_model_info *box, double *slowing, lar_error *error) {
     size_t nodes = (size_t)model->mesh.node_count;
     double(*mass)[2] = lar_calloc(nodes, sizeof *mass), most = 0; /* of the node; added */
     unsigned char *held = lar_calloc(nodes, 1);
     if (mass && held) {
-        mark_held(model, held);
+        lar_supports_mark(NULL, model, held);
         for (lar_gid e = 0; e < model->mesh.element_count; e++)
             for (int a = 0; a < 8; a++) {
                 double *of = mass[model->mesh.element[e][a]];

@@ -117,6 +117,15 @@ static void end_look(look *l) {
     memset(l->state.force, 0, 4 * (size_t)l->domain->layout.node_padded * sizeof *l->state.force);
 }
 
+/* The supports in effect, and the nodes before planes with them. */
+static const lar_condition_notes *supports_of(const look *l) {
+    return &l->interactions->notes;
+}
+
+static const lar_planes *planes_of(const look *l) {
+    return l->interactions->tool_contact.plane_contact.planes;
+}
+
 static double damping_of(const look *l) {
     return lar_damping_of(l->domain->model, lar_settings_of(l->interactions));
 }
@@ -178,14 +187,18 @@ static double supported_velocity(const look *l, const lar_constraint *constraint
 /* The velocity half a step ahead of the node whose first plane is `entry`, without planes and with
  * them. Returns the entry behind its last. */
 static int32_t stop_at_planes(const look *l, int32_t entry, double free[3], double ahead[3]) {
-    const lar_planes *planes = &l->domain->surroundings.planes;
+    const lar_planes *planes = planes_of(l);
     int32_t value = planes->node[entry].value;
     lar_condition_context context = l->context;
     context.time_step = part_of_step(l);
-    for (int i = 0; i < 3; i++) { /* what supports hold goes on as it does */
+    const uint8_t *marks = supports_of(l)->mark;
+    unsigned mark = marks ? marks[l->domain->layout.global[value / 4]] / LAR_SUPPORT_SET : 0;
+    for (int i = 0; i < 3; i++) { /* what supports hold goes on as it does, or stops */
         const lar_plane_way *way = &planes->way[planes->node[entry].way];
         bool held = way->slide[i] == 0 && way->normal[i] != 0;
-        free[i] = held ? l->state.v[value + i] : next_velocity(l, value + i);
+        free[i] = !held           ? next_velocity(l, value + i)
+                  : mark >> i & 1 ? 0
+                                  : l->state.v[value + i];
         ahead[i] = free[i];
     }
     return lar_planes_ahead(planes, &context, &l->state, entry, ahead);
@@ -194,7 +207,7 @@ static int32_t stop_at_planes(const look *l, int32_t entry, double free[3], doub
 /* Nodes that planes stop in this step: what add_kinetic has counted for them as free nodes, and
  * half of what the stop takes. */
 static void add_stops(const look *l, lar_energy *energy) {
-    const lar_planes *planes = &l->domain->surroundings.planes;
+    const lar_planes *planes = planes_of(l);
     double half = 0.5 * damping_of(l) * mean_step(l);
     for (int32_t entry = 0; entry < planes->count;) {
         int32_t value = planes->node[entry].value;
@@ -212,19 +225,19 @@ static void add_stops(const look *l, lar_energy *energy) {
 /* Kinetic energy, damping and the work of moved supports: free values first, then the supported. */
 static void add_motion(const look *l, lar_energy *energy) {
     const lar_domain *domain = l->domain;
-    const lar_conditions *conditions = &domain->surroundings.conditions;
+    const lar_condition_notes *supports = supports_of(l);
     for (lar_gid g = 0; g < domain->model->mesh.node_count; g++)
         for (int i = 0; i < 3; i++) {
             int32_t value = 4 * domain->layout.local[g] + i;
-            if (conditions->held[g] >> i & 1) continue;
+            if (supports->held[g] >> i & 1) continue;
             add_kinetic(l, value, next_velocity(l, value), energy);
         }
     add_stops(l, energy);
-    for (int32_t i = 0; i < conditions->constraint_count; i++) {
-        const lar_constraint *c = &conditions->constraint[i];
+    for (int32_t i = 0; i < supports->constraint_count; i++) {
+        const lar_constraint *c = &supports->constraint[i];
         double ahead = supported_velocity(l, c);
         add_kinetic(l, c->value, ahead, energy);
-        if (c->curve >= 0)
+        if (c->curve != -1)
             energy->external +=
                 0.5 * mean_step(l) * l->state.v[c->value] * support_force(l, c, ahead);
     }
@@ -314,7 +327,7 @@ double lar_measure_stress(const lar_domain *domain, const lar_state *state, lar_
 lar_status lar_measure_reaction(const lar_domain *domain, lar_measure_scratch *scratch,
                                 const lar_state *state, const lar_node_list *nodes, double sum[3],
                                 lar_error *error) {
-    const lar_conditions *conditions = &domain->surroundings.conditions;
+    const lar_condition_notes *supports = &scratch->interactions.notes;
     size_t count = (size_t)domain->layout.node_padded;
     bool *wanted = lar_calloc(count, sizeof *wanted);
     if (!wanted) return lar_fail_memory(error, count * sizeof *wanted, "the sum of reactions");
@@ -322,8 +335,8 @@ lar_status lar_measure_reaction(const lar_domain *domain, lar_measure_scratch *s
     look l;
     begin_look(domain, scratch, state, &l);
     memset(sum, 0, 3 * sizeof *sum);
-    for (int32_t i = 0; i < conditions->constraint_count; i++) {
-        const lar_constraint *c = &conditions->constraint[i];
+    for (int32_t i = 0; i < supports->constraint_count; i++) {
+        const lar_constraint *c = &supports->constraint[i];
         if (!wanted[c->value / 4]) continue;
         sum[c->value % 4] += support_force(&l, c, supported_velocity(&l, c));
     }
@@ -360,7 +373,7 @@ static void take_weights(const look *l, double (*force)[3]) {
 /* Of held axes what the plane would change goes into the support. */
 static void take_planes(const look *l, double (*force)[3]) {
     const lar_domain *domain = l->domain;
-    const lar_planes *planes = &domain->surroundings.planes;
+    const lar_planes *planes = planes_of(l);
     double h = mean_step(l), half = 0.5 * damping_of(l) * h;
     for (int32_t entry = 0; entry < planes->count;) {
         lar_lid n = planes->node[entry].value / 4;
@@ -368,15 +381,15 @@ static void take_planes(const look *l, double (*force)[3]) {
         double free[3], ahead[3];
         entry = stop_at_planes(l, entry, free, ahead);
         for (int i = 0; i < 3; i++)
-            if (!(domain->surroundings.conditions.held[g] >> i & 1))
+            if (!(supports_of(l)->held[g] >> i & 1))
                 force[g][i] = domain->mass[n] * (1 + half) * (ahead[i] - free[i]) / h;
     }
 }
 
 static void take_supports(const look *l, double (*force)[3]) {
-    const lar_conditions *conditions = &l->domain->surroundings.conditions;
-    for (int32_t i = 0; i < conditions->constraint_count; i++) {
-        const lar_constraint *c = &conditions->constraint[i];
+    const lar_condition_notes *supports = supports_of(l);
+    for (int32_t i = 0; i < supports->constraint_count; i++) {
+        const lar_constraint *c = &supports->constraint[i];
         force[l->domain->layout.global[c->value / 4]][c->value % 4] =
             support_force(l, c, supported_velocity(l, c));
     }
@@ -384,8 +397,8 @@ static void take_supports(const look *l, double (*force)[3]) {
 
 static void take_damping(const look *l, double (*force)[3]) {
     const lar_domain *domain = l->domain;
-    const lar_planes *planes = &domain->surroundings.planes;
-    const lar_conditions *conditions = &domain->surroundings.conditions;
+    const lar_planes *planes = planes_of(l);
+    const lar_condition_notes *supports = supports_of(l);
     for (lar_gid g = 0; g < domain->model->mesh.node_count; g++) /* v+ first */
         for (int i = 0; i < 3; i++) force[g][i] = next_velocity(l, 4 * domain->layout.local[g] + i);
     for (int32_t entry = 0; entry < planes->count;) {
@@ -393,8 +406,8 @@ static void take_damping(const look *l, double (*force)[3]) {
         lar_gid g = domain->layout.global[planes->node[entry].value / 4];
         entry = stop_at_planes(l, entry, free, force[g]);
     }
-    for (int32_t i = 0; i < conditions->constraint_count; i++) {
-        const lar_constraint *c = &conditions->constraint[i];
+    for (int32_t i = 0; i < supports->constraint_count; i++) {
+        const lar_constraint *c = &supports->constraint[i];
         force[domain->layout.global[c->value / 4]][c->value % 4] = supported_velocity(l, c);
     }
     for (lar_gid g = 0; g < domain->model->mesh.node_count; g++) {

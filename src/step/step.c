@@ -1,6 +1,7 @@
 #include "step/step.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "contact/tool_friction.h"
@@ -188,8 +189,51 @@ void lar_step_enter(const lar_domain *domain, const lar_interactions *interactio
     context->forces =
         interactions->tool_contact.tools ? &interactions->tool_contact.tools->forces : NULL;
     context->hardness = division->hardness;
+    context->held = interactions->notes.mark;
     state->close = lar_division_is_close(division);
     context->shares = LAR_STEP_SHARES / state->parts;
+}
+
+/* ---- supports that are set ------------------------------------------------------------------ */
+
+/* Nodes give way to planes along their free axes, which are others then. */
+LAR_SETUP static lar_status set_supports(lar_interactions *interactions, const lar_model *model,
+                                         const lar_condition_share *share, const lar_supports *set,
+                                         lar_error *error) {
+    const lar_conditions *conditions = &interactions->surroundings->conditions;
+    lar_plane_contact *contact = &interactions->tool_contact.plane_contact, fresh = {0};
+    lar_planes planes;
+    lar_status status = lar_planes_create(model, conditions->local, share, set, &planes, error);
+    if (!status) status = lar_plane_contact_create(&planes, &fresh, error);
+    if (!status)
+        status =
+            lar_condition_notes_set(conditions, model, share, set, &interactions->notes, error);
+    if (status) {
+        lar_plane_contact_destroy(&fresh);
+        lar_planes_destroy(&planes);
+        return status;
+    }
+    lar_plane_contact_destroy(contact);
+    lar_planes_destroy(&interactions->planes);
+    interactions->planes = planes;
+    *contact = fresh;
+    contact->planes = &interactions->planes;
+    return LAR_OK;
+}
+
+LAR_SETUP lar_status lar_step_support(const lar_condition_context *context, const lar_supports *set,
+                                      lar_interactions *interactions, lar_error *error) {
+    const int32_t *local = interactions->surroundings->conditions.local;
+    size_t nodes = (size_t)context->model->mesh.node_count;
+    if (memcmp(&interactions->notes.set, set, sizeof *set) == 0) return LAR_OK;
+    int32_t *holds = lar_calloc(nodes, sizeof *holds);
+    if (!holds) return lar_fail_memory(error, nodes * sizeof *holds, "supports");
+    for (size_t n = 0; n < nodes; n++)
+        holds[n] = local[n] >= context->first && local[n] < context->end;
+    const lar_condition_share share = {.thread = 1, .holds = holds};
+    lar_status status = set_supports(interactions, context->model, &share, set, error);
+    free(holds);
+    return status;
 }
 
 /* ---- the parts ------------------------------------------------------------------------------ */
@@ -226,7 +270,7 @@ static void move_nodes(const lar_domain *domain, const lar_interactions *interac
                        lar_fault *fault) {
     /* Where contact is predicted from the fastest node, that is none of these. */
     bool predicts = interactions->body_contact.surface ||
-                    interactions->surroundings->planes.count > 0 ||
+                    interactions->tool_contact.plane_contact.planes->count > 0 ||
                     interactions->surroundings->faces.face_count > 0;
     uint64_t park_interval = predicts ? 4 : LAR_PARK_INTERVAL;
     lar_leapfrog leapfrog = leapfrog_at(domain, interactions, context, time, state);
@@ -357,16 +401,14 @@ void lar_step_begin(const lar_domain *domain, lar_interactions *interactions,
 
 void lar_step_move(const lar_domain *domain, lar_interactions *interactions,
                    const lar_condition_context *context, lar_state *state, lar_fault *fault) {
-    const lar_conditions *conditions = &interactions->surroundings->conditions;
     double time = lar_state_time(domain, state);
     hold_up_added(domain, interactions, context, state);
     add_friction(domain, interactions, context, state);
     lar_tool_friction_half_work(&interactions->tool_contact, context, state);
-    lar_conditions_observe(conditions, context, &interactions->notes, state);
+    lar_conditions_observe(context, &interactions->notes, state);
     lar_tool_contact_observe(&interactions->tool_contact, context, state);
     move_nodes(domain, interactions, context, time, state, fault);
-    state->external +=
-        lar_conditions_impose(conditions, context, time, &interactions->notes, state);
+    state->external += lar_conditions_impose(context, time, &interactions->notes, state);
     lar_tool_contact_stop(&interactions->tool_contact, context, state);
     lar_body_contact_moved(&interactions->body_contact, state, state->fastest * context->time_step);
 }

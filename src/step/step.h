@@ -74,6 +74,11 @@ double lar_past_step(const lar_domain *domain, const lar_step_division *division
 lar_leapfrog lar_step_leapfrog(const lar_domain *domain, const lar_interactions *interactions,
                                const lar_state *state);
 
+/* Between steps: from now on the thread that moves the context's nodes follows what was set of
+ * supports. Asks for memory where that has changed; when there is none nothing changes. */
+lar_status lar_step_support(const lar_condition_context *context, const lar_supports *set,
+                            lar_interactions *interactions, lar_error *error);
+
 /* Loads, tools and planes, and the first half of their work. Contact of bodies follows: lar_step
  * does it itself, processors when they have heard of each other's nodes (contact_exchange.h). */
 void lar_step_begin(const lar_domain *domain, lar_interactions *interactions,

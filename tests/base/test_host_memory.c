@@ -78,6 +78,8 @@ static lar_status live(const char *grid) {
     if (!status) status = lar_simulation_create(model, &options, &simulation, &error);
     if (!status) status = lar_simulation_add_tool(simulation, &wanted, NULL, &error);
     if (!status) status = lar_simulation_advance(simulation, 20, &error);
+    if (!status) status = lar_simulation_set_support(simulation, 3, LAR_AXIS_ALL, 1, &error);
+    if (!status) status = lar_simulation_advance(simulation, 20, &error);
     if (!status) status = lar_saved_create(simulation, &saved, &error);
     if (!status) status = lar_simulation_save_to(simulation, saved, &error);
     if (!status) status = lar_simulation_save(simulation, FOLDER "_state", &error);
@@ -174,10 +176,42 @@ static void none_is_told(void **unused) {
     refusals(mesh);
 }
 
+/* Supports are set, or nothing has changed. */
+static void no_support_is_set_by_half(void **unused) {
+    (void)unused;
+    lar_model *model = NULL;
+    lar_simulation *one = NULL, *other = NULL;
+    lar_status status = lar_model_open(LAR_TEST_EXAMPLES "/beam.yaml", &model, &error);
+    if (!status) status = lar_simulation_create(model, NULL, &one, &error);
+    if (!status) status = lar_simulation_create(model, NULL, &other, &error);
+    assert_int_equal(status, LAR_OK);
+    for (int held = 1; held >= 0; held--) {
+        long failures = 0;
+        do {
+            lar_simulation_advance(one, 20, NULL);
+            lar_simulation_advance(other, 20, NULL);
+            assert_true(lar_simulation_hash(one) == lar_simulation_hash(other));
+            requests = 0;
+            fail_at = failures + 1;
+            status = lar_simulation_set_support(one, 3, LAR_AXIS_ALL, held, &error);
+            fail_at = 0;
+            assert_int_equal(lar_simulation_support(one, 3) != 0, (held != 0) ^ (status != LAR_OK));
+            failures += status == LAR_ERROR_MEMORY;
+        } while (status == LAR_ERROR_MEMORY);
+        assert_int_equal(status, LAR_OK);
+        assert_true(failures > 4);
+        assert_int_equal(lar_simulation_set_support(other, 3, LAR_AXIS_ALL, held, &error), LAR_OK);
+    }
+    lar_simulation_destroy(one);
+    lar_simulation_destroy(other);
+    lar_model_destroy(model);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(all_of_it_comes_back),
         cmocka_unit_test(none_is_told),
+        cmocka_unit_test(no_support_is_set_by_half),
     };
     if (lar_memory_set(&hooks, &error)) return 1;
     return cmocka_run_group_tests(tests, NULL, NULL);

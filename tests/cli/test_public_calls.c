@@ -245,6 +245,14 @@ static void tool_calls(void **unused) {
     REFUSED(lar_simulation_set_force_on(NULL, "wall", pull, &error));
     REFUSED(lar_simulation_set_force_on(simulation, NULL, pull, &error));
     REFUSED(lar_simulation_set_force_on(simulation, "nothing", NULL, &error));
+    REFUSED(lar_simulation_set_support(NULL, 0, LAR_AXIS_ALL, 1, &error));
+    REFUSED(lar_simulation_set_support(simulation, -1, LAR_AXIS_ALL, 1, &error));
+    REFUSED(lar_simulation_set_support(simulation, 0, UINT32_MAX, 0, &error));
+    REFUSED(lar_simulation_set_support_on(simulation, NULL, LAR_AXIS_ALL, 1, &error));
+    REFUSED(lar_simulation_set_support_on(NULL, "wall", LAR_AXIS_ALL, 1, &error));
+    REFUSED(lar_session_set_support(NULL, 0, LAR_AXIS_ALL, 1, &error));
+    REFUSED(lar_session_set_support_on(NULL, "wall", LAR_AXIS_ALL, 1, &error));
+    assert_int_equal(lar_simulation_support(NULL, 0), 0);
     REFUSED(lar_session_set_force(NULL, 0, pull, &error));
     REFUSED(lar_session_set_force_on(NULL, "wall", pull, &error));
     REFUSED(lar_simulation_tool_touches(NULL, 0, 1, &touch, &count, &error));

@@ -80,6 +80,8 @@ class Sessions(unittest.TestCase):
         self.session.gravity = (0, -9.81, 0)
         wait_until(lambda: self.session.gravity == (0, -9.81, 0))
         self.session.set_force("top", (0, 0, 0.001))
+        self.session.set_support("top", axes="xy")
+        self.session.set_support(167, False)
         self.session.set_stiffness(2.0, "soft")
         added = self.session.add_tool("sphere", 0.008)
         self.session.remove_tool(added)

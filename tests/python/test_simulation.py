@@ -234,6 +234,22 @@ class Changes(unittest.TestCase):
         sim.clear_forces()
         self.assertEqual(sim.force(167), (0, 0, 0))
 
+    def test_supports_come_and_go(self):
+        sim = lariat.Simulation(block())
+        self.assertEqual((sim.support(0), sim.support(167)), ("xyz", ""))
+        sim.advance(200)
+        before = [sim.positions()[167, k] for k in range(3)]
+        sim.set_support("top", axes="xz")
+        self.assertEqual(sim.support(167), "xz")
+        sim.advance(100)
+        now = [sim.positions()[167, k] for k in range(3)]
+        self.assertEqual((now[0], now[2]), (before[0], before[2]))
+        sim.set_support(167, False)
+        sim.set_support(0, held=False, axes="z")
+        self.assertEqual((sim.support(0), sim.support(167)), ("xy", ""))
+        sim.advance(50)
+        self.assertNotEqual(sim.positions()[167, 2], now[2])
+
     def test_a_muscle_is_as_active_as_it_is_told(self):
         muscle = {"direction": {"axis": [0, 0, 1]}, "active": {"along": 500}}
         sim = lariat.Simulation(block(materials=[{**SCENE["materials"][0], "fibres": muscle}]))
@@ -262,6 +278,12 @@ class Changes(unittest.TestCase):
                             (lambda: sim.set_force(0, (1, 0)), "3 finite numbers"),
                             (lambda: sim.set_force(0, (1, 0, float("inf"))), "finite"),
                             (lambda: sim.force(-1), "no node"),
+                            (lambda: sim.support(99999), "no node 99999"),
+                            (lambda: sim.set_support("nowhere"), "nowhere"),
+                            (lambda: sim.set_support(99999), "99999"),
+                            (lambda: sim.set_support(0, axes=""), "axes"),
+                            (lambda: sim.set_support(0, axes="xx"), "'xx'"),
+                            (lambda: sim.set_support(0, axes="w"), "'w'"),
                             (lambda: setattr(sim, "gravity", (1, 2)), "3 finite"),
                             (lambda: setattr(sim, "gravity", (0, 0, 1e6)), "1000"),
                             (lambda: setattr(sim, "damping", -1), "damping")):
@@ -269,6 +291,7 @@ class Changes(unittest.TestCase):
                 call()
         for call in (lambda: setattr(sim, "damping", "x"), lambda: setattr(sim, "gravity", 5),
                      lambda: delattr(sim, "damping"), lambda: sim.set_force(0.5, (0, 0, 1)),
+                     lambda: sim.set_support(0.5), lambda: sim.set_support(0, True, 7),
                      lambda: sim.set_stiffness(None)):
             with self.assertRaises(TypeError):
                 call()

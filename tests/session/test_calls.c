@@ -73,6 +73,50 @@ static void forces_are_played(void **unused) {
     close_bench(&b);
 }
 
+/* The block lets go of the wall, a stitch holds it, and comes off again. */
+static void supports_are_played(void **unused) {
+    (void)unused;
+    const int32_t stitch = brick_node(&soft_brick, 2, 1, 1), end = brick_node(&soft_brick, 3, 1, 1);
+    lar_session_options options = lar_session_options_default();
+    lar_saved *saved = NULL;
+    options.record = PATH;
+    options.hash_every = 50;
+    bench b = open_bench_of(named_block(), "2x1x1", 1, &options);
+    DONE(lar_saved_create(b.simulation, &saved, &failure));
+    DONE(lar_session_set_support(b.session, stitch, LAR_AXIS_ALL, 1, &failure)); /* before */
+    DONE(lar_session_start(b.session, &failure));
+    wait_steps(&b, 100);
+    DONE(lar_session_set_support_on(b.session, "end", LAR_AXIS_Y | LAR_AXIS_Z, 1, &failure));
+    wait_steps(&b, 100);
+    DONE(lar_session_save_to(b.session, saved, &failure));
+    DONE(lar_session_set_support(b.session, stitch, LAR_AXIS_ALL, 0, &failure));
+    DONE(lar_session_set_support(b.session, 0, LAR_AXIS_ALL, 0, &failure));
+    wait_steps(&b, 100);
+    DONE(lar_session_load_from(b.session, saved, &failure));
+    wait_steps(&b, 100);
+    DONE(lar_session_set_support(b.session, end, LAR_AXIS_Z, 0, &failure));
+    assert_int_equal(lar_session_set_support(b.session, 99999, 7, 1, &failure), LAR_ERROR_ARGUMENT);
+    assert_int_equal(lar_session_set_support(b.session, 0, 0, 1, &failure), LAR_ERROR_ARGUMENT);
+    assert_int_equal(lar_session_set_support_on(b.session, "start", 7, 1, &failure),
+                     LAR_ERROR_ARGUMENT);
+    wait_steps(&b, 100);
+    lar_saved_destroy(saved);
+    close_bench(&b);
+    for (int grid = 0; grid < 2; grid++) {
+        lar_replay_report report;
+        lar_model *model = named_block();
+        lar_simulation *simulation = NULL;
+        const lar_options divided = block_options(grid ? "2x2x1" : NULL, 1);
+        DONE(lar_simulation_create(model, &divided, &simulation, &failure));
+        DONE(lar_replay(simulation, PATH, NULL, NULL, &report, &failure));
+        assert_true(report.hashes > 5 && report.different == UINT64_MAX);
+        assert_int_equal(lar_simulation_support(simulation, stitch), LAR_AXIS_ALL);
+        assert_int_equal(lar_simulation_support(simulation, end), LAR_AXIS_Y);
+        lar_simulation_destroy(simulation);
+        lar_model_destroy(model);
+    }
+}
+
 /* The block as a muscle that shortens along the axis on which it hangs. */
 static lar_model *muscle(void) {
     lar_model *model = named_block();
@@ -199,6 +243,7 @@ static void friction_is_replayed(void **unused) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(friction_is_replayed), cmocka_unit_test(activations_are_played),
-        cmocka_unit_test(forces_are_played), cmocka_unit_test(touches_are_told_between_ticks)};
+        cmocka_unit_test(forces_are_played), cmocka_unit_test(supports_are_played),
+        cmocka_unit_test(touches_are_told_between_ticks)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

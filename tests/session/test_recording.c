@@ -204,11 +204,12 @@ static void settings_are_played(void **unused) {
         int word;
         uint64_t value;
         const char *why;
-    } forged[] = {{1, 9, "sets what cannot be set"},
+    } forged[] = {{1, LAR_SETTING_KINDS, "sets what cannot be set"},
+                  {1, LAR_SETTING_SUPPORT, "there is no node -1 to support"},
                   {2, (uint64_t)-2, "sets what cannot be set"},
                   {2, 1, "there is no material 1"},
                   {3, 0x7ff8000000000000, "sets what cannot be: "}};
-    for (int i = 0; i < 4; i++) {
+    for (int i = 0; i < 5; i++) {
         reload();
         *word_at(find(LAR_RECORD_SET, 1) + 16 + 8 * (size_t)forged[i].word) = forged[i].value;
         sign();
