@@ -65,6 +65,15 @@ static double volume_gradient(const double X[7][3], double derivative[6][3]) {
     return volume;
 }
 
+double lar_hex8_areas(const double corner[8][3]) {
+    double X[7][3], derivative[6][3], sum = 0;
+    to_modes(corner, X);
+    volume_gradient(X, derivative);
+    for (int m = 0; m < LAR_HEX8_GRADIENTS; m++)
+        for (int i = 0; i < 3; i++) sum += derivative[m][i] * derivative[m][i];
+    return 8 * sum; /* every mode is 1 or -1 at each of the nodes */
+}
+
 /* 2 I2 / I1 of M = integral grad h (x) grad h dV for the hourglass modes, by 2x2x2 Gauss. */
 static void bending_stiffness(const double corner[8][3], double stiffness[4]) {
     double M[4][3][3] = {{{0}}};

@@ -77,6 +77,10 @@ double lar_hex8_force(const lar_hex8 *element, const lar_material *material, con
 double lar_hex8_energy(const lar_hex8 *element, const lar_material *material, const double u[8][3],
                        double *hourglass);
 
+/* The sum over the nodes of |dV/dx|^2 [m^4], V the volume between these corners: how much of the
+ * element's faces looks at each node. */
+double lar_hex8_areas(const double corner[8][3]);
+
 /* Mean deformation gradient. */
 void lar_hex8_gradient(const lar_hex8 *element, const double u[8][3], double F[3][3]);
 

@@ -176,13 +176,20 @@ enum {
     LAR_STRAIN_NUMBERS
 };
 
+/* The |cof F|^2 from which on an element is looked at more closely. */
+#define LAR_STRAINED_AREA (3 * 1.4)
+
+enum { LAR_LANE_FLAT = 1 << 30 };
+
 /* Elements that are strained so much that they must be looked at more closely (hex8_guard.h):
  * squeezed, or bent by their hourglass modes, by about a fifth. */
 typedef struct lar_hex8_monitor {
     const double *limit; /* [8 for each block of the run] of lar_hex8_corner_limit, squared units of
                             force */
+    const double *area;  /* [likewise] lar_hex8_area_limit; NULL: no element is flat */
     int32_t count;
-    int32_t *lane; /* [8 for each block of the run] block * 8 + lane, ascending */
+    int32_t *lane; /* [8 for each block of the run] block * 8 + lane, ascending; with LAR_LANE_FLAT
+                      where `area` alone says so */
     float (*strain)[LAR_STRAIN_NUMBERS]; /* [as many] of each */
 } lar_hex8_monitor;
 

@@ -239,8 +239,38 @@ static double fibre_growth(const lar_fibre *fibre, const float strain[LAR_STRAIN
     return lar_fibre_families(fibre) * fmax(stiff - lar_fibre_stiffest(fibre), 0);
 }
 
-double lar_hex8_growth(const lar_material *material, const float strain[LAR_STRAIN_NUMBERS]) {
-    double J = strain[LAR_STRAIN_VOLUME], area = strain[LAR_STRAIN_AREA] / 3.0;
+/* The square of an element's highest frequency goes with sum |cof F B_a|^2 over its nodes, which is
+ * cof F^T cof F times M = sum B_a (x) B_a. Of a cube M is the same along all axes, and that
+ * |cof F|^2 / 3; a flat element that is pressed flatter feels the largest of the three squares
+ * alone. With a trace of 3, M has no eigenvalue above `steepest`. */
+static double steepest_of(const lar_hex8 *element) {
+    double trace = 0, square = 0;
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++) {
+            double sum = 0;
+            for (int m = 0; m < LAR_HEX8_GRADIENTS; m++)
+                sum += element->gradient[m][i] * element->gradient[m][j];
+            square += sum * sum;
+            if (i == j) trace += sum;
+        }
+    return 1 + sqrt(fmax(6 * square / (trace * trace) - 2, 0));
+}
+
+double lar_hex8_area_limit(const lar_hex8 *element) {
+    static const double FLAT = 1.7; /* edges as 1.6 to 1 */
+    double steepest = steepest_of(element), low = 1, high = LAR_STRAINED_AREA;
+    if (!(steepest > FLAT)) return LAR_STRAINED_AREA;
+    for (int i = 0; i < 40; i++) { /* the largest square, along the steepest, the volume kept */
+        double c = 0.5 * (low + high);
+        bool beyond = steepest * c + (3 - steepest) / sqrt(c) > LAR_STRAINED_AREA;
+        *(beyond ? &high : &low) = c;
+    }
+    return low + 2 / sqrt(low);
+}
+
+double lar_hex8_growth(const lar_material *material, const float strain[LAR_STRAIN_NUMBERS],
+                       double area) {
+    double J = strain[LAR_STRAIN_VOLUME];
     if (!(J > 0)) return INFINITY;
     lar_law_strained now = lar_law_table[material->law].strained(
         material->parameter, J, strain[LAR_STRAIN_LENGTH], strain[LAR_STRAIN_AREA]);

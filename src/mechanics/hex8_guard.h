@@ -66,10 +66,17 @@ double lar_hex8_corner_limit(const lar_hex8 *element, const double rest[8][3]);
 /* No corner's edges span more than that at rest, however it is rounded [m^3]. */
 double lar_hex8_largest_corner(const double rest[8][3]);
 
+/* The |cof F|^2 from which on an element is looked at more closely: LAR_STRAINED_AREA, and less for
+ * a flat one. */
+double lar_hex8_area_limit(const lar_hex8 *element);
+
 /* How the square of an element's highest frequency has grown with its strain, barrier apart: the
- * volume term goes with |cof F|^2 and the law's own slope, shear with |F^-1|^2. `strain`: what a
- * monitor says (hex8_block.h), of the mean gradient. Infinite where that is turned over. */
-double lar_hex8_growth(const lar_material *material, const float strain[LAR_STRAIN_NUMBERS]);
+ * volume term goes with the squares of its areas and the law's own slope, shear with |F^-1|^2.
+ * `strain`: what a monitor says (hex8_block.h), of the mean gradient. `area`: what lar_hex8_areas
+ * has become, in parts of that at rest; |cof F|^2 / 3 for one that is as long as wide. Infinite
+ * where the gradient is turned over. */
+double lar_hex8_growth(const lar_material *material, const float strain[LAR_STRAIN_NUMBERS],
+                       double area);
 
 /* How stiff a family of an element's fibres may be before it is listed [Pa]. */
 double lar_fibre_limit(const lar_material *material);

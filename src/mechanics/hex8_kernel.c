@@ -135,14 +135,13 @@ typedef lar_lane (*lane_law)(const lar_lane F[9], lar_lane P[9], lar_lane J, lar
 typedef unsigned (*lane_stiffened)(lar_lane J, lar_lane I1, lar_lane area, const lar_lane *p,
                                    lar_lane share);
 
-/* From where on an element is looked at more closely: its volume; the sum of the squares of its
- * cofactors, 3 at rest, with which its frequency goes; the part of its modulus at rest by which a
- * law stiffens; and how far the gradient in a corner may be from the mean one, squared. */
-static const double STRAINED_VOLUME = 0.7, STRAINED_COFACTOR = 3 * 1.4, STRAINED_SHEAR = 0.4,
-                    STRAINED_CORNER = 0.09;
+/* From where on an element is looked at more closely, besides LAR_STRAINED_AREA: its volume; the
+ * part of its modulus at rest by which a law stiffens; and how far the gradient in a corner may be
+ * from the mean one, squared. */
+static const double STRAINED_VOLUME = 0.7, STRAINED_SHEAR = 0.4, STRAINED_CORNER = 0.09;
 
 LAR_INLINE unsigned strained_lanes(const lane_strain *strain) {
-    return lar_lane_not_greater(lar_lane_set(STRAINED_COFACTOR), strain->number[LAR_STRAIN_AREA]) |
+    return lar_lane_not_greater(lar_lane_set(LAR_STRAINED_AREA), strain->number[LAR_STRAIN_AREA]) |
            lar_lane_not_greater(strain->number[LAR_STRAIN_VOLUME], lar_lane_set(STRAINED_VOLUME));
 }
 
@@ -333,17 +332,29 @@ LAR_INLINE void ask_for_next_chunk(const char *blocks, size_t bytes) {
     for (size_t k = 0; k < bytes; k += 64) __builtin_prefetch(blocks + bytes + k, 0, 3);
 }
 
-/* Lists the strained elements of a chunk that begins with block b. */
-static void list_strained(lar_hex8_monitor *monitor, int32_t b, unsigned strained,
+/* Flat elements of a chunk that are strained too much for their shape. */
+LAR_INLINE unsigned flat_lanes(const double *area, size_t parts, const lane_strain *strain) {
+    unsigned found = 0;
+    for (size_t i = 0; i < parts; i++)
+        found |= lar_lane_not_greater(lar_lane_load(area + i * LAR_LANES),
+                                      strain[i].number[LAR_STRAIN_AREA])
+                 << i * LAR_LANES;
+    return found;
+}
+
+/* Lists the strained elements of a chunk that begins with block b, and those that only are too
+ * `flat` for their strain. */
+static void list_strained(lar_hex8_monitor *monitor, int32_t b, unsigned strained, unsigned flat,
                           const lane_strain *strain) {
-    for (; strained; strained &= strained - 1, monitor->count++) {
-        int lane = __builtin_ctz(strained);
+    for (unsigned all = strained | flat; all; all &= all - 1, monitor->count++) {
+        int lane = __builtin_ctz(all);
         double values[LAR_LANES] __attribute__((aligned(64)));
         for (int k = 0; k < LAR_STRAIN_NUMBERS; k++) {
             lar_lane_store(values, strain[lane / LAR_LANES].number[k]);
             monitor->strain[monitor->count][k] = (float)values[lane % LAR_LANES];
         }
-        monitor->lane[monitor->count] = b * LAR_BLOCK + lane;
+        int32_t mark = strained >> lane & 1 ? 0 : LAR_LANE_FLAT;
+        monitor->lane[monitor->count] = (b * LAR_BLOCK + lane) | mark;
     }
 }
 
@@ -437,7 +448,11 @@ LAR_INLINE int64_t recover_form(const lar_block_run *run, int fibrous, const lar
         if (step) beyond |= relax(run, step, b, count, limits, gradient, record);
         if (fibrous) beyond |= contract(run, active, b, count, limits, gradient, record);
         forces(blocks, count, run->turn, record, force);
-        if (__builtin_expect(strained != 0, 0)) list_strained(monitor, b, strained, strains);
+        unsigned flat = 0;
+        if (monitor && monitor->area)
+            flat = flat_lanes(monitor->area + b * LAR_BLOCK, count * PARTS, strains);
+        if (__builtin_expect((strained | flat) != 0, 0))
+            list_strained(monitor, b, strained, flat, strains);
         if (__builtin_expect(beyond != 0 && first < 0, 0)) {
             int block = __builtin_ctz(beyond) / LAR_BLOCK;
             first = (int64_t)(b + block) << 8 | (beyond >> (block * LAR_BLOCK) & 0xff);

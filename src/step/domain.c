@@ -131,6 +131,7 @@ static void fill_lane(const lar_domain *domain, const lar_block_run *run, void *
     base->limit =
         lar_hex8_corner_limit(&hex8, (const double(*)[3])corner) * domain->scale * domain->scale;
     base->largest = lar_hex8_largest_corner((const double(*)[3])corner);
+    domain->area_limit[base - domain->base] = lar_hex8_area_limit(&hex8);
 }
 
 /* More than this is read from memory in every step: beyond the second-level cache and a fair share
@@ -195,10 +196,11 @@ static lar_status allocate_blocks(lar_domain *domain, lar_error *error) {
     if (domain->more_bytes) domain->more = lar_calloc_aligned(domain->more_bytes, 1);
     size_t elements = LAR_BLOCK * (size_t)domain->layout.block_count;
     domain->corner_limit = lar_calloc_aligned(elements, sizeof *domain->corner_limit);
+    domain->area_limit = lar_calloc_aligned(elements, sizeof *domain->area_limit);
     domain->base = lar_calloc(elements, sizeof *domain->base);
     domain->rest = lar_calloc_aligned(4 * (size_t)domain->layout.node_padded, sizeof *domain->rest);
     if (!domain->blocks || (domain->more_bytes && !domain->more) || !lar_fibres_plan(domain) ||
-        !domain->base || !domain->corner_limit || !domain->rest)
+        !domain->base || !domain->corner_limit || !domain->area_limit || !domain->rest)
         return lar_fail_memory(error, domain->block_bytes, "the elements");
     for (lar_lid n = 0; n < domain->layout.node_padded; n++)
         if (domain->layout.global[n] >= 0)
@@ -231,7 +233,7 @@ static bool fill_block(lar_domain *domain, int32_t r, int32_t b, void *memory, d
     lar_hex8_block scratch, *whole = run->rest ? &scratch : memory;
     for (int lane = 0; lane < LAR_BLOCK; lane++) {
         lar_gid e = lanes->element[lane];
-        limit[lane] = INFINITY;
+        limit[lane] = domain->area_limit[LAR_BLOCK * at + lane] = INFINITY;
         if (e >= 0) {
             lar_lane_base *base = domain->base + LAR_BLOCK * at + lane;
             fill_lane(domain, run, memory, whole, lane, e, steepest, base);
@@ -244,6 +246,14 @@ static bool fill_block(lar_domain *domain, int32_t r, int32_t b, void *memory, d
             ((lar_block_head *)memory)->node[a][lane] = 4 * (domain->layout.node_padded - 1);
     }
     return !run->rest || same_numbers(domain, run, b, lanes, whole);
+}
+
+/* Where no element is flat nobody looks. */
+static void keep_area_limits(lar_domain *domain) {
+    for (int32_t i = 0; i < LAR_BLOCK * domain->layout.block_count; i++)
+        if (domain->area_limit[i] < LAR_STRAINED_AREA) return;
+    free(domain->area_limit);
+    domain->area_limit = NULL;
 }
 
 static bool fill_blocks(lar_domain *domain) {
@@ -266,6 +276,7 @@ static bool fill_blocks(lar_domain *domain) {
     double stress = 0x1p54 / (3 * steepest);
     domain->limits = (lar_hex8_limits){
         .min_volume = 0.01, .stress_square = stress * stress, .hourglass_square = 0x1p54 * 0x1p54};
+    if (same) keep_area_limits(domain);
     return same;
 }
 
@@ -562,6 +573,7 @@ void lar_domain_destroy(lar_domain *domain) {
     free(domain->material);
     free(domain->base);
     free(domain->corner_limit);
+    free(domain->area_limit);
     free(domain->rest);
     if (!domain->rate_lent) free(domain->rate);
     free(domain->spare);

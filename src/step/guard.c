@@ -97,31 +97,42 @@ static double barriers_of(const lar_domain *domain, const lar_state *state, lar_
     return fmax(guard.stiffness, then.stiffness);
 }
 
-/* (omega dt / 2)^2 of an element as it is strained, if it is not heavier for a while. `below`: the
- * bits of its lane (lar_hex8_corners). */
-static double need_of(const lar_domain *domain, const lar_state *state, lar_gid e, unsigned below,
-                      double volume, const float strain[LAR_STRAIN_NUMBERS]) {
-    const lar_element_rate *rate = &domain->rate[e];
-    const lar_material *material = lar_domain_material(domain, e);
-    double factor = domain->factor[lar_factor_of(domain->model->element_material[e])];
-    double square = factor * rate->square * lar_hex8_growth(material, strain), steps = 0;
+/* How the square of a flat element's frequency has grown, with what its neighbours leave of it: its
+ * areas as they are, not as those of a cube would be with such a strain. 0 for others. */
+static double growth_of_flat(const lar_domain *domain, const lar_state *state, lar_gid e,
+                             size_t place, const float strain[LAR_STRAIN_NUMBERS]) {
+    double rest[8][3], now[8][3];
+    if (!domain->area_limit || !(domain->area_limit[place] < LAR_STRAINED_AREA)) return 0;
+    corners_of(domain, state, e, rest, now);
+    double area =
+        lar_hex8_areas((const double(*)[3])now) / lar_hex8_areas((const double(*)[3])rest);
+    return domain->rate[e].share * lar_hex8_growth(lar_domain_material(domain, e), strain, area);
+}
+
+/* What barriers that an element is at, or is coming to, do to the square of its frequency. `below`:
+ * the bits of its lane (lar_hex8_corners). */
+static double square_of_barriers(const lar_domain *domain, const lar_state *state, lar_gid e,
+                                 unsigned below, double volume) {
+    double steps = 0;
     if (below >> LAR_BLOCK & 1)
         steps = SEEN_IN_STEPS;
     else if (is_thrown(domain, state, e, volume))
         steps = steps_ahead(domain, state);
-    if (steps > 0)
-        square += (1 + 2 * LEAD) * barriers_of(domain, state, e, below & 1, steps) / rate->mass;
-    double need = 0.25 * domain->time_step * domain->time_step * square;
-    return need >= 0 ? need : INFINITY; /* a corner that is a point has no number */
+    if (!(steps > 0)) return 0;
+    return (1 + 2 * LEAD) * barriers_of(domain, state, e, below & 1, steps) / domain->rate[e].mass;
 }
 
-/* Strained lanes of one block, from entry `i` of a monitor on. Returns where those of the next
- * begin. */
+/* Strained lanes of one block, from entry `i` of a monitor on, without those that are listed for
+ * being flat alone: their corners are far from the barrier. Returns where those of the next begin.
+ */
 static int32_t lanes_of_block(const lar_hex8_monitor *monitor, int32_t i, int32_t *block,
                               unsigned *lanes) {
-    *block = monitor->lane[i] / LAR_BLOCK;
-    for (*lanes = 0; i < monitor->count && monitor->lane[i] / LAR_BLOCK == *block; i++)
-        *lanes |= 1u << monitor->lane[i] % LAR_BLOCK;
+    *block = (monitor->lane[i] & ~LAR_LANE_FLAT) / LAR_BLOCK;
+    for (*lanes = 0; i < monitor->count; i++) {
+        int32_t lane = monitor->lane[i] & ~LAR_LANE_FLAT;
+        if (lane / LAR_BLOCK != *block) break;
+        if (lane == monitor->lane[i]) *lanes |= 1u << lane % LAR_BLOCK;
+    }
     return i;
 }
 
@@ -238,18 +249,29 @@ static void apply_lanes(const lar_domain *domain, int32_t r, const lar_gid *elem
         *count += apply(domain, element[__builtin_ctz(lanes)], &damped[*count], state);
 }
 
-/* How fast strained elements of a block have become, entries first to end - 1 of a monitor. */
+/* How fast strained elements of a block have become, entries first to end - 1 of a monitor:
+ * (omega dt / 2)^2 of each, if it is not heavier for a while. */
 static void measure(const lar_domain *domain, const lar_hex8_monitor *monitor, int32_t first,
                     int32_t end, size_t place, const lar_gid *element, unsigned below,
                     lar_state *state) {
     for (int32_t i = first; i < end; i++) {
         int32_t lane = monitor->lane[i] % LAR_BLOCK;
-        if (element[lane] < 0) continue;
-        double need = need_of(domain, state, element[lane], below >> lane,
-                              domain->base[place + (size_t)lane].volume, monitor->strain[i]);
+        lar_gid e = element[lane];
+        size_t at = place + (size_t)lane;
+        if (e < 0) continue;
+        double factor = domain->factor[lar_factor_of(domain->model->element_material[e])];
+        const float *strain = monitor->strain[i];
+        double rate = factor * domain->rate[e].square;
+        double square = rate * lar_hex8_growth(lar_domain_material(domain, e), strain,
+                                               strain[LAR_STRAIN_AREA] / 3.0);
+        if (!(monitor->lane[i] & LAR_LANE_FLAT))
+            square += square_of_barriers(domain, state, e, below >> lane, domain->base[at].volume);
+        double flat = rate * growth_of_flat(domain, state, e, at, strain);
+        if (flat > square) square = flat;
+        double need = 0.25 * domain->time_step * domain->time_step * square;
+        if (!(need >= 0)) need = INFINITY; /* a corner that is a point has no number */
         if (!(need <= state->need)) state->need = need;
-        if (state->needs && need > domain->burden->least)
-            lar_needs_add(state->needs, element[lane], need);
+        if (state->needs && need > domain->burden->least) lar_needs_add(state->needs, e, need);
     }
 }
 
@@ -265,7 +287,7 @@ void lar_guard_select_and_apply(const lar_domain *domain, int32_t r,
         const lar_gid *element = domain->layout.block[at].element;
         for (int lane = 0; lane < LAR_BLOCK; lane++)
             if (element[lane] < 0) lanes &= ~(1u << lane);
-        unsigned below = lanes_below(domain, r, block, lanes, state);
+        unsigned below = lanes ? lanes_below(domain, r, block, lanes, state) : 0;
         if (measures) measure(domain, monitor, first, end, LAR_BLOCK * at, element, below, state);
         lanes &= below >> LAR_BLOCK;
         if (lanes) list[count++] = (int32_t)((unsigned)block << LAR_BLOCK | lanes);

@@ -12,6 +12,7 @@ typedef struct lar_element_rate {
     double square; /* of its highest frequency at rest [1/s^2] */
     double mass;   /* of a corner [kg] */
     double added;  /* of this; what the element does not weigh [kg] */
+    double share;  /* of `square`: what its neighbours leave of it, at most 1 */
 } lar_element_rate;
 
 typedef struct lar_step_bound {

@@ -80,6 +80,7 @@ static void recover_blocks(const lar_domain *domain, int32_t first, int32_t coun
     for (int32_t r = first; r < first + count; r++) {
         size_t place = LAR_BLOCK * (size_t)domain->run_first[r];
         lar_hex8_monitor monitor = {.limit = domain->corner_limit + place,
+                                    .area = domain->area_limit ? domain->area_limit + place : NULL,
                                     .lane = state->strained->lane + place,
                                     .strain = state->strained->strain + place};
         int64_t found = recover_run(domain, r, true, watches ? &monitor : NULL, state);

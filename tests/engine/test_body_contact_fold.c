@@ -274,7 +274,7 @@ static void a_crease_that_folds_shut_goes_on_to_rest(void **unused) {
 
 /* ---- the same bits -------------------------------------------------------------------------- */
 
-enum { MIDDLE = 700, END = 800 };
+enum { MIDDLE = 760, END = 860 };
 
 #define PATH LAR_TEST_BUILD "/fold.checkpoint"
 

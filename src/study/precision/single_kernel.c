@@ -325,8 +325,10 @@ typedef struct lar_hex8_limits {
     float min_volume, stress_square, hourglass_square;
 } lar_hex8_limits;
 enum { LAR_STRAIN_VOLUME, LAR_STRAIN_LENGTH, LAR_STRAIN_AREA, LAR_STRAIN_NUMBERS };
+#define LAR_STRAINED_AREA (3 * 1.4F)
+enum { LAR_LANE_FLAT = 1 << 30 };
 typedef struct lar_hex8_monitor {
-    const float *limit;
+    const float *limit, *area;
     int32_t count, *lane;
     float (*strain)[LAR_STRAIN_NUMBERS];
 } lar_hex8_monitor;
