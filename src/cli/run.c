@@ -7,6 +7,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/file/folder.h"
 #include "base/file/part_file.h"
 #include "cli/commands.h"
 #include "cli/parallel.h"
@@ -124,13 +125,21 @@ static int state_path(run *r, char path[PATH_SIZE]) {
                : fail(r, CLI_FAILED, "the name of the folder for results is too long");
 }
 
-static int save_state(run *r) {
-    char path[PATH_SIZE];
+static int save_to(run *r, const char *path) {
     lar_error error;
-    int status = state_path(r, path);
-    if (status) return status;
     return lar_simulation_save(r->simulation, path, &error) ? fail_by(r, &error) : CLI_DONE;
 }
+
+/* Beside the frames, and where --save says. */
+static int save_states(run *r) {
+    char path[PATH_SIZE];
+    int status = r->settings.out ? state_path(r, path) : CLI_DONE;
+    if (r->settings.out && !status) status = save_to(r, path);
+    int other = r->settings.save ? save_to(r, r->settings.save) : CLI_DONE;
+    return status ? status : other;
+}
+
+static const char MAGIC[] = "LARIATCP"; /* what a checkpoint begins with */
 
 /* What is no checkpoint is somebody's: saving will refuse to replace it. */
 static bool is_checkpoint(const char *path) {
@@ -138,7 +147,7 @@ static bool is_checkpoint(const char *path) {
     struct stat about;
     bool plain = stat(path, &about) == 0 && S_ISREG(about.st_mode); /* a pipe would wait */
     FILE *file = plain ? fopen(path, "rb") : NULL;
-    bool is = file && fread(magic, sizeof magic, 1, file) == 1 && !memcmp(magic, "LARIATCP", 8);
+    bool is = file && fread(magic, sizeof magic, 1, file) == 1 && !memcmp(magic, MAGIC, 8);
     if (file) fclose(file);
     return is;
 }
@@ -163,6 +172,30 @@ static int forget_earlier(run *r) {
                                 "folder and its permissions, or choose another one",
                                 path[i], strerror(errno));
     }
+    return CLI_DONE;
+}
+
+/* A long run must not end without its state for a reason that was there from the start. --save may
+ * name a file in the folder of --out, which is made here. */
+static int check_save(const run *r) {
+    const char *path = r->settings.save;
+    char trial[PATH_SIZE];
+    struct stat about;
+    lar_error error;
+    if (stat(path, &about) == 0 && !S_ISREG(about.st_mode))
+        return cli_complain(&cli_run, CLI_FAILED,
+                            "%s: is there and is no file; choose another name", path);
+    if ((r->settings.out && lar_folder_make(r->settings.out, &error)) ||
+        lar_file_spare(path, MAGIC, "not a checkpoint", &error))
+        return cli_complain(&cli_run, CLI_FAILED, "%s", error.message);
+    int length = snprintf(trial, sizeof trial, "%s.XXXXXX", path);
+    int file = length < PATH_SIZE ? mkstemp(trial) : -1;
+    if (file < 0)
+        return cli_complain(&cli_run, CLI_FAILED,
+                            "%s: cannot be written: %s; check the folder and its permissions",
+                            path, strerror(length < PATH_SIZE ? errno : ENAMETOOLONG));
+    close(file);
+    unlink(trial);
     return CLI_DONE;
 }
 
@@ -195,14 +228,15 @@ static int write_run_json(run *r, const run_report *report) {
     return cli_complain(&cli_run, CLI_FAILED, "%s", error.message);
 }
 
-static int report(run *r) {
-    int status = CLI_DONE;
+/* What was computed is told although something cannot be written; JSON only stands for success. */
+static int report(run *r, int status) {
     run_report made = report_of(r);
-    if (r->settings.out) status = write_run_json(r, &made);
-    if (r->settings.json)
+    int written = r->settings.out ? write_run_json(r, &made) : CLI_DONE;
+    if (!status) status = written;
+    if (r->settings.json && !status)
         run_report_json(&made, stdout);
     else
-        run_report_table(&made, stdout);
+        run_report_table(&made, r->settings.json ? stderr : stdout);
     return status;
 }
 
@@ -246,8 +280,7 @@ static int advance(run *r) {
         status = advance_stretch(r);
     r->elapsed = lar_step_clock_elapsed(&r->clock);
     clear_progress(r);
-    if (!status) status = add_frame(r);
-    return !status && r->results ? save_state(r) : status;
+    return status ? status : add_frame(r);
 }
 
 /* A run that was to end at rest and did not has no answer, only a last state. */
@@ -351,6 +384,7 @@ static int compute(run *r) {
     lar_error error;
     if (r->settings.resume && lar_simulation_load(r->simulation, r->settings.resume, &error))
         return fail_by(r, &error);
+    if (r->settings.save && check_save(r)) return CLI_FAILED;
     int status = choose_length(r);
     cli_catch_stop(); /* from here on there are results to end with */
     if (!status && r->settings.out &&
@@ -361,10 +395,9 @@ static int compute(run *r) {
     if (!status) status = advance(r);
     if (lar_results_close(r->results, &error) && !status)
         status = cli_complain(&cli_run, CLI_FAILED, "%s", error.message);
-    if (!status && r->settings.save && lar_simulation_save(r->simulation, r->settings.save, &error))
-        status = fail_by(r, &error);
-    if (status) tell_of_earlier_state(r, status);
-    if (!status) status = report(r);
+    int saved = status ? status : save_states(r);
+    if (saved) tell_of_earlier_state(r, saved);
+    if (!status) status = report(r, saved);
     if (!status && cli_stop_asked) return CLI_INTERRUPTED;
     return !status && r->follows && !r->rest.reached ? complain_restless(r) : status;
 }
