@@ -91,7 +91,8 @@ static int fail(run *r, int status, const char *message) {
 
 static int fail_by(run *r, const lar_error *error) {
     r->failure = error->status;
-    return fail(r, error->status == LAR_ERROR_UNSTABLE ? CLI_UNSTABLE : CLI_FAILED, error->message);
+    clear_progress(r);
+    return cli_refuse(&cli_run, error);
 }
 
 static int add_frame(run *r) {
