@@ -193,8 +193,8 @@ static int check_save(const run *r) {
     int file = length < PATH_SIZE ? mkstemp(trial) : -1;
     if (file < 0)
         return cli_complain(&cli_run, CLI_FAILED,
-                            "%s: cannot be written: %s; check the folder and its permissions",
-                            path, strerror(length < PATH_SIZE ? errno : ENAMETOOLONG));
+                            "%s: cannot be written: %s; check the folder and its permissions", path,
+                            strerror(length < PATH_SIZE ? errno : ENAMETOOLONG));
     close(file);
     unlink(trial);
     return CLI_DONE;
@@ -302,7 +302,21 @@ static int complain_restless(const run *r) {
                                       "scene a damping");
 }
 
-/* Where the run ends: the step nearest to its time, as for frames. */
+/* The step nearest to its time, as for frames. */
+static int choose_time(run *r) {
+    double time = r->settings.time, begin = lar_simulation_time(r->simulation);
+    if (time <= 0) time = fmax(lar_model_duration(r->model) - begin, r->interval);
+    if (time <= 0) time = 1;
+    double steps = round(time / lar_simulation_time_step(r->simulation));
+    if (steps > 1e15)
+        return cli_complain(&cli_run, CLI_FAILED,
+                            "%g s take %.3g steps of %.3g s; give a smaller --time or --steps",
+                            time, steps, lar_simulation_time_step(r->simulation));
+    r->last_step = r->first_step + (uint64_t)fmax(1, steps);
+    return CLI_DONE;
+}
+
+/* Where the run ends. */
 static int choose_length(run *r) {
     const run_settings *settings = &r->settings;
     r->interval = lar_model_output_interval(r->model);
@@ -313,17 +327,9 @@ static int choose_length(run *r) {
         settings->until_rest || (open && !settings->verify && lar_model_until_rest(r->model));
     if (r->follows) lar_rest_begin(&r->rest, r->simulation);
     if (r->follows && open) r->last_step = r->rest.limit;
-    if (r->last_step > r->first_step) return CLI_DONE;
-    double time = settings->time, begin = lar_simulation_time(r->simulation);
-    if (time <= 0) time = fmax(lar_model_duration(r->model) - begin, r->interval);
-    if (time <= 0) time = 1;
-    double steps = round(time / lar_simulation_time_step(r->simulation));
-    if (steps > 1e15)
-        return cli_complain(&cli_run, CLI_FAILED,
-                            "%g s take %.3g steps of %.3g s; give a smaller --time or --steps",
-                            time, steps, lar_simulation_time_step(r->simulation));
-    r->last_step = r->first_step + (uint64_t)fmax(1, steps);
-    return CLI_DONE;
+    int status = r->last_step > r->first_step ? CLI_DONE : choose_time(r);
+    r->rest.limit = r->last_step; /* --time and --steps are the most */
+    return status;
 }
 
 static lar_options options_of(const run_settings *settings) {
