@@ -2,6 +2,8 @@
 JOBS ?= $(shell nproc 2>/dev/null || echo 2)
 PREFIX ?= /usr/local
 FUZZ_SECONDS ?= 60
+EMPTY :=
+SPACE := $(EMPTY) $(EMPTY)
 
 .PHONY: all setup configure demo check check-long report fuzz deb install format clean help
 .NOTPARALLEL:
@@ -46,8 +48,9 @@ deb:
 	@tools/web.sh --required
 	@tools/deb.sh $(JOBS)
 
+# A prefix may have spaces. Quotes would keep ~ from the shell, which not every one resolves before.
 install: all
-	cmake --install build --prefix $(PREFIX)
+	cmake --install build --prefix $(subst $(SPACE),\$(SPACE),$(PREFIX))
 
 format:
 	git ls-files '*.c' '*.h' | xargs clang-format -i

@@ -674,8 +674,9 @@ LAR_API uint64_t lar_simulation_hash(const lar_simulation *simulation);
 
 /* Energies now, in joules. external = work done by loads, prescribed motion, supports that are set
  * and tools since the start, damping = energy taken out, contact = stored in contacts and lost in
- * them, viscous = what the viscous terms of materials have taken, most of it for good; strain =
- * what is left in the end;
+ * them, and, without any contact too, lost in the dampers of corners that nearly fold; viscous =
+ * what the viscous terms of materials have taken, most of it for good; strain = what is left in the
+ * end, with what barriers of such corners store;
  * kinetic + strain + hourglass + damping + contact + viscous = external (+ start). */
 typedef struct lar_energy {
     double kinetic, strain, hourglass, external, damping, contact, viscous;

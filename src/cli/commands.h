@@ -22,6 +22,10 @@ void cli_print_overview(FILE *out);
 /* There is no command `name`; prints what was probably meant and returns the exit status. */
 int cli_unknown_command(const char *name);
 
+/* Prints a message of the library and returns the exit status that it stands for: what the command
+ * line asked for and cannot be is wrong usage. */
+int cli_refuse(const cli_command *command, const lar_error *error);
+
 /* Opens a model and prints its notices to standard error. Returns the exit status; messages are
  * printed. */
 int cli_open_model(const cli_command *command, const char *path, lar_model **model);

@@ -11,9 +11,13 @@ static int demo_model_main(int argc, char **argv) {
     lar_error error;
     if (lar_demo_write(folder, &error))
         return cli_complain(&cli_demo_model, CLI_FAILED, "%s", error.message);
-    printf("%s/uterus.yaml, uterus_live.yaml and uterus.vtu are written. Try\n"
-           "    lariat run %s/uterus.yaml --out %s/results\n",
-           folder, folder, folder);
+    char scene[CLI_QUOTED], results[CLI_QUOTED], quoted[2][CLI_QUOTED];
+    snprintf(scene, sizeof scene, "%s/uterus.yaml", folder);
+    snprintf(results, sizeof results, "%s/results", folder);
+    printf("%s, uterus_live.yaml and uterus.vtu are written. Try\n"
+           "    lariat run %s --out %s\n",
+           scene, cli_quote(scene, quoted[0], CLI_QUOTED),
+           cli_quote(results, quoted[1], CLI_QUOTED));
     return CLI_DONE;
 }
 

@@ -79,10 +79,7 @@ static int device_main(int argc, char **argv) {
     sigaction(SIGINT, &action, NULL);
     lar_device_client_report report;
     lar_error error;
-    if (lar_device_client(&o, &report, &error))
-        return cli_complain(&cli_device,
-                            error.status == LAR_ERROR_ARGUMENT ? CLI_USAGE : CLI_FAILED, "%s",
-                            error.message);
+    if (lar_device_client(&o, &report, &error)) return cli_refuse(&cli_device, &error);
     if (json)
         write_json(&o, &report);
     else

@@ -121,8 +121,8 @@ void cli_help_man_overview(FILE *out) {
     write_examples(out, "  lariat demo-model demo\n"
                         "  lariat view demo/uterus_live.yaml --open\n"
                         "  lariat run demo/uterus.yaml --out demo/results\n");
-    fputs(".SH EXIT STATUS\n0 success, 1 failure, 2 wrong usage, 3 an unstable run, 130 "
-          "interrupted.\n.SH SEE ALSO\n",
+    fputs(".SH EXIT STATUS\n0 success, 1 failure, 2 wrong usage, 3 an unstable run, 4 a "
+          "run that did not come to rest, 130 interrupted.\n.SH SEE ALSO\n",
           out);
     for (int i = 0; cli_commands[i]; i++) {
         fputs(".BR ", out);

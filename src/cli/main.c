@@ -27,7 +27,7 @@ void cli_print_overview(FILE *out) {
                  "  lariat demo-model demo\n"
                  "  lariat run demo/uterus.yaml --out demo/results\n\n"
                  "Exit status: 0 success, 1 failure, 2 wrong usage, 3 an unstable run,\n"
-                 "130 interrupted.\n");
+                 "4 a run that did not come to rest, 130 interrupted.\n");
 }
 
 int cli_unknown_command(const char *name) {

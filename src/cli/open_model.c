@@ -4,6 +4,13 @@
 const char *const cli_element_names[] = {"hex8", "hex8-full", "hex8-matrix", NULL};
 const char *const cli_isa_names[] = {"auto", "c", "neon", "avx2", "avx512", NULL};
 
+int cli_refuse(const cli_command *command, const lar_error *error) {
+    int status = error->status == LAR_ERROR_ARGUMENT   ? CLI_USAGE
+                 : error->status == LAR_ERROR_UNSTABLE ? CLI_UNSTABLE
+                                                       : CLI_FAILED;
+    return cli_complain(command, status, "%s", error->message);
+}
+
 int cli_resume_options(const cli_command *command, const char *path, const lar_model *model,
                        lar_options *options) {
     lar_checkpoint_info info;

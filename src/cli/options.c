@@ -39,6 +39,22 @@ int cli_complain(const cli_command *command, int status, const char *format, ...
     return status;
 }
 
+const char *cli_quote(const char *path, char *quoted, size_t size) {
+    static const char PLAIN[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
+                                "/._-+,:@%=";
+    const char *c = path;
+    while (*c && (strchr(PLAIN, *c) || (unsigned char)*c >= 0x80)) c++;
+    if (!*c) return path;
+    size_t used = 0;
+    quoted[used++] = '\'';
+    for (c = path; *c && used + 7 < size; c++) {
+        const char *as = *c == '\'' ? "'\\''" : (char[]){*c, '\0'};
+        used += (size_t)snprintf(quoted + used, size - used, "%s", as);
+    }
+    snprintf(quoted + used, size - used, "'");
+    return *c ? path : quoted;
+}
+
 /* Edit distance with neighbours exchanged as one edit (optimal string alignment). Long words are
  * not compared. */
 static int distance(const char *a, const char *b) {

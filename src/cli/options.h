@@ -13,6 +13,7 @@
 #define LAR_CLI_OPTIONS_H
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 typedef enum cli_option_kind {
@@ -87,6 +88,11 @@ int cli_parse(const cli_command *command, const cli_option *options, int argc, c
 /* "lariat NAME: message" on standard error, in one piece; returns `status`. */
 int cli_complain(const cli_command *command, int status, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
+
+/* A path as one word of a command that is printed to be typed: itself, or in `quoted` (`size`
+ * bytes) with quotes that a shell takes off. */
+const char *cli_quote(const char *path, char *quoted, size_t size);
+enum { CLI_QUOTED = 8192 };
 
 /* From now on messages begin with the processor that they are from; 0: they do not. Who is not
  * processor zero leaves to it what all would say alike. */

@@ -80,9 +80,7 @@ int cli_choose_grid(const cli_command *command, const cli_parallel *p, const lar
     choice->reason[0] = '\0';
     if (!asked && (is_divided(p) || p->comm >= 0)) return CLI_DONE;
     options->grid = NULL;
-    if (lar_grid_choose(model, options, aim, choice, &error))
-        return cli_complain(command, error.status == LAR_ERROR_ARGUMENT ? CLI_USAGE : CLI_FAILED,
-                            "%s", error.message);
+    if (lar_grid_choose(model, options, aim, choice, &error)) return cli_refuse(command, &error);
     lar_grid_take(choice, options);
     return CLI_DONE;
 }
@@ -113,8 +111,7 @@ int cli_processes_begin(const cli_command *command, const cli_parallel *p, int a
                                            .argument_count = argc,
                                            .argument = argv};
     lar_error error;
-    if (lar_processes_begin(&setting, processes, &error))
-        return cli_complain(command, CLI_FAILED, "%s", error.message);
+    if (lar_processes_begin(&setting, processes, &error)) return cli_refuse(command, &error);
     cli_speak_as(lar_processes_self(*processes));
     return CLI_DONE;
 }
@@ -139,5 +136,5 @@ int cli_processes_end(const cli_command *command, lar_processes *processes, lar_
 int cli_complain_as_other(const cli_command *command, const lar_processes *processes,
                           const lar_error *error) {
     if (error->status != LAR_ERROR_PEER) lar_processes_hesitate(processes);
-    return cli_complain(command, CLI_FAILED, "%s", error->message);
+    return cli_refuse(command, error);
 }

@@ -167,7 +167,7 @@ static int run_partition(const char *path, lar_partition_options *wanted, bool j
     lar_partition_report report;
     lar_error error;
     if (lar_partition(model, wanted, &report, &error))
-        status = cli_complain(&cli_partition, CLI_FAILED, "%s", error.message);
+        status = cli_refuse(&cli_partition, &error);
     else if (json)
         write_json(&report);
     else

@@ -66,10 +66,8 @@ static int adapt_machine(const predict_settings *s, lar_cluster *m) {
 
 static int find_machine(const predict_settings *s, lar_cluster *m) {
     lar_error error;
-    lar_status status = lar_cluster_find(s->machine ? s->machine : "thesis", m, &error);
-    if (status)
-        return cli_complain(&cli_predict, status == LAR_ERROR_ARGUMENT ? CLI_USAGE : CLI_FAILED,
-                            "%s", error.message);
+    if (lar_cluster_find(s->machine ? s->machine : "thesis", m, &error))
+        return cli_refuse(&cli_predict, &error);
     return adapt_machine(s, m);
 }
 
@@ -86,7 +84,7 @@ static int get_machine(const predict_settings *s, const lar_model *model, lar_cl
     if (lar_cluster_measure(model, comm_of(s), m, &error) ||
         (s->check &&
          lar_predict_check_here(model, s->scene, comm_of(s), (int)s->repeat, m, check, &error)))
-        return cli_complain(&cli_predict, CLI_FAILED, "%s", error.message);
+        return cli_refuse(&cli_predict, &error);
     return adapt_machine(s, m);
 }
 
@@ -99,7 +97,7 @@ static int write_traces(const predict_settings *s, const lar_cluster *m, const l
              m->name, grid, (int)r->threads, r->threads > 1 ? "s" : "", 1e6 * r->step);
     if ((s->csv && lar_network_write_csv(s->csv, r, &error)) ||
         (s->svg && lar_network_write_svg(s->svg, r, title, &error)))
-        return cli_complain(&cli_predict, CLI_FAILED, "%s", error.message);
+        return cli_refuse(&cli_predict, &error);
     return CLI_DONE;
 }
 
@@ -113,11 +111,11 @@ static int predict_scene(const predict_settings *s, const lar_model *model) {
     cli_parallel_set(&s->parallel, &options);
     options.comm = NULL;
     lar_status failed = lar_parallel_find(model, &options, &found, &error);
-    if (failed) return cli_complain(&cli_predict, CLI_FAILED, "%s", error.message);
+    if (failed) return cli_refuse(&cli_predict, &error);
     int status = get_machine(s, model, &machine, &check);
     if (status) return status;
     if (lar_predict_model(model, &options, &machine, (int32_t)s->steps, &prediction, &error))
-        return cli_complain(&cli_predict, CLI_FAILED, "%s", error.message);
+        return cli_refuse(&cli_predict, &error);
     const predict_report report = {.machine = &machine,
                                    .scheme = found.scheme,
                                    .channels = found.channels,
@@ -178,7 +176,7 @@ static int predict_growth(const predict_settings *s) {
                                            .scheme = scaling.schemes[i % scaling.scheme_count],
                                            .steps = (int32_t)s->steps};
         if (lar_predict_block(&options, &machine, &row[i], &error))
-            return cli_complain(&cli_predict, CLI_FAILED, "%s", error.message);
+            return cli_refuse(&cli_predict, &error);
     }
     if (s->json)
         predict_scaling_json(&scaling);
@@ -218,7 +216,7 @@ static int predict_critical(const predict_settings *s) {
     }
     lar_status status = lar_predict_critical(&options, critical, &error);
     if (isatty(STDERR_FILENO)) fputs("\r\033[K", stderr);
-    if (status) return cli_complain(&cli_predict, CLI_FAILED, "%s", error.message);
+    if (status) return cli_refuse(&cli_predict, &error);
     if (s->json)
         predict_critical_json(&options, critical);
     else

@@ -41,6 +41,7 @@ typedef struct replay {
     double interval;   /* between frames [s] */
     double next_frame; /* when the next one is due [s] */
     uint64_t step;     /* of the latest look */
+    uint64_t framed;   /* of the latest frame */
     int frames, parts; /* a part for each time that the simulation went back */
     lar_step_clock clock;
     double elapsed, progress_at; /* [s] */
@@ -63,6 +64,12 @@ static lar_status open_part(replay *r, lar_error *error) {
                                 : lar_results_open)(folder, r->simulation, &r->results, error);
 }
 
+static lar_status add_state(replay *r, uint64_t step, lar_error *error) {
+    r->frames++;
+    r->framed = step;
+    return lar_results_add(r->results, r->simulation, error);
+}
+
 static lar_status add_frame(replay *r, uint64_t step, lar_error *error) {
     double time = lar_simulation_time(r->simulation);
     lar_status status = LAR_OK;
@@ -72,8 +79,15 @@ static lar_status add_frame(replay *r, uint64_t step, lar_error *error) {
     }
     if (status || time < r->next_frame - 1e-9) return status;
     r->next_frame = r->interval * (floor(time / r->interval + 1e-6) + 1);
-    r->frames++;
-    return lar_results_add(r->results, r->simulation, error);
+    return add_state(r, step, error);
+}
+
+/* Where the recording ends, with a fault too: as `run` does. What a reset or a load ended is gone
+ * when it is heard of. */
+static void add_last(replay *r) {
+    uint64_t step = lar_simulation_steps(r->simulation);
+    if (r->results && !r->written && r->framed != step)
+        r->written = add_state(r, step, &r->written_error);
 }
 
 static void show_progress(replay *r) {
@@ -145,9 +159,7 @@ static void write_table(const replay *r) {
 
 static int fail_by(replay *r, const lar_error *error) {
     r->failure = error->status;
-    return cli_complain(&cli_replay,
-                        error->status == LAR_ERROR_UNSTABLE ? CLI_UNSTABLE : CLI_FAILED, "%s",
-                        error->message);
+    return cli_refuse(&cli_replay, error);
 }
 
 static bool is_recording(const char *path) {
@@ -162,10 +174,12 @@ static void accept_old_order(replay_settings *s) {
     const char *scene = s->recording;
     s->recording = s->scene;
     s->scene = scene;
+    char quoted[2][CLI_QUOTED];
     if (cli_speaker() == 0)
         cli_complain(&cli_replay, CLI_DONE,
                      "note: the scene comes first, as for all commands: lariat replay %s %s",
-                     s->scene, s->recording);
+                     cli_quote(s->scene, quoted[0], CLI_QUOTED),
+                     cli_quote(s->recording, quoted[1], CLI_QUOTED));
 }
 
 /* The model, the processes, and this one's share of the simulation. */
@@ -209,6 +223,7 @@ static int compare(replay *r) {
         lar_replay(r->simulation, r->settings.recording, look, r, &r->report, &error);
     r->elapsed = lar_step_clock_elapsed(&r->clock);
     if (r->progress_at > 0) fputs("\r\033[K", stderr);
+    if (!status || r->report.broken) add_last(r);
     lar_status closed = lar_results_close(r->results, &closing);
     if (status == LAR_ERROR_UNSTABLE && r->report.broken)
         snprintf(r->fault, sizeof r->fault, "%s", error.message);

@@ -26,7 +26,7 @@ static int report_model(const char *path, lar_requirements_options *wanted, bool
                   lar_requirements_of(model, wanted, &found, &error);
     if (wanted->progress) wanted->progress(NULL, NULL);
     if (failed) {
-        status = cli_complain(&cli_requirements, CLI_FAILED, "%s", error.message);
+        status = cli_refuse(&cli_requirements, &error);
     } else {
         const char *title = info.title[0] ? info.title : path;
         const requirements_report report = {title, &found, thesis || found.demonstration};

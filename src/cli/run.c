@@ -7,6 +7,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/file/folder.h"
 #include "base/file/part_file.h"
 #include "cli/commands.h"
 #include "cli/parallel.h"
@@ -90,7 +91,8 @@ static int fail(run *r, int status, const char *message) {
 
 static int fail_by(run *r, const lar_error *error) {
     r->failure = error->status;
-    return fail(r, error->status == LAR_ERROR_UNSTABLE ? CLI_UNSTABLE : CLI_FAILED, error->message);
+    clear_progress(r);
+    return cli_refuse(&cli_run, error);
 }
 
 static int add_frame(run *r) {
@@ -124,13 +126,21 @@ static int state_path(run *r, char path[PATH_SIZE]) {
                : fail(r, CLI_FAILED, "the name of the folder for results is too long");
 }
 
-static int save_state(run *r) {
-    char path[PATH_SIZE];
+static int save_to(run *r, const char *path) {
     lar_error error;
-    int status = state_path(r, path);
-    if (status) return status;
     return lar_simulation_save(r->simulation, path, &error) ? fail_by(r, &error) : CLI_DONE;
 }
+
+/* Beside the frames, and where --save says. */
+static int save_states(run *r) {
+    char path[PATH_SIZE];
+    int status = r->settings.out ? state_path(r, path) : CLI_DONE;
+    if (r->settings.out && !status) status = save_to(r, path);
+    int other = r->settings.save ? save_to(r, r->settings.save) : CLI_DONE;
+    return status ? status : other;
+}
+
+static const char MAGIC[] = "LARIATCP"; /* what a checkpoint begins with */
 
 /* What is no checkpoint is somebody's: saving will refuse to replace it. */
 static bool is_checkpoint(const char *path) {
@@ -138,7 +148,7 @@ static bool is_checkpoint(const char *path) {
     struct stat about;
     bool plain = stat(path, &about) == 0 && S_ISREG(about.st_mode); /* a pipe would wait */
     FILE *file = plain ? fopen(path, "rb") : NULL;
-    bool is = file && fread(magic, sizeof magic, 1, file) == 1 && !memcmp(magic, "LARIATCP", 8);
+    bool is = file && fread(magic, sizeof magic, 1, file) == 1 && !memcmp(magic, MAGIC, 8);
     if (file) fclose(file);
     return is;
 }
@@ -163,6 +173,30 @@ static int forget_earlier(run *r) {
                                 "folder and its permissions, or choose another one",
                                 path[i], strerror(errno));
     }
+    return CLI_DONE;
+}
+
+/* A long run must not end without its state for a reason that was there from the start. --save may
+ * name a file in the folder of --out, which is made here. */
+static int check_save(const run *r) {
+    const char *path = r->settings.save;
+    char trial[PATH_SIZE];
+    struct stat about;
+    lar_error error;
+    if (stat(path, &about) == 0 && !S_ISREG(about.st_mode))
+        return cli_complain(&cli_run, CLI_FAILED,
+                            "%s: is there and is no file; choose another name", path);
+    if ((r->settings.out && lar_folder_make(r->settings.out, &error)) ||
+        lar_file_spare(path, MAGIC, "not a checkpoint", &error))
+        return cli_complain(&cli_run, CLI_FAILED, "%s", error.message);
+    int length = snprintf(trial, sizeof trial, "%s.XXXXXX", path);
+    int file = length < PATH_SIZE ? mkstemp(trial) : -1;
+    if (file < 0)
+        return cli_complain(&cli_run, CLI_FAILED,
+                            "%s: cannot be written: %s; check the folder and its permissions", path,
+                            strerror(length < PATH_SIZE ? errno : ENAMETOOLONG));
+    close(file);
+    unlink(trial);
     return CLI_DONE;
 }
 
@@ -195,14 +229,15 @@ static int write_run_json(run *r, const run_report *report) {
     return cli_complain(&cli_run, CLI_FAILED, "%s", error.message);
 }
 
-static int report(run *r) {
-    int status = CLI_DONE;
+/* What was computed is told although something cannot be written; JSON only stands for success. */
+static int report(run *r, int status) {
     run_report made = report_of(r);
-    if (r->settings.out) status = write_run_json(r, &made);
-    if (r->settings.json)
+    int written = r->settings.out ? write_run_json(r, &made) : CLI_DONE;
+    if (!status) status = written;
+    if (r->settings.json && !status)
         run_report_json(&made, stdout);
     else
-        run_report_table(&made, stdout);
+        run_report_table(&made, r->settings.json ? stderr : stdout);
     return status;
 }
 
@@ -246,8 +281,7 @@ static int advance(run *r) {
         status = advance_stretch(r);
     r->elapsed = lar_step_clock_elapsed(&r->clock);
     clear_progress(r);
-    if (!status) status = add_frame(r);
-    return !status && r->results ? save_state(r) : status;
+    return status ? status : add_frame(r);
 }
 
 /* A run that was to end at rest and did not has no answer, only a last state. */
@@ -268,7 +302,21 @@ static int complain_restless(const run *r) {
                                       "scene a damping");
 }
 
-/* Where the run ends: the step nearest to its time, as for frames. */
+/* The step nearest to its time, as for frames. */
+static int choose_time(run *r) {
+    double time = r->settings.time, begin = lar_simulation_time(r->simulation);
+    if (time <= 0) time = fmax(lar_model_duration(r->model) - begin, r->interval);
+    if (time <= 0) time = 1;
+    double steps = round(time / lar_simulation_time_step(r->simulation));
+    if (steps > 1e15)
+        return cli_complain(&cli_run, CLI_FAILED,
+                            "%g s take %.3g steps of %.3g s; give a smaller --time or --steps",
+                            time, steps, lar_simulation_time_step(r->simulation));
+    r->last_step = r->first_step + (uint64_t)fmax(1, steps);
+    return CLI_DONE;
+}
+
+/* Where the run ends. */
 static int choose_length(run *r) {
     const run_settings *settings = &r->settings;
     r->interval = lar_model_output_interval(r->model);
@@ -279,17 +327,9 @@ static int choose_length(run *r) {
         settings->until_rest || (open && !settings->verify && lar_model_until_rest(r->model));
     if (r->follows) lar_rest_begin(&r->rest, r->simulation);
     if (r->follows && open) r->last_step = r->rest.limit;
-    if (r->last_step > r->first_step) return CLI_DONE;
-    double time = settings->time, begin = lar_simulation_time(r->simulation);
-    if (time <= 0) time = fmax(lar_model_duration(r->model) - begin, r->interval);
-    if (time <= 0) time = 1;
-    double steps = round(time / lar_simulation_time_step(r->simulation));
-    if (steps > 1e15)
-        return cli_complain(&cli_run, CLI_FAILED,
-                            "%g s take %.3g steps of %.3g s; give a smaller --time or --steps",
-                            time, steps, lar_simulation_time_step(r->simulation));
-    r->last_step = r->first_step + (uint64_t)fmax(1, steps);
-    return CLI_DONE;
+    int status = r->last_step > r->first_step ? CLI_DONE : choose_time(r);
+    r->rest.limit = r->last_step; /* --time and --steps are the most */
+    return status;
 }
 
 static lar_options options_of(const run_settings *settings) {
@@ -351,6 +391,7 @@ static int compute(run *r) {
     lar_error error;
     if (r->settings.resume && lar_simulation_load(r->simulation, r->settings.resume, &error))
         return fail_by(r, &error);
+    if (r->settings.save && check_save(r)) return CLI_FAILED;
     int status = choose_length(r);
     cli_catch_stop(); /* from here on there are results to end with */
     if (!status && r->settings.out &&
@@ -361,10 +402,9 @@ static int compute(run *r) {
     if (!status) status = advance(r);
     if (lar_results_close(r->results, &error) && !status)
         status = cli_complain(&cli_run, CLI_FAILED, "%s", error.message);
-    if (!status && r->settings.save && lar_simulation_save(r->simulation, r->settings.save, &error))
-        status = fail_by(r, &error);
-    if (status) tell_of_earlier_state(r, status);
-    if (!status) status = report(r);
+    int saved = status ? status : save_states(r);
+    if (saved) tell_of_earlier_state(r, saved);
+    if (!status) status = report(r, saved);
     if (!status && cli_stop_asked) return CLI_INTERRUPTED;
     return !status && r->follows && !r->rest.reached ? complain_restless(r) : status;
 }

@@ -60,7 +60,7 @@ static double now(void) {
 
 static int fail_by(view *v, const lar_error *error) {
     v->failure = error->status;
-    return cli_complain(&cli_view, CLI_FAILED, "%s", error->message);
+    return cli_refuse(&cli_view, error);
 }
 
 /* The model, the processes, and this one's share of the simulation. */

@@ -211,7 +211,7 @@ static lar_status check_count(const lar_processes *p, int32_t count, lar_error *
                         "the grid has, or change --grid",
                         (int)p->job.count, (int)count);
     if (count > 1 && p->start == LAR_COMM_BY_LAUNCHER && p->job.count == 1)
-        return lar_fail(error, LAR_ERROR_ARGUMENT,
+        return lar_fail(error, LAR_ERROR_UNSUPPORTED,
                         "communication by %s needs a launcher: mpirun -n %d lariat ..., or srun; "
                         "without one there are threads, shm and tcp",
                         p->setting.comm, (int)count);

@@ -32,10 +32,10 @@ fix: [ { nodes: wall, axes: xyz } ]
 tools:
   - { name: probe, shape: sphere, radius: 0.003, at: [0.03, 0.005, 0.02] }
 END
-expect 1 "$LARIAT" view scene.yaml --port 0 --seconds 0.1 \
+expect 2 "$LARIAT" view scene.yaml --port 0 --seconds 0.1 \
     --device probe=udp:0.0.0.0:0
 complains 'token='
-expect 1 "$LARIAT" view scene.yaml --port 0 --seconds 0.1 --device probe=mouse:0
+expect 2 "$LARIAT" view scene.yaml --port 0 --seconds 0.1 --device probe=mouse:0
 complains 'script:FILE.csv, udp:HOST:PORT or gamepad:N'
 
 # Ends a session that this test has started, and waits for its report.

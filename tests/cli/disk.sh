@@ -96,4 +96,31 @@ expect 0 "$LARIAT" run "$scene" --steps 1 --save "$SCRATCH/state"
 [ ! -e "$SCRATCH/state.999999999-1.part" ] || fail "a part of a killed process is left"
 [ "$(find "$SCRATCH" -maxdepth 1 -name 'state.*' | wc -l)" -eq 3 ] || fail "another's file is gone"
 
+# --save is looked at before the first step: these runs would take minutes. What is there stays.
+echo 'a,b' >"$SCRATCH/notes.csv"
+for path in "$SCRATCH/notes.csv" "$SCRATCH/notes.csv/below" "$SCRATCH/none/x" "$SCRATCH" /dev/null \
+    /proc/none; do
+    expect 1 timeout 20 "$LARIAT" run "$scene" --time 1e6 --grid 1x1x1 --save "$path"
+    complains "^lariat run: $path: .*\(choose\|check\)"
+    silent
+done
+[ "$(cat "$SCRATCH/notes.csv")" = a,b ] || fail "what is no checkpoint was touched"
+expect 0 "$LARIAT" run "$scene" --steps 1 --out "$SCRATCH/fresh" --save "$SCRATCH/fresh/x"
+[ -s "$SCRATCH/fresh/x" ] || fail "--save into the folder of --out"
+[ -z "$(find "$SCRATCH" -name 'x.??????' -o -name 'state.??????')" ] || fail "a trial is left"
+
+# When it fails at the end all the same, what was computed is told; files may not grow here.
+cp "$SCRATCH/state" "$SCRATCH/kept"
+for json in '' --json; do
+    # shellcheck disable=SC2086
+    expect 1 sh -c 'ulimit -f 16; exec "$@"' sh "$LARIAT" run "$organ/uterus.yaml" --steps 10 $json \
+        --grid 1x1x1 --save "$SCRATCH/state"
+    complains '^lariat run: .*/state: cannot be written: '
+    complains '^lariat run: .*/state stays as it was before this run'
+    [ -n "$json" ] || says '^state hash '
+    [ -z "$json" ] || silent
+done
+complains '^state hash '
+cmp -s "$SCRATCH/kept" "$SCRATCH/state" || fail "the earlier state is gone"
+
 finish "full disks and wrong folders are reported"

@@ -56,6 +56,8 @@ says '^shortest edge  *[0-9.]* mm$'
 says '^deviation  *mean 0\.[0-9]* mm ('
 says 'all of the elements are above 0.2'
 says '^lariat view Two_organs/Two_organs.yaml$'
+expect 0 "$LARIAT" mesh two.nrrd --label liver --elements 100 --voxel --out 'the liver'
+says "^lariat view 'the liver/liver.yaml'$"
 for file in .vtu .yaml _surface.vtp; do
     [ -s "Two_organs/Two_organs$file" ] || fail "no Two_organs$file"
 done

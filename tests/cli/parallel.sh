@@ -80,10 +80,10 @@ refuse() {
     complains "$sentence"
     silent
 }
-refuse 1 "'2x2' is no grid" --grid 2x2
-refuse 1 'more processors\|too large' --grid 50x50x50
-refuse 1 'at most 64 are started' --grid 20x20x2 --comm shm
-expect 1 "$LARIAT" run "$SOURCE/examples/beam.yaml" --grid 10x10x10
+refuse 2 "'2x2' is no grid" --grid 2x2
+refuse 2 'more processors\|too large' --grid 50x50x50
+refuse 2 'at most 64 are started' --grid 20x20x2 --comm shm
+expect 2 "$LARIAT" run "$SOURCE/examples/beam.yaml" --grid 10x10x10
 complains 'elements'
 refuse 2 'all, local, one, two' --grid 2x1x1 --scheme some
 refuse 2 'scheme local' --grid 2x1x1 --channels concurrent
@@ -91,7 +91,7 @@ refuse 2 'say how many' --scheme local
 refuse 2 'say how many' --comm tcp
 refuse 2 'leave --grid out' --schedules plan --grid 2x1x2
 refuse 1 'none.dist' --distribution none.dist
-refuse 1 'is for the grid 2x1x2' --distribution found.dist --grid 2x2x1
+refuse 2 'is for the grid 2x1x2' --distribution found.dist --grid 2x2x1
 refuse 1 'none/processor-0000.schedule' --schedules none
 refuse 2 'contradict' --grid 2x1x1 --pin --no-pin
 refuse 2 'leave --out out' --grid 2x1x1 --verify --out x

@@ -39,10 +39,10 @@ expect 0 "$LARIAT" partition demo/uterus.yaml --grid 1x1x1 --method best
 expect 2 "$LARIAT" partition demo/uterus.yaml
 complains 'grid is missing'
 expect 2 "$LARIAT" partition demo/uterus.yaml --distribution first.dist --method cut
-expect 1 "$LARIAT" partition demo/uterus.yaml --grid 2x2
+expect 2 "$LARIAT" partition demo/uterus.yaml --grid 2x2
 complains "'2x2' is no grid"
 silent
-expect 1 "$LARIAT" partition demo/uterus.yaml --grid 2x2x2 --distribution first.dist
+expect 2 "$LARIAT" partition demo/uterus.yaml --grid 2x2x2 --distribution first.dist
 complains 'is for the grid 2x2x3'
 expect 1 "$LARIAT" partition demo/uterus.yaml --distribution demo/uterus.yaml
 complains 'this is no distribution file'

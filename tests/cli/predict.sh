@@ -84,7 +84,7 @@ expect 0 "$LARIAT" predict demo/uterus.yaml --grid 2x2x3 --threads 2
 grep -q 'not settled' "$SCRATCH/out" && fail "the organ on the cluster settles"
 expect 2 "$LARIAT" predict --critical --scheme two
 complains 'tries all'
-expect 1 "$LARIAT" predict demo/uterus.yaml --grid 2x2
+expect 2 "$LARIAT" predict demo/uterus.yaml --grid 2x2
 complains "'2x2' is no grid"
 silent
 expect 1 "$LARIAT" predict demo/uterus.yaml --machine none.machine

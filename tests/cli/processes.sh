@@ -196,9 +196,9 @@ refuse 2 'threads, shm, ucx, mpi, tcp' --comm pigeon
 refuse 2 'give --master' --comm tcp --processor 1
 refuse 2 'give --comm' --processor 1 --master 127.0.0.1:1
 refuse 2 'say which one' --comm tcp --master 127.0.0.1:1
-refuse 1 'they count from 0' --comm tcp --processor 2 --master 127.0.0.1:1
-refuse 1 'write host:port' --comm tcp --processor 0 --master nowhere
-refuse 1 'a port is a number' --comm tcp --processor 1 --master localhost:99999
+refuse 2 'they count from 0' --comm tcp --processor 2 --master 127.0.0.1:1
+refuse 2 'write host:port' --comm tcp --processor 0 --master nowhere
+refuse 2 'a port is a number' --comm tcp --processor 1 --master localhost:99999
 refuse 1 'cannot be used as a folder' --comm shm --out /dev/null/x
 refuse 1 'stable step' --comm shm --time-step 1
 [ "$(wc -l <err)" -eq 1 ] || fail "one failure is told $(wc -l <err) times"

@@ -66,6 +66,18 @@ expect 0 "$LARIAT" replay $scene two.recording --json --out frames --every 0.01
 [ "$(value_of frames)" -gt 1 ] || fail "no frames"
 [ -s frames/uterus_live.pvd ] && [ -s frames/uterus_live_000001.vtu ] || fail "no series of frames"
 
+# Frames between which no look falls: only start and end, which is where the steps are, on each grid.
+for divided in '' '--grid 2x1x1' '--grid 2x1x1 --comm shm'; do
+    # shellcheck disable=SC2086
+    expect 0 "$LARIAT" replay $scene two.recording --json --out ends --every 100 $divided
+    [ "$(value_of frames)" = 2 ] || fail "$(value_of frames) frames instead of start and end: $divided"
+    tail -n 1 ends/probes.csv | cut -d , -f 1 |
+        awk -v step="$(value_of time_step)" -v steps="$(value_of steps)" \
+            '{ exit !(($1 - steps * step) ^ 2 < 1e-18) }' || fail "the last state is no frame: $divided"
+    cat ends/*_000001.vtu | cksum >>sums
+done
+[ "$(sort -u sums | wc -l)" -eq 1 ] || fail "the last frame depends on the grid"
+
 # A run that broke: again with the same fault, behind hashes that are all equal.
 cp "$SOURCE/examples/beam.vtk" beam.vtk
 sed 's/^fix:/load: [ { nodes: all, force: [0, 0, -1.0e5] } ]\nfix:/' "$SOURCE/examples/beam.yaml" \
@@ -82,6 +94,8 @@ for divided in '' '--grid 2x1x1' '--grid 2x1x1 --comm shm'; do
 done
 expect 0 "$LARIAT" replay violent.yaml broken.recording --json
 has_keys fault equal state_hash
+expect 0 "$LARIAT" replay violent.yaml broken.recording --json --out fault --every 100
+[ "$(value_of frames)" = 2 ] || fail "$(value_of frames) frames of a run that broke"
 
 # Another model, and a file that was cut or altered.
 expect 1 "$LARIAT" replay demo/uterus.yaml one.recording

@@ -87,11 +87,11 @@ silent
 expect 2 "$LARIAT" requirements --thesis --grid 2x2x2
 complains 'divide a model; name one'
 expect 2 "$LARIAT" requirements demo/uterus.yaml --iterations 0
-expect 1 "$LARIAT" requirements demo/uterus.yaml --grid 2x2 --json
+expect 2 "$LARIAT" requirements demo/uterus.yaml --grid 2x2 --json
 complains "'2x2' is no grid"
 silent
-expect 1 "$LARIAT" requirements cube.inp --grid 2x1x1
-expect 1 "$LARIAT" requirements demo/uterus.yaml --grid 2x2x2 --distribution cut.dist
+expect 2 "$LARIAT" requirements cube.inp --grid 2x1x1
+expect 2 "$LARIAT" requirements demo/uterus.yaml --grid 2x2x2 --distribution cut.dist
 complains 'is for the grid 2x2x1'
 expect 1 "$LARIAT" requirements none.yaml
 complains 'none.yaml'

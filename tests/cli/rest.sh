@@ -66,12 +66,17 @@ expect 0 "$LARIAT" run "$SCRATCH/damped.yaml" --json
 [ "$(value_of rest.followed)$(value_of time | cut -c 1)" = false1 ] || fail "a run without rest"
 expect 4 "$LARIAT" run "$SCRATCH/damped.yaml" --until-rest --time 0.1 --json --out "$SCRATCH/damped"
 [ "$(value_of rest.reached)" = false ] || fail "at rest after 0.1 s"
+[ "$(value_of rest.limit)" = "$(value_of time)" ] || fail "limit $(value_of rest.limit) with --time 0.1"
 [ -s "$SCRATCH/damped/damped_000000.vtu" ] || fail "no last state of a run that did not rest"
 complains 'damped.yaml: not at rest after 0.0[0-9]* s, the limit of this run: .*; look whether'
+
+expect 4 "$LARIAT" run "$SCRATCH/damped.yaml" --until-rest --steps 40 --json
+[ "$(value_of rest.limit)$(value_of steps)" = "$(value_of time)40" ] || fail "limit with --steps"
 
 # What never rests ends at its limit and says so.
 scene swinging "damping: 0" "duration: rest" "$hold"
 expect 4 "$LARIAT" run "$SCRATCH/swinging.yaml" --json
+[ "$(value_of rest.limit)" = "$(value_of time)" ] || fail "limit without --time"
 complains 'swinging.yaml: not at rest after [0-9.]* s, the limit of this run: its motion is still'
 complains 'without damping nothing takes the motion away'
 scene falling "damping: 20" "duration: rest"

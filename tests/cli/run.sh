@@ -7,6 +7,13 @@ expect 0 "$LARIAT" demo-model "$demo"
 says 'lariat run'
 scene=$demo/uterus.yaml
 
+# What is printed to be typed can be typed, whatever the folder is called.
+odd="$SCRATCH/an aunt's dé mo"
+expect 0 "$LARIAT" demo-model "$odd"
+grep '^    lariat run ' "$SCRATCH/out" | sed "s|lariat|\"$LARIAT\"|; s|\$| --steps 1|" >"$SCRATCH/typed"
+expect 0 sh "$SCRATCH/typed"
+[ -s "$odd/results/run.json" ] || fail "what demo-model prints: $(cat "$SCRATCH/typed")"
+
 expect 0 "$LARIAT" info "$scene"
 says '^mesh  *1840 elements'
 says 'fundus: .* nodes'

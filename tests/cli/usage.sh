@@ -6,6 +6,7 @@ expect 0 "$LARIAT" --version
 says '^lariat [0-9]*\.[0-9]*\.[0-9]*$'
 expect 0 "$LARIAT" --help
 says 'demo-model'
+says '4 a run that did not come to rest'
 expect 2 "$LARIAT"
 silent
 complains 'Usage: lariat COMMAND'
@@ -53,6 +54,19 @@ for wrong in '--time -1' '--time 0' '--time nan' '--time inf' '--time 1s' '--ste
     expect 2 "$LARIAT" run "$beam" $wrong
     silent
 done
+# A grid that is none, whichever command is asked for it.
+for command in run verify partition predict requirements view; do
+    for grid in foo 2x2 0x1x1 1025x1x1; do
+        expect 2 "$LARIAT" $command "$beam" --grid $grid
+        complains "^lariat $command: .*give 1 to 1024\|^lariat $command: '$grid' is no grid"
+        silent
+    done
+done
+expect 2 "$LARIAT" run "$beam" --grid 40x40x1
+expect 2 "$LARIAT" run "$beam" --steps 1 --grid 2x1x1 --comm tcp --processor 5 --master localhost:1
+complains 'they count from 0'
+expect 2 "$LARIAT" run "$beam" --steps 1 --grid 2x1x1 --comm tcp --processor 1 --master foo
+complains 'foo is no address; write host:port'
 expect 2 "$LARIAT" run "$beam" --element tet
 complains 'hex8, hex8-full, hex8-matrix'
 expect 0 "$LARIAT" run --steps 1 --grid 1x1x1 --threads=1 -- "$beam"

@@ -47,6 +47,6 @@ complains 'good/processor-0000.schedule:'
 
 expect 2 "$LARIAT" verify
 complains 'SCENE is missing'
-expect 1 "$LARIAT" verify $scene --grid 0x1x1
+expect 2 "$LARIAT" verify $scene --grid 0x1x1
 silent
 finish "verify: proofs, lists, forces, damaged files"

@@ -36,7 +36,7 @@ expect 0 "$LARIAT" view $scene --port 0 --seconds 0.3 --token for-the-surgeon --
 says '^http://127.0.0.1:[0-9]*/#token=for-the-surgeon$'
 says '^http://127.0.0.1:[0-9]*/#token=for-the-class$'
 says '^Who opens that one can only watch.$'
-expect 1 "$LARIAT" view $scene --port 0 --seconds 0.3 --watch-token for-the-class
+expect 2 "$LARIAT" view $scene --port 0 --seconds 0.3 --watch-token for-the-class
 complains 'a watch token needs a token beside it'
 
 # For machines.
@@ -166,9 +166,9 @@ complains 'processor 1 was ended by signal 9'
 ! grep -q 'reset takes it up' err || fail "reset is offered in vain"
 
 # Others may come in with a token only.
-expect 1 "$LARIAT" view $scene --port 0 --seconds 0.2 --listen 0.0.0.0
+expect 2 "$LARIAT" view $scene --port 0 --seconds 0.2 --listen 0.0.0.0
 complains 'token'
-expect 1 "$LARIAT" view $scene --port 0 --seconds 0.2 --token short
+expect 2 "$LARIAT" view $scene --port 0 --seconds 0.2 --token short
 complains '8 to 128'
 expect 0 "$LARIAT" view $scene --port 0 --seconds 0.2 --token a-long-enough-one
 says '/#token=a-long-enough-one$'

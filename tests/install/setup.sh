@@ -112,6 +112,12 @@ page 'node v12.22.9 is too old'
 rm "$scratch/bin/npm"
 page 'npm is not there'
 
+# `make install` into a folder whose name has spaces, and into one's own home.
+(cd "$source" && make -n install PREFIX='/x y/z') >"$scratch/install"
+grep -q '^cmake --install build --prefix /x\\ y/z$' "$scratch/install" || fail "a prefix with a space"
+(cd "$source" && make -n install PREFIX='~/z') >"$scratch/install"
+grep -q '^cmake --install build --prefix ~/z$' "$scratch/install" || fail "a prefix at home"
+
 [ $failures -eq 0 ] || exit 1
 rm -rf "$scratch"
 echo "setup: the default does what README.md shows"

@@ -170,10 +170,7 @@ static int comm_main(int argc, char **argv) {
     lar_bench_comm_result result;
     lar_error error;
     if (lar_bench_comm(&wanted, &result, &error))
-        return bench_abandon(
-            &frame, cli_complain(&cli_bench_comm,
-                                 error.status == LAR_ERROR_ARGUMENT ? CLI_USAGE : CLI_FAILED, "%s",
-                                 error.message));
+        return bench_abandon(&frame, cli_refuse(&cli_bench_comm, &error));
     if (result.rows == 0) return bench_abandon(&frame, CLI_DONE); /* the other process tells */
     add_figures(&result, &frame.report);
     if (frame.json)

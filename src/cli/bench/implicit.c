@@ -135,10 +135,7 @@ static int measure(implicit_settings *s) {
     if (failure) return failure;
     lar_status status = lar_bench_implicit(&s->options, &result, &error);
     if (!status) return report(s, &result);
-    return bench_abandon(&s->frame,
-                         cli_complain(&cli_bench_implicit,
-                                      status == LAR_ERROR_UNSTABLE ? CLI_UNSTABLE : CLI_FAILED,
-                                      "%s", error.message));
+    return bench_abandon(&s->frame, cli_refuse(&cli_bench_implicit, &error));
 }
 
 static int open_model(implicit_settings *s) {

@@ -127,12 +127,7 @@ static int report(scaling_settings *s) {
     lar_error error;
     lar_status status = lar_bench_scaling(&s->wanted, &result, &error);
     if (isatty(STDERR_FILENO)) fputs("\r\033[K", stderr);
-    if (status)
-        return cli_complain(&cli_bench_scaling,
-                            status == LAR_ERROR_ARGUMENT   ? CLI_USAGE
-                            : status == LAR_ERROR_UNSTABLE ? CLI_UNSTABLE
-                                                           : CLI_FAILED,
-                            "%s", error.message);
+    if (status) return cli_refuse(&cli_bench_scaling, &error);
     if (result.rows == 0) return CLI_DONE; /* the first process tells */
     add_figures(&result, &s->frame.report);
     if (s->frame.json)

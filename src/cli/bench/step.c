@@ -132,10 +132,7 @@ static int measure(step_settings *s, const lar_model *model) {
                                            .repeat = (int)s->repeat};
     lar_status status = lar_bench_step(&wanted, &result, &error);
     if (!status) return report(s, &result);
-    return bench_abandon(&s->frame,
-                         cli_complain(&cli_bench_step,
-                                      status == LAR_ERROR_UNSTABLE ? CLI_UNSTABLE : CLI_FAILED,
-                                      "%s", error.message));
+    return bench_abandon(&s->frame, cli_refuse(&cli_bench_step, &error));
 }
 
 static int open_model(const char *scene, lar_model **model) {

@@ -4,6 +4,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "cli/options.h"
+
 /* ---- for machines ---------------------------------------------------------------------------- */
 
 static void write_regions(lar_json *json, const mesh_report *report) {
@@ -165,5 +167,6 @@ void mesh_report_table(const mesh_report *report) {
     printf("%-17s%.4g s (stable up to %.4g s)\n", "time step", model->time_step,
            model->stable_step);
     cli_print_speed(&report->speed);
-    printf("\nlariat view %s\n", report->scene);
+    char quoted[CLI_QUOTED];
+    printf("\nlariat view %s\n", cli_quote(report->scene, quoted, sizeof quoted));
 }
