@@ -925,8 +925,10 @@ LAR_SIZED void lar_simulation_contact(const lar_simulation *simulation, lar_cont
 
 /* ---- going back, saving, loading ---------------------------------------------------------- */
 
-/* The state that lar_simulation_create made; tools at rest. The first time it asks for memory to
- * keep that, and from the second time on it takes as long as lar_simulation_load_from. */
+/* The state that lar_simulation_create made; tools at rest, added ones where they were added (they
+ * stay; lar_simulation_load_from has those that the state was saved with). The first time it asks
+ * for memory to keep that, and from the second time on it takes as long as
+ * lar_simulation_load_from. */
 LAR_API lar_status lar_simulation_reset(lar_simulation *simulation, lar_error *error);
 /* Writes state and tools to a file, whole or not at all (docs/formats.md, checkpoint). */
 LAR_API lar_status lar_simulation_save(const lar_simulation *simulation, const char *path,

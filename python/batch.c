@@ -266,6 +266,25 @@ static PyObject *advance(PyObject *me, PyObject *args, PyObject *keywords) {
     Py_RETURN_NONE;
 }
 
+/* ---- states that can be kept ---------------------------------------------------------------- */
+
+/* No step: what has broken off says so, and why. */
+static lar_status find_broken(python_member_call *call, python_member *member, int place,
+                              bool caller, lar_error *error) {
+    (void)call, (void)place, (void)caller;
+    lar_status status = lar_simulation_advance(member->taken, 0, error);
+    if (status != LAR_ERROR_UNSTABLE) return status;
+    lar_error why = *error;
+    snprintf(error->message, sizeof error->message,
+             "its state is not kept, put it back with reset first: %.900s", why.message);
+    return status;
+}
+
+bool python_batch_sound(python_batch *self, const char *name) {
+    python_member_call call = {.name = name, .work = find_broken};
+    return python_members_parse(self, NULL, &call.members) && python_batch_run(self, &call);
+}
+
 /* ---- life ----------------------------------------------------------------------------------- */
 
 static bool is_alone(PyObject *options) {
@@ -493,7 +512,7 @@ static PyObject *batch_item(PyObject *me, Py_ssize_t index) {
 static PyObject *batch_reduce(PyObject *me, PyObject *nothing) {
     (void)nothing;
     python_batch *self = python_batch_look(me, "pickle");
-    PyObject *list = self ? PySequence_List(me) : NULL;
+    PyObject *list = self && python_batch_sound(self, "pickle") ? PySequence_List(me) : NULL;
     PyObject *package = list ? PyImport_ImportModule("lariat") : NULL;
     PyObject *restore = package ? PyObject_GetAttrString(package, "_restore_batch") : NULL;
     PyObject *answer = restore ? Py_BuildValue("(O(Oi))", restore, list, self->workers) : NULL;
@@ -542,7 +561,7 @@ static PyMethodDef batch_methods[] = {
      "else has them. Closing\ntwice is fine."},
     {"__enter__", batch_enter, METH_NOARGS, NULL},
     {"__exit__", batch_exit, METH_VARARGS, NULL},
-    {"__reduce__", batch_reduce, METH_NOARGS, "For pickle: the members and the workers."},
+    {"__reduce__", batch_reduce, METH_NOARGS, "For pickle: sound members and the workers."},
     {NULL, NULL, 0, NULL}};
 
 static const char batch_doc[] =

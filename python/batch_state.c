@@ -298,7 +298,7 @@ static PyObject *set_tool_poses(PyObject *me, PyObject *args, PyObject *keywords
 static PyObject *save(PyObject *me, PyObject *nothing) {
     (void)nothing;
     python_batch *self = python_batch_look(me, "save");
-    if (!self) return NULL;
+    if (!self || !python_batch_sound(self, "save")) return NULL;
     PyObject *list = PyList_New(0);
     for (int i = 0; list && self->member && i < self->count; i++) {
         PyObject *saved = PyObject_CallMethod((PyObject *)self->member[i].simulation, "save", NULL);
@@ -423,9 +423,12 @@ PyMethodDef python_batch_state_methods[] = {
     {"steps", steps, METH_NOARGS,
      "steps($self)\n--\n\nSteps done by every member, a tuple of ints."},
     {"save", save, METH_NOARGS,
-     "save($self)\n--\n\nThe states, a list of one Saved for each member."},
+     "save($self)\n--\n\nThe states, a list of one Saved for each member. While members have "
+     "broken off there is none: `members` of the UnstableError names them, `reset` takes them up."},
     {"reset", FUNCTION(reset), METH_VARARGS | METH_KEYWORDS,
      "reset($self, members=None, state=None)\n--\n\nPuts members (int32 [k]; None: all) back: to "
      "the state that they were made with, or to `state`, a Saved of the same model for all of "
-     "them, or a sequence of one for each. An unstable member is sound again then."},
+     "them, or a sequence of one for each. Without `state` added tools stay, where they were "
+     "added; with\nit members have the tools that it was saved with. An unstable member is sound "
+     "again then."},
     {NULL, NULL, 0, NULL}};

@@ -64,29 +64,6 @@ PyObject *python_path(PyObject *source, const char *name) {
 
 /* ---- scenes --------------------------------------------------------------------------------- */
 
-/* What json asks for values that it does not know: numpy's scalars and arrays have a tolist. */
-static PyObject *plain_value(PyObject *module, PyObject *value) {
-    (void)module;
-    PyObject *plain = PyObject_CallMethod(value, "tolist", NULL);
-    if (plain) return plain;
-    PyErr_Clear();
-    python_refuse_type("scene: a value of %R is nothing that scenes have",
-                       (PyObject *)Py_TYPE(value));
-    return NULL;
-}
-static PyMethodDef plain_method = {"_plain_value", plain_value, METH_O, NULL};
-
-/* In scenes `all` is a word, and "all" in quotes the name of a set; JSON has quotes only. Nobody
- * who writes a dict means that set. */
-static PyObject *unquote_all(PyObject *text) {
-    PyObject *re = PyImport_ImportModule("re");
-    PyObject *plain =
-        re ? PyObject_CallMethod(re, "sub", "ssO", "(?<!\\\\)\"all\"(?!:)", "all", text) : NULL;
-    Py_XDECREF(re);
-    Py_DECREF(text);
-    return plain;
-}
-
 PyObject *python_scene_text(PyObject *scene) {
     if (PyUnicode_Check(scene)) {
         Py_INCREF(scene);
@@ -97,22 +74,10 @@ PyObject *python_scene_text(PyObject *scene) {
                            (PyObject *)Py_TYPE(scene));
         return NULL;
     }
-    PyObject *json = PyImport_ImportModule("json"), *text = NULL;
-    PyObject *dumps = json ? PyObject_GetAttrString(json, "dumps") : NULL;
-    PyObject *plain = dumps ? PyCFunction_New(&plain_method, NULL) : NULL;
-    /* libyaml knows no pairs of surrogates, so characters stay themselves. */
-    PyObject *keywords = plain
-                             ? Py_BuildValue("{s:O,s:O,s:O,s:i}", "default", plain, "ensure_ascii",
-                                             Py_False, "allow_nan", Py_False, "indent", 1)
-                             : NULL;
-    PyObject *args = keywords ? PyTuple_Pack(1, scene) : NULL;
-    if (args) text = PyObject_Call(dumps, args, keywords);
-    Py_XDECREF(args);
-    Py_XDECREF(keywords);
-    Py_XDECREF(plain);
-    Py_XDECREF(dumps);
-    Py_XDECREF(json);
-    return text ? unquote_all(text) : NULL;
+    PyObject *module = PyImport_ImportModule("lariat._scene_text");
+    PyObject *text = module ? PyObject_CallMethod(module, "text_of", "Os", scene, "scene") : NULL;
+    Py_XDECREF(module);
+    return text;
 }
 
 /* ---- tools ---------------------------------------------------------------------------------- */

@@ -322,6 +322,8 @@ struct python_member_call {
     python_watch watch;
     int stop; /* atomic */
 };
+/* Whether all states can be kept; else raises which members have broken off, and why. */
+bool python_batch_sound(python_batch *self, const char *name);
 /* Takes the members, does it on all of them, frees call->members, and raises what failed first. */
 bool python_batch_run(python_batch *self, python_member_call *call);
 python_batch *python_batch_look(PyObject *me, const char *call);

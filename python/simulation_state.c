@@ -246,7 +246,9 @@ PyMethodDef python_state_methods[] = {
      "contact($self)\n--\n\ndict: touching (nodes in contact with bodies and planes), deepest [m], "
      "searches, tested."},
     {"reset", reset, METH_NOARGS,
-     "reset($self)\n--\n\nBack to the state that it was made with, tools and settings too."},
+     "reset($self)\n--\n\nBack to the state that it was made with, settings too. Added tools stay, "
+     "where "
+     "they were added;\nload() of a state has the tools that it was saved with."},
     {"save", FUNCTION(save), METH_VARARGS | METH_KEYWORDS,
      "save($self, target=None)\n--\n\nSaves the state: into a fresh Saved, which is returned; "
      "into the Saved that is given, which asks for no memory; or as a checkpoint at a path. "

@@ -66,6 +66,7 @@ class Parameter(Answer):
     lower_bound: float
     upper_bound: float
     told: bool
+    at_bound: bool
     profiled: bool
     sensitivity: float
     correlation: array[float]  # [parameters]

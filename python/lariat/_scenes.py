@@ -8,7 +8,6 @@ runs in it, so that its messages name `scene.yaml`; paths of the caller's are ma
 """
 
 import base64
-import json
 import math
 import os
 import re
@@ -18,6 +17,7 @@ import tempfile
 from urllib.parse import quote
 
 from ._lariat import ArgumentError, Meshing, Model
+from ._scene_text import text_of
 
 _HEXAHEDRON = 12  # of VTK
 _VECTORS = 'NumberOfComponents="3"'
@@ -32,25 +32,6 @@ def path_of(source, name="path"):
     if not path or "\0" in path:
         raise ArgumentError(f"{name}: expected a path, got {path!r}")
     return os.path.abspath(path)
-
-
-def _plain(value):
-    """What json does not know: numpy's scalars and arrays, paths."""
-    if hasattr(value, "tolist"):
-        return value.tolist()
-    if isinstance(value, os.PathLike):
-        return os.fspath(value)
-    raise TypeError(f"a value of {type(value)!r} is nothing that scenes have")
-
-
-def text_of(value, name):
-    """A dict as YAML. In files `all` is a word and "all" in quotes the name of a set; who writes a
-    dict means the word."""
-    try:
-        text = json.dumps(value, default=_plain, ensure_ascii=False, allow_nan=False, indent=1)
-    except ValueError as error:
-        raise ArgumentError(f"{name}: {error}") from None
-    return re.sub(r'(?<!\\)"all"(?!:)', "all", text)
 
 
 # ---- a mesh in memory ----------------------------------------------------------------------------

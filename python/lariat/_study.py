@@ -62,12 +62,13 @@ class Parameter(Answer):
     parameter = _Field("str: its name, as in scenes.")
     unit = _Field('str: of value, low, high, guess and the bounds: "Pa", "s", "".')
     value = _Field("float: with which the simulations answer best.")
-    low = _Field("float: 95 % lie from here; nan: not known, as in a fit that was interrupted.")
+    low = _Field("float: 95 % lie from here; nan: not known, as at a bound, or interrupted.")
     high = _Field("float: to here.")
     guess = _Field("float: where the fit began.")
     lower_bound = _Field("float: it is not looked for below.")
     upper_bound = _Field("float: nor above.")
-    told = _Field("bool: the data say what it is; False: from low to high everything fits.")
+    told = _Field("bool: the data say what it is; False: from low to high all fits, or at_bound.")
+    at_bound = _Field("bool: it stands at a bound and the data ask for a value beyond: widen it.")
     profiled = _Field("bool: the interval is by its profile, not by the curvature alone.")
     sensitivity = _Field("float: by how many times the noise the data change when it grows e times.")
     correlation = _Field("array of float64 [parameters]: with each of the fit, in their order.")
@@ -128,7 +129,7 @@ class Fit(Answer):
                        "None: cannot be told.")
     parameters = _Field("list of Parameter.")
     experiments = _Field("list of Experiment.")
-    notes = _Field("list of str: what cannot be told, what is no chance.")
+    notes = _Field("list of str: what stands at a bound, what cannot be told, what is no chance.")
 
     def __init__(self, fields, out=None):
         super().__init__({**fields, "parameters": [], "experiments": []})
@@ -343,7 +344,8 @@ def profiles(film, view, *, out=None):
     uncertainty [m], ... Runs the command; Ctrl-C ends it.
     """
     from ._command import ask
-    from ._scenes import Folder, path_of, text_of
+    from ._scene_text import text_of
+    from ._scenes import Folder, path_of
 
     with Folder() as folder:
         options = ["--profile", path_of(film, "film")]

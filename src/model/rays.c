@@ -183,9 +183,9 @@ static lar_status check(int32_t count, const double (*origin)[3], const double (
         bool good = true;
         for (int i = 0; i < 3; i++) {
             size = fmax(size, fabs(direction[k][i]));
-            good = good && fabs(origin[k][i]) <= 1e30 && fabs(direction[k][i]) <= 1e30;
+            good = good && fabs(origin[k][i]) <= 1e30 && isfinite(direction[k][i]);
         }
-        if (!good || size < 1e-30)
+        if (!good || size == 0)
             return lar_fail(error, LAR_ERROR_ARGUMENT,
                             "ray %ld, counted from 0, has no place or no direction: both need "
                             "three finite numbers, and those of a direction cannot all be 0",

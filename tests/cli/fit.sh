@@ -158,6 +158,26 @@ value_of parameters.0.value | awk '{ exit !($1 > 1940 && $1 < 2060) }' || fail "
 sed -i 's/,10$/,0/' known.csv
 bad 'known\.csv:3: the error is 0; it is the standard deviation' fit shear_modulus 1e3 known.csv
 
+# The truth, 2000 Pa, lies beyond a bound, however far: neither an answer nor "everything fits".
+beyond() { # LOW HIGH GUESS LARGER
+    fit shear_modulus "$3" | sed "s/bounds: .*]/bounds: [$1, $2]/" >beyond.yaml
+    expect 0 "$LARIAT" fit beyond.yaml --out beyond
+    says "shear_modulus: .* Pa, AT ITS BOUND"
+    says "shear_modulus of gel stands at its bound .* ask for a $4 value; widen that bound"
+    says ', systematic'
+    if grep -q 'fits\|another law' out; then fail "a fit: $(cat out)"; fi
+    grep -q '^# shear_modulus: STANDS AT A BOUND' beyond/gel.tissue.yaml || fail "no word in the tissue"
+    expect 0 "$LARIAT" fit beyond.yaml --json
+    for word in '"at_bound": true' '"told": false' '"low": null' '"systematic": true'; do
+        grep -q "$word" out || fail "not $word: $(cat out)"
+    done
+}
+beyond 100 1000 150 larger
+beyond 100 150 120 larger
+beyond 4000 1e5 6000 smaller
+expect 0 "$LARIAT" fit fit.yaml --json
+grep -q '"at_bound": false' out && grep -q '"told": true' out || fail "no answer: $(cat out)"
+
 # A tube, of one element: profiles, pressures and the tube's place.
 sed 's/^move.*/load: [ { faces: { plane: { point: [0, 0, 0.02], normal: [0, 0, 1] } }, pressure: -100 } ]/' \
     one.yaml | sed 's/^fix:/&\n  - { nodes: top, axes: xy }/' >tube.yaml

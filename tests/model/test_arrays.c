@@ -104,6 +104,28 @@ static void sets_and_tags_are_found_by_the_scene(void **unused) {
     lar_model_destroy(model);
 }
 
+/* The word means everything; who has a set of that name is told how to write it. */
+static void a_set_named_all_is_not_the_word(void **unused) {
+    (void)unused;
+    static const lar_array_set own[2] = {{"all", NULL, 4, left}, {"all", "elements", 2, whole}};
+    static const char *const scene[2] = {SCENE "fix: [ { nodes: all, axes: xyz } ]\n",
+                                         SCENE "fix: [ { nodes: { set: all }, axes: xyz } ]\n"};
+    lar_mesh_arrays arrays = two_cubes();
+    arrays.sets = 2;
+    arrays.set = own;
+    for (int i = 0; i < 2; i++) {
+        lar_model *model = NULL;
+        lar_model_info about;
+        if (lar_model_from_arrays(&arrays, scene[i], &model, &error)) fail_msg("%s", error.message);
+        assert_int_equal(lar_model_inspect(model, &about, &error), LAR_OK);
+        assert_int_equal(about.fixed_nodes, i ? 4 : 12);
+        assert_int_equal(lar_model_notice_count(model), i ? 0 : 1);
+        if (!i && !strstr(lar_model_notice_text(model, 0), "scene:7: all means everything here"))
+            fail_msg("%s", lar_model_notice_text(model, 0));
+        lar_model_destroy(model);
+    }
+}
+
 static void without_a_scene_it_is_soft_and_free(void **unused) {
     (void)unused;
     lar_model *model = NULL;
@@ -257,6 +279,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_a_file_says_arrays_say_too),
         cmocka_unit_test(sets_and_tags_are_found_by_the_scene),
+        cmocka_unit_test(a_set_named_all_is_not_the_word),
         cmocka_unit_test(without_a_scene_it_is_soft_and_free),
         cmocka_unit_test(directions_of_fibres_are_those_of_the_arrays),
         cmocka_unit_test(so_are_those_of_a_second_family),

@@ -173,6 +173,11 @@ class States(unittest.TestCase):
         self.assertEqual(sorted(caught.exception.members), [1, 3])
         self.assertRegex(caught.exception.members[3], "node|element|step")
         self.assertEqual(caught.exception.status, "unstable")
+        for keep in (batch.save, lambda: pickle.dumps(batch)):
+            with self.assertRaisesRegex(lariat.UnstableError, "^member 1: its state is not kept, "
+                                        "put it back with reset first: .*1 more") as caught:
+                keep()
+            self.assertEqual(sorted(caught.exception.members), [1, 3])
         alone.advance(2000)
         for i in (0, 2, 4):
             self.assertEqual(batch[i].hash(), alone.hash())
@@ -181,6 +186,8 @@ class States(unittest.TestCase):
         batch.reset([1, 3])
         batch.advance(2000, members=[3, 1])
         self.assertEqual(set(batch.hashes()), {alone.hash()})
+        self.assertEqual([saved.step for saved in batch.save()], [2000] * 5)
+        self.assertEqual(pickle.loads(pickle.dumps(batch)).hashes(), batch.hashes())
 
     def test_a_move_that_is_refused_names_the_member(self):
         batch = lariat.Batch(block(), 3)

@@ -224,6 +224,10 @@ class Misuse(unittest.TestCase):
                       {}, [[], [], [], []], object()):
             with self.assertRaises(ValueError, msg=wrong):
                 env.step(wrong)
+        with self.assertRaisesRegex(lariat.ArgumentError, r"^action\[3\]: .*finite number, got nan"):
+            env.step([0, 0, 0, float("nan")])
+        with self.assertRaisesRegex(lariat.ArgumentError, r"shape \(4,\), got \(3,\)"):
+            env.step([0] * 3)
         self.assertEqual(env.hash(), before)
         env.step([5, -5, 0, 0])  # beyond the bounds: as at them
         for seed in (-1, 1.5, "1", True, numpy.zeros(2)):

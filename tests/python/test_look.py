@@ -94,6 +94,17 @@ class Rays(unittest.TestCase):
                             many[0]["distances"].tobytes())
         self.assertEqual(model.rays([], [])["points"].shape[0], 0)
 
+    def test_directions_of_any_length(self):
+        sim = lariat.Simulation(block())
+        at, down = (0.02, 0.02, 1), sim.ray((0.02, 0.02, 1), (0, 0, -1))
+        for length in (5e-324, 1e-200, 1e-100, 1e200, 1.7e308):
+            self.assertEqual(sim.ray(at, (0, 0, -length)), down, length)
+        for k in (-600, 600):
+            self.assertEqual(sim.ray(at, (0.0, 2.0**(k - 8), -2.0**k)),
+                             sim.ray(at, (0.0, 2.0**-8, -1.0)), k)
+        with self.assertRaisesRegex(lariat.ArgumentError, "finite"):
+            sim.model.rays([at], [(0, 0, -math.inf)])
+
     def test_bodies(self):
         sim = lariat.Simulation(cube(0, "z", count=3))
         for body in range(3):

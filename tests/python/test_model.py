@@ -1,6 +1,7 @@
 """class Model: files, arrays, what it says of itself."""
 
 import array
+import math
 import os
 import pickle
 import unittest
@@ -167,10 +168,19 @@ class Arrays(unittest.TestCase):
         self.refuses(ValueError, "fibres: expected one row", fibres=[[1, 0, 0]])
         self.refuses(ValueError, "fibres2: expected one row", fibres2=[[1, 0, 0]])
         self.refuses(TypeError, "scene: expected a str", scene=5)
-        self.refuses(TypeError, "scene: a value", scene={"lariat": {1, 2}})
+        self.refuses(TypeError, "scene.lariat: a value", scene={"lariat": {1, 2}})
         self.refuses(ValueError, "scene: there is a character 0", scene="lariat: 1\0")
         self.refuses(lariat.FormatError, "gravitas", scene={**SCENE, "gravitas": 1})
-        self.refuses(ValueError, "NaN|not JSON|Out of range", scene={**SCENE, "damping": float("nan")})
+        self.refuses(lariat.ArgumentError, r"^scene\.damping: nan is not a finite number$",
+                     scene={**SCENE, "damping": float("nan")})
+        self.refuses(lariat.ArgumentError, r"^scene\.gravity\[2\]: -inf is not",
+                     scene={**SCENE, "gravity": (0, 0, -math.inf)})
+        self.refuses(lariat.ArgumentError, r"^scene\.materials\[0\]\.name: None is no value",
+                     scene={**SCENE, "materials": [{**SCENE["materials"][0], "name": None}]})
+        self.refuses(lariat.ArgumentError, r"^scene\.title: None", scene={**SCENE, "title": None})
+        endless = {**SCENE}
+        endless["sets"] = [endless]
+        self.refuses(lariat.ArgumentError, "^scene: .*recursion", scene=endless)
 
     def test_a_dict_that_changes_meanwhile(self):
         class Sly(int):

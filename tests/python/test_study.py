@@ -144,7 +144,7 @@ class Quick(unittest.TestCase):
                  lambda: lariat.fit(experiment(data={"a,b": [1]}))),
                 (lariat.ArgumentError, "no column", lambda: lariat.fit(experiment(data={}))),
                 (TypeError, "nothing that scenes", lambda: lariat.fit(experiment(noise=object()))),
-                (lariat.ArgumentError, "experiment: ",
+                (lariat.ArgumentError, r"^experiment\.experiments\[0\]\.noise: inf is not",
                  lambda: lariat.fit(experiment(noise=float("inf")))),
                 (lariat.Error, "data.csv", lambda: lariat.fit(experiment(data={"stretch": [1, 2]}))),
                 (lariat.Error, "image", lambda: lariat.profiles(

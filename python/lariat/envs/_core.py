@@ -176,9 +176,10 @@ class Core:
             actions = np.asarray(actions, np.float64)
         except (TypeError, ValueError) as error:
             raise lariat.ArgumentError(f"action: expected numbers of shape {shape}: {error}") from None
-        if actions.shape != shape or not np.isfinite(actions).all():
-            raise lariat.ArgumentError(f"action: expected finite numbers of shape {shape}, got shape "
-                                       f"{actions.shape}")
+        if actions.shape != shape:
+            raise lariat.ArgumentError(f"action: expected shape {shape}, got {actions.shape}")
+        for at in np.argwhere(~np.isfinite(actions))[:1].tolist():
+            raise lariat.ArgumentError(f"action{at}: expected a finite number, got {actions[tuple(at)]}")
         return np.minimum(np.maximum(actions, -1), 1)
 
     def step(self, actions, which):

@@ -27,6 +27,7 @@ static void write_parameters(lar_json *json, const lar_inverse_problem *problem,
         lar_json_number(json, "high", e->high);
         lar_json_boolean(json, "told", e->told);
         lar_json_boolean(json, "profiled", e->profiled);
+        lar_json_boolean(json, "at_bound", e->at_bound);
         lar_json_number(json, "sensitivity", e->sensitivity);
         lar_json_number(json, "guess", p->guess);
         lar_json_number(json, "lower_bound", p->low);
@@ -93,6 +94,8 @@ static void print_parameter(const lar_inverse_problem *problem, const lar_invers
     fprintf(out, "%-16s%s: ", p->material, p->name);
     if (r->interrupted)
         fprintf(out, "%.5g %s, the best so far\n", e->value, unit);
+    else if (e->at_bound)
+        fprintf(out, "%.5g%s%s, AT ITS BOUND: no answer yet\n", e->value, *unit ? " " : "", unit);
     else if (!e->told && e->profiled)
         fprintf(out, "cannot be told; between %.4g and %.4g %s everything fits\n", e->low, e->high,
                 unit);

@@ -254,7 +254,20 @@ static lar_status mark_selector(lar_scene *scene, const lar_yaml *node, lar_set_
 
 /* ---- what stands after nodes:, elements:, faces: and cells: -------------------------------- */
 
-static lar_status mark_all(lar_scene *scene, lar_set_kind kind, uint8_t *mark) {
+/* Nobody who names a set `all` expects the word to pass it over. */
+static lar_status notice_own_all(const lar_scene *scene, const lar_yaml *node, lar_set_kind kind) {
+    const lar_set *own = lar_mesh_find_set(&scene->model->mesh, "all", kind);
+    if (!own || (size_t)own->count == lar_scene_mark_count(scene, kind)) return LAR_OK;
+    return lar_model_notice(scene->model, scene->error,
+                            "%.300s:%d: all means everything here, and the mesh has a set of this "
+                            "name; write { set: all } for the mesh's own",
+                            scene->path, node->line);
+}
+
+static lar_status mark_all(lar_scene *scene, const lar_yaml *node, lar_set_kind kind,
+                           uint8_t *mark) {
+    lar_status status = notice_own_all(scene, node, kind);
+    if (status) return status;
     if (kind == LAR_SET_FACES) return lar_scene_mark_surface(scene, kind, mark);
     memset(mark, 1, lar_scene_mark_count(scene, kind));
     return LAR_OK;
@@ -281,7 +294,7 @@ static lar_status mark_entry(lar_scene *scene, const lar_yaml *node, lar_set_kin
     lar_status status = lar_scene_text(
         scene, node, "all, the name of a set, a number, or a selector such as {box: ...}", &name);
     if (status) return status;
-    if (!node->quoted && strcmp(name, "all") == 0) return mark_all(scene, kind, mark);
+    if (!node->quoted && strcmp(name, "all") == 0) return mark_all(scene, node, kind, mark);
     return lar_scene_mark_set(scene, node, kind, mark);
 }
 

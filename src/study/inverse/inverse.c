@@ -72,7 +72,7 @@ static void eigen(int n, double a[P][P], double v[P][P]) {
 }
 
 /* s: the root of what is left for each degree of freedom, not less than runs are exact. */
-static double deviation_of(const lar_inverse_solver *s) {
+static double deviation_of(const lar_inverse_solver *s, double squares) {
     const lar_inverse_problem *p = s->problem;
     int freedom = s->values - s->parameters;
     double exact = 0;
@@ -81,7 +81,7 @@ static double deviation_of(const lar_inverse_solver *s) {
         exact += e->values * pow(EXACT * e->largest / e->noise, 2);
     }
     if (freedom <= 0) return NAN;
-    return sqrt(fmax(s->best_squares / freedom, exact / s->values));
+    return sqrt(fmax(squares / freedom, exact / s->values));
 }
 
 /* ---- the linear picture ---------------------------------------------------------------------- */
@@ -108,42 +108,87 @@ static void note_direction(const lar_inverse_problem *p, double v[P][P], int d, 
             names, exp(fmin(width, 20)));
 }
 
-/* Covariances, intervals, correlations and the directions that are not seen. */
-static void linearise(const lar_inverse_solver *s, const double *jacobian,
+static bool near_bound(const lar_inverse_parameter *p, double u, bool high) {
+    double from = lar_inverse_u_low(p), to = lar_inverse_u_high(p);
+    return (high ? to - u : u - from) <= AT_BOUND * (to - from);
+}
+
+static void note_held_back(const lar_inverse_parameter *p, bool high, lar_inverse_result *result) {
+    lar_inverse_note(result,
+                     "%s of %s stands at its bound %.4g, and the data ask for a %s value; widen "
+                     "that bound, or look whether a unit is wrong: until then no interval and no "
+                     "other parameter of this fit can be relied on",
+                     p->name, p->material, high ? p->high : p->low, high ? "larger" : "smaller");
+}
+
+/* Estimates that stand at a bound while the data ask for a value beyond it: the squares would be
+ * least farther out than chance explains, by the step of Gauss and Newton without bounds. The
+ * deviation is that of a fit which takes this step: what is left at the bound says what the bound
+ * costs, not how well the data tell. inverse: covariances for a deviation of 1; slope: half of that
+ * of the squares. */
+static void find_held_back(const lar_inverse_solver *s, double inverse[P][P], const double *slope,
+                           lar_inverse_result *result) {
+    int n = s->parameters;
+    double step[P] = {0}, squares = s->best_squares;
+    for (int i = 0; i < n; i++) {
+        for (int j = 0; j < n; j++) step[i] -= inverse[i][j] * slope[j];
+        squares += step[i] * slope[i];
+    }
+    double t = lar_student_95(s->values - n), deviation = deviation_of(s, squares);
+    for (int i = 0; i < n; i++) {
+        const lar_inverse_parameter *p = &s->problem->parameter[i];
+        double half = t * deviation * sqrt(inverse[i][i]);
+        bool high = step[i] > 0;
+        if (!near_bound(p, s->best_u[i], high) || half >= WIDE || fabs(step[i]) <= half) continue;
+        result->estimate[i].at_bound = true;
+        result->estimate[i].low = result->estimate[i].high = NAN;
+        note_held_back(p, high, result);
+    }
+}
+
+/* Covariances, intervals, correlations and the directions that are not seen. r: what is left. */
+static void linearise(const lar_inverse_solver *s, const double *r, const double *jacobian,
                       lar_inverse_result *result) {
     static const double UNSEEN = 1e-12; /* of the largest eigenvalue: rounding */
     const lar_inverse_problem *p = s->problem;
     int n = s->parameters, m = s->values;
-    double a[P][P], v[P][P], covariance[P][P] = {{0}}, largest = 0;
-    for (int i = 0; i < n; i++)
+    double a[P][P], v[P][P], inverse[P][P] = {{0}}, slope[P] = {0}, largest = 0;
+    for (int i = 0; i < n; i++) {
         for (int j = 0; j < n; j++) {
             a[i][j] = 0;
             for (int k = 0; k < m; k++) a[i][j] += jacobian[i * m + k] * jacobian[j * m + k];
         }
+        for (int k = 0; k < m; k++) slope[i] += jacobian[i * m + k] * r[k];
+    }
     for (int j = 0; j < n; j++) result->estimate[j].sensitivity = sqrt(a[j][j]);
     eigen(n, a, v);
     for (int d = 0; d < n; d++) largest = fmax(largest, a[d][d]);
     double t = m > n ? lar_student_95(m - n) : NAN, deviation = result->deviation;
     for (int d = 0; d < n; d++) {
-        double seen = fmax(a[d][d], UNSEEN * largest + 1e-300), width = t * deviation / sqrt(seen);
+        a[d][d] = fmax(a[d][d], UNSEEN * largest + 1e-300);
         for (int i = 0; i < n; i++)
-            for (int j = 0; j < n; j++)
-                covariance[i][j] += deviation * deviation * v[i][d] * v[j][d] / seen;
-        if (width > WIDE) note_direction(p, v, d, width, result);
+            for (int j = 0; j < n; j++) inverse[i][j] += v[i][d] * v[j][d] / a[d][d];
     }
     for (int i = 0; i < n; i++) {
-        double half = t * sqrt(covariance[i][i]), u = s->best_u[i];
+        double half = t * deviation * sqrt(inverse[i][i]), u = s->best_u[i];
         lar_inverse_estimate *e = &result->estimate[i];
         const lar_inverse_parameter *own = &p->parameter[i];
         double range = lar_inverse_u_high(own) - lar_inverse_u_low(own);
         e->low = m > n ? lar_inverse_value(own, u - half) : NAN;
         e->high = m > n ? lar_inverse_value(own, u + half) : NAN;
-        e->told = half < fmin(WIDE, 0.25 * range) &&
-                  u - lar_inverse_u_low(own) > AT_BOUND * range &&
-                  lar_inverse_u_high(own) - u > AT_BOUND * range;
+        e->told = half < fmin(WIDE, 0.25 * range) && !near_bound(own, u, false) &&
+                  !near_bound(own, u, true);
         for (int j = 0; j < n; j++)
-            result->correlation[i][j] =
-                i == j ? 1 : covariance[i][j] / sqrt(covariance[i][i] * covariance[j][j]);
+            result->correlation[i][j] = i == j ? 1
+                                        : m <= n
+                                            ? NAN
+                                            : inverse[i][j] / sqrt(inverse[i][i] * inverse[j][j]);
+    }
+    if (m <= n) return;
+    find_held_back(s, inverse, slope, result);
+    for (int d = 0; d < n && !lar_inverse_at_bound(result); d++) {
+        double width = t * deviation / sqrt(a[d][d]);
+        if (width > WIDE) note_direction(p, v, d, width, result);
     }
 }
 
@@ -160,23 +205,25 @@ static void note_open(const lar_inverse_parameter *p, const lar_inverse_estimate
     else if (high)
         lar_inverse_note(result,
                          "%s of %s cannot be told from these data: everything from %.4g up to its "
-                         "bound %.4g fits as well",
+                         "bound %.4g fits as well; widen that bound",
                          p->name, p->material, e->low, p->high);
     else if (low)
         lar_inverse_note(
             result,
             "%s of %s cannot be told from these data: everything from its bound %.4g up "
-            "to %.4g fits as well",
+            "to %.4g fits as well; widen that bound",
             p->name, p->material, p->low, e->high);
 }
 
-/* Parameters whose interval is wide or ends at a bound. */
+/* Parameters whose interval is wide or ends at a bound. While one is held back by its bound the
+ * squares are large wherever the others are, and a profile would say that everything fits. */
 static lar_status profile_suspects(const lar_inverse_solver *s, lar_inverse_result *result) {
     const lar_inverse_problem *p = s->problem;
     int freedom = s->values - s->parameters;
     if (freedom <= 0) return LAR_OK;
     double grown = lar_student_95(freedom) * result->deviation;
     lar_status status = LAR_OK;
+    if (lar_inverse_at_bound(result)) return LAR_OK;
     for (int j = 0; j < s->parameters && !status && !lar_inverse_stopped(s); j++) {
         lar_inverse_estimate *e = &result->estimate[j];
         bool low, high;
@@ -273,8 +320,8 @@ static lar_status know(lar_inverse_solver *s, lar_inverse_result *result) {
         r && jacobian ? lar_inverse_evaluate(s, u, r) : lar_fail_memory(s->error, values, "a fit");
     if (!status) status = lar_inverse_differentiate(s, u, r, jacobian);
     if (!status) {
-        result->deviation = deviation_of(s);
-        linearise(s, jacobian, result);
+        result->deviation = deviation_of(s, s->best_squares);
+        linearise(s, r, jacobian, result);
         status = profile_suspects(s, result);
     }
     free(r);

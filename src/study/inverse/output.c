@@ -45,6 +45,11 @@ static void write_provenance(FILE *out, const lar_inverse_problem *p, const lar_
         if (e->told && isfinite(e->low))
             fprintf(out, "# %s: fitted, 95 %% between %.4g and %.4g.\n", p->parameter[j].name,
                     e->low, e->high);
+        else if (e->at_bound)
+            fprintf(out,
+                    "# %s: STANDS AT A BOUND of the fit; the data ask for a value beyond, so "
+                    "rely on none of these.\n",
+                    p->parameter[j].name);
         else
             fprintf(out, "# %s: CANNOT BE TOLD from these data; the value is one of many.\n",
                     p->parameter[j].name);

@@ -4,7 +4,10 @@
 
 /* Residuals of less than this, of the largest measured number, are the mesh's or the run's. */
 static const double TINY = 5e-4;
-enum { ENOUGH = 8 }; /* values that chance can be told in */
+enum {
+    ENOUGH = 8, /* values that chance can be told in */
+    A_FEW = 3   /* where all are off to one side by more than the noise */
+};
 
 static void test_runs(lar_inverse_residuals *r, const double *left, int n) {
     double up = 0, down = 0;
@@ -45,20 +48,31 @@ static double mean_at(const lar_inverse_experiment *e, const double *left, bool 
     return count ? sum / count : 0;
 }
 
+/* Whether the model lies on one side of all that was measured, by more than the noise. */
+static bool one_sided(const lar_inverse_experiment *e, const double *left) {
+    for (int32_t i = 0; i < e->values; i++) {
+        double noise = e->error ? e->error[i] : e->noise;
+        if (fabs(left[i]) <= noise || (left[i] > 0) != (left[0] > 0)) return false;
+    }
+    return e->values >= A_FEW;
+}
+
 static void note_shape(const lar_inverse_experiment *e, const lar_inverse_residuals *r,
                        const double *left, lar_inverse_result *result) {
     const char *at = "";
-    bool curve = e->kind <= LAR_INVERSE_INDENTATION && e->along;
+    bool bound = lar_inverse_at_bound(result); /* then that is why, and said already */
+    bool curve = !bound && e->kind <= LAR_INVERSE_INDENTATION && e->along;
     double large = curve ? mean_at(e, left, true) : 0, sign = 0;
     for (int32_t i = 0; curve && i < e->rows; i++) sign += e->measured[i];
     if (sign < 0) large = -large;
     if (curve && large > 0.3 * r->rms) at = "; the law is too soft at large strain";
     if (curve && large < -0.3 * r->rms) at = "; the law is too stiff at large strain";
+    const char *advice =
+        r->relative > 0.01 && !bound ? ": try another law, or look at mesh and supports" : "";
     lar_inverse_note(result,
                      "%s: what is left is no chance (%d changes of sign in %d values, neighbours "
                      "correlate by %.2f), %.2g %% of the largest measured%s%s",
-                     e->name, r->runs - 1, (int)e->values, r->lag, 100 * r->relative, at,
-                     r->relative > 0.01 ? ": try another law, or look at mesh and supports" : "");
+                     e->name, r->runs - 1, (int)e->values, r->lag, 100 * r->relative, at, advice);
 }
 
 void lar_inverse_look_at_residuals(const lar_inverse_problem *problem, lar_inverse_result *result) {
@@ -76,8 +90,9 @@ void lar_inverse_look_at_residuals(const lar_inverse_problem *problem, lar_inver
         r->relative = r->rms / e->largest;
         r->lag = lag_of(model, n);
         test_runs(r, model, n);
-        r->systematic = e->kind < LAR_INVERSE_MARKERS && n >= ENOUGH && r->relative > TINY &&
-                        (r->runs_z < -1.96 || r->lag > 2 / sqrt(n));
+        r->systematic =
+            e->kind < LAR_INVERSE_MARKERS && r->relative > TINY &&
+            (one_sided(e, model) || (n >= ENOUGH && (r->runs_z < -1.96 || r->lag > 2 / sqrt(n))));
         if (r->systematic) note_shape(e, r, model, result);
         for (int i = 0; i < n; i++) model[i] = e->measured[i] - model[i];
     }

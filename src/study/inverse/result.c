@@ -4,6 +4,12 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+bool lar_inverse_at_bound(const lar_inverse_result *result) {
+    for (int j = 0; j < result->parameters; j++)
+        if (result->estimate[j].at_bound) return true;
+    return false;
+}
+
 void lar_inverse_note(lar_inverse_result *result, const char *format, ...) {
     if (result->notes == LAR_INVERSE_NOTES_MAX) return;
     va_list args;

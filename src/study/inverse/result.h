@@ -12,6 +12,7 @@ typedef struct lar_inverse_estimate {
     double low, high;   /* 95 %; NAN: there is no interval */
     bool told;          /* whether the data say what it is */
     bool profiled;      /* the interval is of a profile */
+    bool at_bound;      /* stands at a bound, and the data ask for more: told is false */
     double sensitivity; /* length of its column of J: how many standard deviations of noise the
                            data change when it changes e times */
 } lar_inverse_estimate;
@@ -38,6 +39,9 @@ typedef struct lar_inverse_result {
 } lar_inverse_result;
 
 void lar_inverse_result_clear(lar_inverse_result *result); /* idempotent */
+
+/* Whether an estimate is held back by its bound: then the others lean on a wrong one. */
+bool lar_inverse_at_bound(const lar_inverse_result *result);
 
 /* printf-style; what does not fit is left out. */
 void lar_inverse_note(lar_inverse_result *result, const char *format, ...)
