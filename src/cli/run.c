@@ -42,6 +42,7 @@ typedef struct run {
     uint64_t first_step, last_step; /* where the run begins and ends */
     bool follows;       /* the run goes on until it is at rest, at most to its last step */
     lar_rest rest;      /* then */
+    lar_energy began;   /* before the first step */
     double interval;    /* between frames [s], 0: only the end */
     int64_t next_frame; /* number of the next one, in intervals */
     uint64_t framed;    /* the step of the latest frame, UINT64_MAX: none */
@@ -211,6 +212,7 @@ static run_report report_of(const run *r) {
                         .frames = r->frames,
                         .rest = r->follows ? &r->rest : NULL,
                         .simulation = r->simulation,
+                        .began = r->began,
                         .clock = &r->clock,
                         .elapsed = r->elapsed,
                         .info = r->info};
@@ -391,6 +393,7 @@ static int compute(run *r) {
     lar_error error;
     if (r->settings.resume && lar_simulation_load(r->simulation, r->settings.resume, &error))
         return fail_by(r, &error);
+    lar_simulation_energy(r->simulation, &r->began);
     if (r->settings.save && check_save(r)) return CLI_FAILED;
     int status = choose_length(r);
     cli_catch_stop(); /* from here on there are results to end with */

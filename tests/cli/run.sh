@@ -123,6 +123,21 @@ has_keys --numbers deadline_misses
 [ "$(value_of realtime)" = true ] || fail "realtime"
 value_of wall_time | awk '{ exit !($1 >= 0.0499) }' || fail "paced in $(value_of wall_time) s"
 
+# A node that is hit faster than the step can follow: the account says so, and a smaller step closes it.
+cp "$SOURCE/examples/beam.vtk" "$SCRATCH/"
+cat >"$SCRATCH/hit.yaml" <<'END'
+lariat: 1
+mesh: beam.vtk
+duration: 0.2
+materials: [{ cells: all, law: neo-hookean, density: 1000, shear_modulus: 2.0e3, bulk_modulus: 4.0e4 }]
+fix: [{ nodes: { plane: { point: [0, 0, 0], normal: [1, 0, 0] } }, axes: xyz }]
+load: [{ nodes: { nearest: [1, 0, 0] }, force: [0, 0, 0.12] }]
+END
+expect 0 "$LARIAT" run "$SCRATCH/hit.yaml"
+says '^account  *OPEN by .* --time-step 0.0002'
+expect 0 "$LARIAT" run "$SCRATCH/hit.yaml" --time-step 2e-5
+! grep -q '^account' "$SCRATCH/out" || fail "$(grep '^account' "$SCRATCH/out")"
+
 # A table for people.
 expect 0 "$LARIAT" run "$scene" --steps 10
 says '^state hash  *[0-9a-f]'

@@ -210,6 +210,25 @@ static void print_rest(const run_report *report, FILE *out) {
     fputc('\n', out);
 }
 
+static double terms_of(const lar_energy *e) {
+    return e->kinetic + e->strain + e->hourglass + e->damping + e->contact + e->viscous;
+}
+
+/* A step that was too long for what happened shows in the account before it shows anywhere else. */
+static void print_open_account(const run_report *report, const lar_energy *now, FILE *out) {
+    static const double SMALL = 0.01;
+    const lar_energy *began = &report->began;
+    double terms = terms_of(now), open = terms - now->external;
+    double all = fmax(fabs(terms), fabs(now->external));
+    open -= terms_of(began) - began->external;
+    if (!(fabs(open) > SMALL * all)) return;
+    fprintf(out,
+            "%-17sOPEN by %.2g J, %.2g %% of what is in it: something was faster than the steps; "
+            "slower loads or --time-step %.1g close it\n",
+            "account", open, 100 * fabs(open) / all,
+            0.25 * lar_simulation_time_step(report->simulation));
+}
+
 static void print_body(const run_report *report, FILE *out) {
     lar_energy energy;
     lar_simulation_energy(report->simulation, &energy);
@@ -218,6 +237,7 @@ static void print_body(const run_report *report, FILE *out) {
     if (energy.contact != 0) fprintf(out, ", contact %.4g", energy.contact);
     if (energy.viscous != 0) fprintf(out, ", viscous %.4g", energy.viscous);
     fprintf(out, "; external %.4g\n", energy.external);
+    print_open_account(report, &energy, out);
     print_contact(report->simulation, out);
     print_tools(report->simulation, out);
     print_parts(report->simulation, out);

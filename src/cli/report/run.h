@@ -20,6 +20,7 @@ typedef struct run_report {
     int frames;
     const lar_rest *rest; /* NULL: the run was not to end at rest */
     const lar_simulation *simulation;
+    lar_energy began; /* as it was before the first step */
     const lar_step_clock *clock;
     double elapsed; /* wall time from the first step to the last, frames included [s] */
 } run_report;
