@@ -18,12 +18,14 @@ TEST_UNUSED static int twin_needs_cminpack(void **state) {
     exit(77);
 }
 
-/* A file below the build folder. */
+/* A file of this program below the build folder: programs of tests run at the same time. */
 TEST_UNUSED static const char *twin_path(const char *name) {
     static char path[8][512];
     static int next;
+    const char *slash = strrchr(__BASE_FILE__, '/'), *program = slash ? slash + 1 : __BASE_FILE__;
     next = (next + 1) % 8;
-    snprintf(path[next], sizeof path[next], "%s/fit_%s", LAR_TEST_BUILD, name);
+    snprintf(path[next], sizeof path[next], "%s/%.*s_%s", LAR_TEST_BUILD,
+             (int)strcspn(program, "."), program, name);
     return path[next];
 }
 
