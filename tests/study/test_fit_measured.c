@@ -84,7 +84,7 @@ static void write_scan(const char *path, const char *name) {
     assert_true(in && out);
     fputs("x,y,z\n", out);
     while (fgets(line, sizeof line, in))
-        if (sscanf(line, "v %63s %63s %63s", x[0], x[1], x[2]) == 3)
+        if (line[1] == ' ' && sscanf(line, "v %63s %63s %63s", x[0], x[1], x[2]) == 3)
             fprintf(out, "%s,%s,%s\n", x[0], x[1], x[2]);
     fclose(in);
     assert_int_equal(fclose(out), 0);
