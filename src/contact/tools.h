@@ -52,7 +52,7 @@ typedef struct lar_tool_felt {
  * it is. Every number of parts divides them. */
 enum { LAR_STEP_SHARES = 96 };
 
-enum { LAR_UNTOUCHED_MAX = 1000 };
+enum { LAR_UNTOUCHED_LONG = INT16_MAX };
 
 /* How steps are divided, for a while, where elements are strained or tools press hard. */
 typedef struct lar_step_division {
@@ -65,8 +65,8 @@ typedef struct lar_step_division {
     uint64_t decided;  /* the step when it was decided last */
     int32_t base;      /* parts that stiffer materials (settings.h) take at least, a power of two */
     int16_t due;       /* to be decided before the next step, wherever an interval begins */
-    int16_t untouched; /* for how long no tool has felt anything, in tenths of a millisecond, up to
-                          LAR_UNTOUCHED_MAX; 0 where bodies touch each other */
+    int16_t untouched; /* for how many steps no tool has felt anything, LAR_UNTOUCHED_LONG after a
+                          tenth of a second; 0 where something else may press */
 } lar_step_division;
 
 /* An element that is strained, and may move with more mass for that (step/mass/heavier.h). */
@@ -115,7 +115,7 @@ static inline bool lar_division_is_close(const lar_step_division *division) {
  * needed. They go, for one that a corner was pushed around would hold it there for good, and
  * without it hourglass forces bring the corner home. */
 static inline bool lar_division_lets_go(const lar_step_division *division) {
-    return division->untouched == LAR_UNTOUCHED_MAX;
+    return division->untouched == LAR_UNTOUCHED_LONG;
 }
 
 /* The hand of a tool, and how far the tool is from following it. */

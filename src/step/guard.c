@@ -199,8 +199,12 @@ static bool apply(const lar_domain *domain, lar_gid e, lar_damped *damped, lar_s
     lar_hex8_guard_force((const double(*)[3])rest, (const double(*)[3])now, (const double(*)[3])v,
                          lar_domain_material(domain, e), lead, force, &guard);
     if (!(guard.min < LAR_GUARD_START)) return false;
-    double part = state->lets_go ? 0 : soften(domain, e, guard.stiffness, step, mean, force);
-    if (part > 0) add(domain, e, (const double(*)[3])force, state);
+    if (state->lets_go) {
+        if (damped) *damped = (lar_damped){.element = e, .step = (float)step, .gone = true};
+        return true;
+    }
+    double part = soften(domain, e, guard.stiffness, step, mean, force);
+    add(domain, e, (const double(*)[3])force, state);
     if (!damped) return true;
     *damped = (lar_damped){.element = e, .step = (float)step, .half_mean = (float)(0.5 * mean)};
     for (int a = 0; a < 8; a++) {
@@ -212,6 +216,16 @@ static bool apply(const lar_domain *domain, lar_gid e, lar_damped *damped, lar_s
     return true;
 }
 
+/* Energies count barriers, there or not: what those of an element that are gone would have had done
+ * on them in a step comes from outside. */
+static void add_difference(const lar_material *material, const double rest[8][3],
+                           const double then[8][3], const double now[8][3], lar_state *state) {
+    lar_guard before, after;
+    lar_hex8_guard(rest, then, material, &before);
+    lar_hex8_guard(rest, now, material, &after);
+    state->external += after.energy - before.energy;
+}
+
 /* The other half of the work of what damped run r in the step before, now that its nodes have
  * moved. Corners that swing from step to step would be said to lose more than they do by the
  * velocities before it alone. */
@@ -219,13 +233,18 @@ static void finish_damping(const lar_domain *domain, int32_t r, lar_state *state
     lar_strained *strained = state->strained;
     const lar_damped *damped = strained->damped + LAR_BLOCK * (size_t)domain->run_first[r];
     for (int32_t i = 0; i < strained->damped_count[r] && state->listed; i++) {
-        double rest[8][3], then[8][3], v[8][3];
-        corners_of(domain, state, damped[i].element, rest, then);
+        double rest[8][3], now[8][3], then[8][3], v[8][3];
+        corners_of(domain, state, damped[i].element, rest, now);
+        memcpy(then, now, sizeof then);
         lar_domain_corners(domain, state->v, damped[i].element, v);
         for (int a = 0; a < 8; a++)
             for (int k = 0; k < 3; k++) then[a][k] -= (double)damped[i].step * v[a][k];
-        add_half_work((const double(*)[3])rest, (const double(*)[3])then, (const double(*)[3])v,
-                      &damped[i], state);
+        if (damped[i].gone)
+            add_difference(lar_domain_material(domain, damped[i].element), (const double(*)[3])rest,
+                           (const double(*)[3])then, (const double(*)[3])now, state);
+        else
+            add_half_work((const double(*)[3])rest, (const double(*)[3])then, (const double(*)[3])v,
+                          &damped[i], state);
     }
     strained->damped_count[r] = 0;
 }

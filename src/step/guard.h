@@ -19,6 +19,7 @@ typedef struct lar_damped {
     float half_mean; /* of the time that the force acted [s] */
     float damper[8]; /* of each corner: what takes energy [J] */
     float lack[8];   /* what a softened barrier lacks [J] */
+    bool gone;       /* there were no barriers */
 } lar_damped;
 
 /* The strained elements of a domain's runs, beside the state: each run has the places of its

@@ -95,20 +95,21 @@ static bool bears(const lar_domain *whole, const lar_tools *tools, const lar_ste
     return whole->burden && lar_heavier_bears(whole, &tools->strained, max - springs);
 }
 
-/* How long nothing has been touched, after `seconds` more. */
+/* For how many steps nothing has been touched, after `seconds` more. */
 static int16_t untouched_now(const lar_domain *whole, const lar_tools *tools, double seconds) {
-    static const double UNIT = 1e-4; /* [s] */
+    static const double LONG = 0.1; /* [s] */
     const lar_model *model = whole->model;
-    bool touched = model->contact_count > 0 || model->move_count > 0 || model->load_count > 0 ||
-                   model->pressure_count > 0 || tools->grasp_count > 0 || tools->forces.count > 0 ||
-                   tools->supports.count > 0;
+    bool touched = tools->count == 0 || lar_model_active(model) || model->contact_count > 0 ||
+                   model->move_count > 0 || model->load_count > 0 || model->pressure_count > 0 ||
+                   tools->grasp_count > 0 || tools->forces.count > 0 || tools->supports.count > 0;
     for (int32_t t = 0; t < tools->count; t++) {
         const lar_tool_felt *felt = &tools->follower[t].felt;
         touched = touched || felt->depth > 0;
         for (int k = 0; k < 3; k++) touched = touched || felt->force[k] != 0;
     }
-    if (touched) return 0;
-    return (int16_t)fmin(LAR_UNTOUCHED_MAX, tools->division.untouched + ceil(seconds / UNIT));
+    double steps = tools->division.untouched + round(seconds / whole->time_step);
+    bool over = steps * whole->time_step >= LONG || !(steps < LAR_UNTOUCHED_LONG);
+    return touched ? 0 : over ? LAR_UNTOUCHED_LONG : (int16_t)steps;
 }
 
 bool lar_interval_divide(const lar_domain *whole, uint64_t step, double seconds, lar_tools *tools) {

@@ -7,7 +7,10 @@
 #include "engine/fleet_test.h"
 #include "engine/tools_test.h"
 
-#define PATH LAR_TEST_BUILD "/divided.checkpoint"
+/* Two tests run this program, at the same time. */
+#define PATH                                                                                       \
+    (strained_share > 0 ? LAR_TEST_BUILD "/divided_heavier.checkpoint"                             \
+                        : LAR_TEST_BUILD "/divided.checkpoint")
 
 /* 3 x 3 x 1.5 cm, nearly incompressible, as an organ is: intervals of several steps. */
 static const brick organ_brick = {{10, 10, 5}, 0.003, 0.1, LAR_LAW_neo_hookean, 5e3, 3e5, 1000};

@@ -4,7 +4,7 @@
 #include "session/session_test.h"
 
 #define PATH  LAR_TEST_BUILD "/tools.recording"
-#define STATE LAR_TEST_BUILD "/tools.checkpoint"
+#define STATE LAR_TEST_BUILD "/session_tools.checkpoint"
 
 enum { FIRST = TOOLS, SPARES = 2 };
 
