@@ -84,7 +84,7 @@ static void tell(const lar_inverse_solver *s) {
     int left = ROUNDS - s->rounds;
     const lar_inverse_progress progress = {
         .doing = s->doing,
-        .runs = s->runs,
+        .runs = s->before + s->runs,
         .residual = sqrt(s->best_squares / s->values),
         .remaining = s->rounds > 0 ? s->round * (left > 1 ? left : 1) : -1};
     s->options.progress(s->options.context, &progress);

@@ -36,6 +36,7 @@ typedef struct lar_inverse_solver {
     lar_inverse_options options;
     int values, parameters;
     int runs, rounds;    /* simulations; evaluations with derivatives */
+    int before;          /* simulations of the same fit by others, for who is told */
     double begin, round; /* clock at the start [s]; seconds of the last round */
     const char *doing;
     double *best_model; /* [values] */
