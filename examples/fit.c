@@ -13,7 +13,7 @@ static int look(void *context, const lar_fit_progress *progress) {
 }
 
 static void print_parameter(const lar_fit_parameter_info *p) {
-    printf("%s %s: %.5g %s, ", p->material, p->name, p->value, p->unit);
+    printf("%s %s: %.5g%s%s, ", p->material, p->name, p->value, *p->unit ? " " : "", p->unit);
     if (p->at_bound)
         printf("at its bound: no answer yet\n");
     else if (p->told)
