@@ -85,8 +85,9 @@ if(LARIAT_HAVE_CMINPACK)
   endif()
   install(FILES include/lariat_fit.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 else() # those of an earlier configuration
-  file(GLOB old ${PROJECT_BINARY_DIR}/liblariat-fit.*)
-  file(REMOVE ${old})
+  foreach(old .a .so .so.0 .so.${PROJECT_VERSION})
+    file(REMOVE ${PROJECT_BINARY_DIR}/liblariat-fit${old})
+  endforeach()
 endif()
 
 install(TARGETS ${LARIAT_LIBRARIES} EXPORT LariatTargets
