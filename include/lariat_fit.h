@@ -108,6 +108,8 @@ typedef struct lar_fit_parameter_info {
                                                anew for each of its ends */
     int32_t at_bound;                       /* it stands at a bound, and the data ask for a value
                                                beyond: told is 0, widen the bound and fit again */
+    int32_t given_bound;                    /* another one does: the interval is for that bound
+                                               as a known number */
     double sensitivity;                     /* by how many standard deviations of the noise the data
                                                change when it changes e times; 0: not known */
 } lar_fit_parameter_info;

@@ -18,10 +18,11 @@ static void print_parameter(const lar_inverse_problem *problem, const lar_invers
         fprintf(out, "cannot be told; between %.4g and %.4g %s everything fits\n", e->low, e->high,
                 unit);
     else if (isnan(e->low))
-        fprintf(out, "%.5g %s\n", e->value, unit);
+        fprintf(out, "%.5g%s%s, no interval\n", e->value, *unit ? " " : "", unit);
     else
-        fprintf(out, "%.5g%s%s, 95 %% between %.5g and %.5g%s\n", e->value, *unit ? " " : "", unit,
-                e->low, e->high, e->profiled ? " (by its profile)" : "");
+        fprintf(out, "%.5g%s%s, 95 %% between %.5g and %.5g%s%s\n", e->value, *unit ? " " : "",
+                unit, e->low, e->high, e->profiled ? " (by its profile)" : "",
+                e->given_bound ? " (given what stands at its bound)" : "");
 }
 
 static void print_correlations(const lar_inverse_problem *problem, const lar_inverse_result *r,

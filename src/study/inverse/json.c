@@ -19,6 +19,7 @@ static void write_parameters(lar_json *json, const lar_inverse_problem *problem,
         lar_json_boolean(json, "told", e->told);
         lar_json_boolean(json, "profiled", e->profiled);
         lar_json_boolean(json, "at_bound", e->at_bound);
+        lar_json_boolean(json, "given_bound", e->given_bound);
         lar_json_number(json, "sensitivity", e->sensitivity);
         lar_json_number(json, "guess", p->guess);
         lar_json_number(json, "lower_bound", p->low);

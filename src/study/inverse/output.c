@@ -26,6 +26,25 @@ static void plain(const char *text, char *to, size_t size) {
     to[n] = '\0';
 }
 
+static void write_how_well(FILE *out, const char *name, const lar_inverse_estimate *e,
+                           const lar_inverse_result *r) {
+    if (e->told && isfinite(e->low))
+        fprintf(out, "# %s: fitted, 95 %% between %.4g and %.4g%s.\n", name, e->low, e->high,
+                e->given_bound ? ", given what stands at its bound" : "");
+    else if (e->at_bound)
+        fprintf(out,
+                "# %s: STANDS AT A BOUND of the fit; the data ask for a value beyond, so rely on "
+                "none of these.\n",
+                name);
+    else if (r->interrupted)
+        fprintf(out, "# %s: the best so far, without an interval.\n", name);
+    else if (isnan(r->deviation))
+        fprintf(out, "# %s: as many parameters as measured numbers, so HOW WELL IS NOT KNOWN.\n",
+                name);
+    else
+        fprintf(out, "# %s: CANNOT BE TOLD from these data; the value is one of many.\n", name);
+}
+
 static void write_provenance(FILE *out, const lar_inverse_problem *p, const lar_inverse_result *r,
                              const char *material) {
     char text[256], date[32] = "";
@@ -41,21 +60,9 @@ static void write_provenance(FILE *out, const lar_inverse_problem *p, const lar_
                 lar_inverse_kind_name[p->experiment[k].kind], text, (int)p->experiment[k].values,
                 100 * r->residuals[k].relative);
     }
-    for (int j = 0; j < p->parameters; j++) {
-        const lar_inverse_estimate *e = &r->estimate[j];
-        if (strcmp(p->parameter[j].material, material) != 0) continue;
-        if (e->told && isfinite(e->low))
-            fprintf(out, "# %s: fitted, 95 %% between %.4g and %.4g.\n", p->parameter[j].name,
-                    e->low, e->high);
-        else if (e->at_bound)
-            fprintf(out,
-                    "# %s: STANDS AT A BOUND of the fit; the data ask for a value beyond, so "
-                    "rely on none of these.\n",
-                    p->parameter[j].name);
-        else
-            fprintf(out, "# %s: CANNOT BE TOLD from these data; the value is one of many.\n",
-                    p->parameter[j].name);
-    }
+    for (int j = 0; j < p->parameters; j++)
+        if (strcmp(p->parameter[j].material, material) == 0)
+            write_how_well(out, p->parameter[j].name, &r->estimate[j], r);
     fprintf(out, "# All else is as the scenes of the fit have it.\n");
 }
 

@@ -227,6 +227,7 @@ lar_status lar_fit_parameter_sized(const lar_fit *fit, int32_t index, lar_fit_pa
         all.told = e->told;
         all.profiled = e->profiled;
         all.at_bound = e->at_bound;
+        all.given_bound = e->given_bound;
         all.sensitivity = e->sensitivity;
     }
     give(info, size, &all, sizeof all);
