@@ -6,10 +6,10 @@
  *       lar_calloc(...)  ------------------------>      &lar_calloc, &lar_scene_fail, ... }
  *
  * A fit needs the reader's words for a YAML file, a model whose materials it may change, forces of
- * supports. With the engine once more inside, that library would have memory functions of its own and
- * be ten times as large; functions that are exported one by one would look as if they were promised.
- * Both libraries are of one build: lar_fit_open compares version and sizes, since structs are shared.
- * No other program may use this.
+ * supports. With the engine once more inside, that library would have memory functions of its own
+ * and be ten times as large; functions that are exported one by one would look as if they were
+ * promised. Both libraries are of one build: lar_fit_open compares version and sizes, since structs
+ * are shared. No other program may use this.
  */
 #ifndef LAR_SIMULATION_LENT_H
 #define LAR_SIMULATION_LENT_H

@@ -16,9 +16,8 @@ lar_status lar_inverse_write_svg(const char *path, const lar_inverse_problem *pr
                                  const lar_inverse_result *result, int k, lar_error *error);
 
 /* All that `lariat fit --out` leaves in a folder, which is made where it is missing:
- * MATERIAL.tissue.yaml of each material, K_NAME.svg of each experiment and fit.json. Names of files
- * have letters, digits,
- * - and _. */
+ * MATERIAL.tissue.yaml of each material, K_NAME.svg of each experiment and fit.json. What is no
+ * letter or digit in a name, and no hyphen, is _ in that of the file. */
 lar_status lar_inverse_write_folder(const char *folder, const lar_inverse_problem *problem,
                                     const lar_inverse_result *result, lar_error *error);
 
