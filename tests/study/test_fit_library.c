@@ -194,6 +194,23 @@ static void parameters_are_told(void **state) {
     lar_fit_destroy(fit);
 }
 
+/* The truth, 2000 Pa, lies beyond a bound, and both parameters say it. */
+static void a_bound_is_told(void **state) {
+    (void)state;
+    char text[sizeof TWO + 1];
+    lar_error error = {0};
+    lar_fit *fit = NULL;
+    strcpy(text, TWO);
+    memcpy(strstr(text, "1.0e5]"), "1.6e3]", 6);
+    if (lar_fit_from_text(text, FOLDER, &fit, &error)) fail_msg("%s", error.message);
+    run_one(fit, NULL);
+    lar_fit_parameter_info shear = parameter(fit, 0), bulk = parameter(fit, 1);
+    assert_true(shear.at_bound && !shear.told && !shear.given_bound && isnan(shear.low));
+    assert_true(!bulk.at_bound && bulk.given_bound);
+    assert_true(inspected(fit).notes > 0);
+    lar_fit_destroy(fit);
+}
+
 /* To the last bit, from a file and from its text. */
 static void workers_change_nothing(void **state) {
     (void)state;
@@ -424,6 +441,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(before_it_runs_the_file_is_told),
         cmocka_unit_test(parameters_are_told),
+        cmocka_unit_test(a_bound_is_told),
         cmocka_unit_test(workers_change_nothing),
         cmocka_unit_test(files_are_those_of_the_command),
         cmocka_unit_test(a_callback_stops_with_the_best_so_far),

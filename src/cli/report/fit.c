@@ -17,6 +17,8 @@ static void print_parameter(const lar_inverse_problem *problem, const lar_invers
     else if (!e->told && e->profiled)
         fprintf(out, "cannot be told; between %.4g and %.4g %s everything fits\n", e->low, e->high,
                 unit);
+    else if (!e->told && e->given_bound)
+        fprintf(out, "cannot be told while another one stands at its bound\n");
     else if (isnan(e->low))
         fprintf(out, "%.5g%s%s, no interval\n", e->value, *unit ? " " : "", unit);
     else
