@@ -52,6 +52,8 @@ typedef struct lar_tool_felt {
  * it is. Every number of parts divides them. */
 enum { LAR_STEP_SHARES = 96 };
 
+enum { LAR_UNTOUCHED_MAX = 1000 };
+
 /* How steps are divided, for a while, where elements are strained or tools press hard. */
 typedef struct lar_step_division {
     int32_t parts;   /* of a step: 1, 2, 3, 4, 6, 8, 12, ... (lar_more_parts) */
@@ -60,9 +62,11 @@ typedef struct lar_step_division {
     double hardness; /* how many times as stiff tools are as at rest, at most parts^2 */
     double need;   /* of the last interval: (omega dt / 2)^2 of the fastest element, dt undivided */
     double lately; /* the largest `need`, fading */
-    uint64_t decided; /* the step when it was decided last */
-    int32_t base;     /* parts that stiffer materials (settings.h) take at least, a power of two */
-    int32_t due;      /* to be decided before the next step, wherever an interval begins */
+    uint64_t decided;  /* the step when it was decided last */
+    int32_t base;      /* parts that stiffer materials (settings.h) take at least, a power of two */
+    int16_t due;       /* to be decided before the next step, wherever an interval begins */
+    int16_t untouched; /* for how long no tool has felt anything, in tenths of a millisecond, up to
+                          LAR_UNTOUCHED_MAX; 0 where bodies touch each other */
 } lar_step_division;
 
 /* An element that is strained, and may move with more mass for that (step/mass/heavier.h). */
@@ -105,6 +109,13 @@ static inline double lar_division_need(const lar_step_division *division) {
  * for it. */
 static inline bool lar_division_is_close(const lar_step_division *division) {
     return lar_division_need(division) > 0.7;
+}
+
+/* Nothing presses on the body any more, so barriers of corners (mechanics/hex8_guard.h) are not
+ * needed. They go, for one that a corner was pushed around would hold it there for good, and
+ * without it hourglass forces bring the corner home. */
+static inline bool lar_division_lets_go(const lar_step_division *division) {
+    return division->untouched == LAR_UNTOUCHED_MAX;
 }
 
 /* The hand of a tool, and how far the tool is from following it. */

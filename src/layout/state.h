@@ -63,6 +63,7 @@ typedef struct lar_state {
     double fastest;  /* largest velocity of an axis of the nodes moved last [m/s]; no state */
     double need;     /* of the elements looked at in this stretch of steps: see lar_step_division */
     bool close;      /* they are looked at in this step: lar_division_is_close */
+    bool lets_go;    /* corners have no barriers: lar_division_lets_go; no state */
     bool listed;     /* the strained elements are listed; false: they are looked for anew */
     double past;     /* since the forces before [s], as the step was entered; no state */
     lar_strained *strained; /* the list, lent; no state */

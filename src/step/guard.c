@@ -199,8 +199,8 @@ static bool apply(const lar_domain *domain, lar_gid e, lar_damped *damped, lar_s
     lar_hex8_guard_force((const double(*)[3])rest, (const double(*)[3])now, (const double(*)[3])v,
                          lar_domain_material(domain, e), lead, force, &guard);
     if (!(guard.min < LAR_GUARD_START)) return false;
-    double part = soften(domain, e, guard.stiffness, step, mean, force);
-    add(domain, e, (const double(*)[3])force, state);
+    double part = state->lets_go ? 0 : soften(domain, e, guard.stiffness, step, mean, force);
+    if (part > 0) add(domain, e, (const double(*)[3])force, state);
     if (!damped) return true;
     *damped = (lar_damped){.element = e, .step = (float)step, .half_mean = (float)(0.5 * mean)};
     for (int a = 0; a < 8; a++) {

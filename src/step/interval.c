@@ -95,6 +95,22 @@ static bool bears(const lar_domain *whole, const lar_tools *tools, const lar_ste
     return whole->burden && lar_heavier_bears(whole, &tools->strained, max - springs);
 }
 
+/* How long nothing has been touched, after `seconds` more. */
+static int16_t untouched_now(const lar_domain *whole, const lar_tools *tools, double seconds) {
+    static const double UNIT = 1e-4; /* [s] */
+    const lar_model *model = whole->model;
+    bool touched = model->contact_count > 0 || model->move_count > 0 || model->load_count > 0 ||
+                   model->pressure_count > 0 || tools->grasp_count > 0 || tools->forces.count > 0 ||
+                   tools->supports.count > 0;
+    for (int32_t t = 0; t < tools->count; t++) {
+        const lar_tool_felt *felt = &tools->follower[t].felt;
+        touched = touched || felt->depth > 0;
+        for (int k = 0; k < 3; k++) touched = touched || felt->force[k] != 0;
+    }
+    if (touched) return 0;
+    return (int16_t)fmin(LAR_UNTOUCHED_MAX, tools->division.untouched + ceil(seconds / UNIT));
+}
+
 bool lar_interval_divide(const lar_domain *whole, uint64_t step, double seconds, lar_tools *tools) {
     /* What was needed lately counts for some time: strained tissue trembles [s]. */
     static const double MEMORY = 0.05;
@@ -103,15 +119,16 @@ bool lar_interval_divide(const lar_domain *whole, uint64_t step, double seconds,
     double fading = fmax(0.5, 1 - seconds / MEMORY);
     double hardness =
         lar_tools_harden(whole->surroundings.list, tools, fading, seconds, 1 / whole->scale);
-    bool close = lar_division_is_close(d);
+    bool close = lar_division_is_close(d), let_go = lar_division_lets_go(d);
+    d->untouched = untouched_now(whole, tools, seconds);
     d->lately = fmax(fmin(d->need, LAR_NEED_MAX), fading * d->lately);
     d->need = 0;
     if (whole->burden) lar_heavier_fade(fading, &tools->strained);
     int32_t wanted = d->base;
     while (wanted < LAR_PARTS_MAX && !bears(whole, tools, &room, hardness, wanted))
         wanted = lar_more_parts(wanted);
-    bool changed =
-        hardness != d->hardness || wanted != d->parts || close != lar_division_is_close(d);
+    bool changed = hardness != d->hardness || wanted != d->parts ||
+                   close != lar_division_is_close(d) || let_go != lar_division_lets_go(d);
     if (whole->burden) {
         double left = room.max * wanted * wanted - room.springs * hardness;
         lar_heavier_settle(whole, left, fading, &tools->strained);

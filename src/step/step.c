@@ -192,6 +192,7 @@ void lar_step_enter(const lar_domain *domain, const lar_interactions *interactio
     context->hardness = division->hardness;
     context->held = interactions->notes.mark;
     state->close = lar_division_is_close(division);
+    state->lets_go = lar_division_lets_go(division);
     context->shares = LAR_STEP_SHARES / state->parts;
 }
 

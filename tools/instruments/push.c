@@ -20,6 +20,7 @@ static const char usage[] =
     "  --name NAME     of the rows; default: the scene\n"
     "  --deep M        how deep [m]; default 0.03\n"
     "  --through       to 20 mm beyond the far side instead\n"
+    "  --behind M      so far behind its start it is drawn out; default 0 [m]\n"
     "  --slant DEG     not along the face's normal but so much beside it\n"
     "  --grasp         jaws close while they wait inside, and open at the end\n"
     "  --contact       the surface touches itself\n"
@@ -52,7 +53,7 @@ static const lar_kind kinds[] = {
 
 typedef struct lar_push_options {
     const char *scene, *name, *tools, *speeds, *sides, *grid, *trace;
-    double deep, slant;
+    double deep, slant, behind;
     int through, grasp, contact, coupled, every, rows, head;
 } lar_push_options;
 
@@ -165,14 +166,17 @@ static lar_status place_tool(lar_push *p, lar_error *error) {
 
 /* Where the hand is at a time; false when all is over. */
 static bool lead(lar_push *p, double time) {
-    double way = p->travel / p->speed, depth = 0, closed = 0;
-    double t[4] = {time, time - way, time - way - WAIT, time - 2 * way - WAIT};
+    double way = p->travel / p->speed, back = way + p->options->behind / p->speed;
+    double depth = 0, closed = 0;
+    double t[4] = {time, time - way, time - way - WAIT, time - way - WAIT - back};
     if (t[1] <= 0)
         depth = t[0] * p->speed;
     else if (t[2] <= 0)
         depth = p->travel;
     else if (t[3] <= 0)
         depth = p->travel - t[2] * p->speed;
+    else
+        depth = -p->options->behind;
     if (t[1] > 0) closed = fmin(1, t[1] / (0.75 * WAIT));
     if (t[3] > 0) closed = 1 - fmin(1, t[3] / (0.75 * WAIT));
     p->hand = p->start;
@@ -337,11 +341,23 @@ static lar_status run_all(const lar_push_options *options, lar_body *body, lar_e
 }
 
 static lar_push_options read_options(int count, char **word) {
-    static const struct option known[] = {
-        {"tool", 1, 0, 't'},    {"speed", 1, 0, 's'}, {"from", 1, 0, 'f'},    {"name", 1, 0, 'n'},
-        {"deep", 1, 0, 'd'},    {"slant", 1, 0, 'l'}, {"through", 0, 0, 'T'}, {"grasp", 0, 0, 'G'},
-        {"contact", 0, 0, 'C'}, {"grid", 1, 0, 'g'},  {"coupled", 0, 0, 'H'}, {"every", 1, 0, 'e'},
-        {"trace", 1, 0, 'c'},   {"rows", 0, 0, 'r'},  {"head", 0, 0, 'h'},    {0}};
+    static const struct option known[] = {{"tool", 1, 0, 't'},
+                                          {"speed", 1, 0, 's'},
+                                          {"from", 1, 0, 'f'},
+                                          {"name", 1, 0, 'n'},
+                                          {"deep", 1, 0, 'd'},
+                                          {"slant", 1, 0, 'l'},
+                                          {"behind", 1, 0, 'B'},
+                                          {"through", 0, 0, 'T'},
+                                          {"grasp", 0, 0, 'G'},
+                                          {"contact", 0, 0, 'C'},
+                                          {"grid", 1, 0, 'g'},
+                                          {"coupled", 0, 0, 'H'},
+                                          {"every", 1, 0, 'e'},
+                                          {"trace", 1, 0, 'c'},
+                                          {"rows", 0, 0, 'r'},
+                                          {"head", 0, 0, 'h'},
+                                          {0}};
     lar_push_options o = {
         .tools = "sphere5", .speeds = "0.1", .sides = "+z", .deep = 0.03, .every = 2};
     for (int c; (c = getopt_long(count, word, "", known, NULL)) != -1;) {
@@ -351,6 +367,7 @@ static lar_push_options read_options(int count, char **word) {
         if (c == 'n') o.name = optarg;
         if (c == 'd') o.deep = strtod(optarg, NULL);
         if (c == 'l') o.slant = strtod(optarg, NULL);
+        if (c == 'B') o.behind = strtod(optarg, NULL);
         if (c == 'T') o.through = 1;
         if (c == 'G') o.grasp = 1;
         if (c == 'C') o.contact = 1;

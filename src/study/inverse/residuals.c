@@ -34,6 +34,31 @@ static double lag_of(const double *left, int n) {
     return all > 0 ? with / all : 0;
 }
 
+/* Correlation of points with those that are nearest to them (Moran's, Biometrika 37:17, 1950, with
+ * one neighbour each); of at most MANY of them, as all are looked at for each. */
+static double lag_in_space(const lar_inverse_experiment *e, const double *left) {
+    enum { MANY = 2000 };
+    const double(*at)[3] = (const double(*)[3])e->points.surface.vertex;
+    int axes = e->values / e->rows, every = 1 + (e->rows - 1) / MANY;
+    double with = 0, all = 0;
+    for (int32_t i = 0; i < e->rows; i += every) {
+        double least = INFINITY;
+        int32_t near = i;
+        for (int32_t j = 0; j < e->rows; j++) {
+            double square = 0;
+            for (int k = 0; k < 3; k++) square += (at[i][k] - at[j][k]) * (at[i][k] - at[j][k]);
+            if (j == i || square >= least) continue;
+            least = square;
+            near = j;
+        }
+        for (int k = 0; k < axes; k++) {
+            all += left[axes * i + k] * left[axes * i + k];
+            with += left[axes * i + k] * left[axes * near + k];
+        }
+    }
+    return all > 0 ? with / all : 0;
+}
+
 /* Mean of what is left where the way is longest, or shortest: a third of the way each. */
 static double mean_at(const lar_inverse_experiment *e, const double *left, bool large) {
     double far = 0, sum = 0;
@@ -75,6 +100,20 @@ static void note_shape(const lar_inverse_experiment *e, const lar_inverse_residu
                      e->name, r->runs - 1, (int)e->values, r->lag, 100 * r->relative, at, advice);
 }
 
+/* Of points: they have places, and no order. */
+static void look_at_points(const lar_inverse_experiment *e, lar_inverse_residuals *r,
+                           const double *left, lar_inverse_result *result) {
+    r->lag = lag_in_space(e, left);
+    /* twice the deviation by chance, in which two that are nearest to each other count twice */
+    r->systematic = r->relative > TINY && e->rows >= ENOUGH && r->lag > 2 * sqrt(2.0 / e->rows);
+    if (!r->systematic) return;
+    lar_inverse_note(result,
+                     "%s: what is left is no chance (of %d points nearest ones correlate by %.2f), "
+                     "%.3g mm in the mean: the shape at rest, supports or the law are a little "
+                     "other ones. Intervals take points as independent, and are too narrow then",
+                     e->name, (int)e->rows, r->lag, 1e3 * r->rms);
+}
+
 void lar_inverse_look_at_residuals(const lar_inverse_problem *problem, lar_inverse_result *result) {
     double *model = result->model; /* becomes what is left, and the model again */
     for (int k = 0; k < problem->experiments; model += problem->experiment[k++].values) {
@@ -88,12 +127,16 @@ void lar_inverse_look_at_residuals(const lar_inverse_problem *problem, lar_inver
         }
         r->rms = sqrt(squares / n);
         r->relative = r->rms / e->largest;
-        r->lag = lag_of(model, n);
         test_runs(r, model, n);
-        r->systematic =
-            e->kind < LAR_INVERSE_MARKERS && r->relative > TINY &&
-            (one_sided(e, model) || (n >= ENOUGH && (r->runs_z < -1.96 || r->lag > 2 / sqrt(n))));
-        if (r->systematic) note_shape(e, r, model, result);
+        if (e->kind >= LAR_INVERSE_MARKERS) {
+            look_at_points(e, r, model, result);
+        } else {
+            r->lag = lag_of(model, n);
+            r->systematic = r->relative > TINY &&
+                            (one_sided(e, model) ||
+                             (n >= ENOUGH && (r->runs_z < -1.96 || r->lag > 2 / sqrt(n))));
+            if (r->systematic) note_shape(e, r, model, result);
+        }
         for (int i = 0; i < n; i++) model[i] = e->measured[i] - model[i];
     }
 }

@@ -23,7 +23,7 @@ typedef struct lar_inverse_residuals {
     double relative; /* over the largest measured */
     int runs;        /* of equal signs */
     double runs_z;   /* against as many as chance gives; below -1.96: too few */
-    double lag;      /* correlation of neighbours */
+    double lag;      /* correlation of neighbours, by rows or in space */
     bool systematic;
 } lar_inverse_residuals;
 
