@@ -55,6 +55,41 @@ if(NOT LARIAT_SANITIZE AND NOT CMAKE_INTERPROCEDURAL_OPTIMIZATION AND NOT CMAKE_
   list(APPEND LARIAT_PC_FILES lariat-static)
 endif()
 
+# Fits, where cminpack is there: a library beside the first one, which does without it.
+if(LARIAT_HAVE_CMINPACK)
+  add_library(liblariat_fit SHARED $<TARGET_OBJECTS:lariat_fit_objects>)
+  add_library(Lariat::fit ALIAS liblariat_fit)
+  set_target_properties(liblariat_fit PROPERTIES OUTPUT_NAME lariat-fit EXPORT_NAME fit
+    LINKER_LANGUAGE C VERSION ${PROJECT_VERSION} SOVERSION 0 INSTALL_RPATH "$ORIGIN"
+    LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR})
+  target_link_libraries(liblariat_fit PUBLIC liblariat
+    PRIVATE lariat_flags PkgConfig::CMINPACK Threads::Threads m)
+  if(NOT LARIAT_SANITIZE)
+    target_link_options(liblariat_fit PRIVATE -Wl,--no-undefined -Wl,--as-needed)
+  endif()
+  list(APPEND LARIAT_LIBRARIES liblariat_fit)
+  list(APPEND LARIAT_PC_FILES lariat-fit)
+  if(TARGET liblariat_static)
+    set(whole ${PROJECT_BINARY_DIR}/lariat_fit_whole.o)
+    add_custom_command(OUTPUT ${whole} DEPENDS lariat_fit_objects $<TARGET_OBJECTS:lariat_fit_objects>
+      COMMAND ${CMAKE_LINKER} -r -o ${whole} $<TARGET_OBJECTS:lariat_fit_objects>
+      COMMAND ${CMAKE_OBJCOPY} --localize-hidden ${whole}
+      COMMAND_EXPAND_LISTS COMMENT "Fits as one object" VERBATIM)
+    set_source_files_properties(${whole} PROPERTIES EXTERNAL_OBJECT ON GENERATED ON)
+    add_library(liblariat_fit_static STATIC ${whole})
+    set_target_properties(liblariat_fit_static PROPERTIES OUTPUT_NAME lariat-fit
+      EXPORT_NAME fit_static LINKER_LANGUAGE C ARCHIVE_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR})
+    target_link_libraries(liblariat_fit_static INTERFACE liblariat_static cminpack m)
+    list(APPEND LARIAT_LIBRARIES liblariat_fit_static)
+    list(APPEND LARIAT_PC_FILES lariat-fit-static)
+  endif()
+  install(FILES include/lariat_fit.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+else() # those of an earlier configuration
+  foreach(old .a .so .so.0 .so.${PROJECT_VERSION})
+    file(REMOVE ${PROJECT_BINARY_DIR}/liblariat-fit${old})
+  endforeach()
+endif()
+
 install(TARGETS ${LARIAT_LIBRARIES} EXPORT LariatTargets
   LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(FILES include/lariat.h include/lariat_sizes.h include/lariat.hpp DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})

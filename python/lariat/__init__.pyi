@@ -67,6 +67,7 @@ class Parameter(Answer):
     upper_bound: float
     told: bool
     at_bound: bool
+    given_bound: bool
     profiled: bool
     sensitivity: float
     correlation: array[float]  # [parameters]

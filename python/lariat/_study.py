@@ -69,6 +69,7 @@ class Parameter(Answer):
     upper_bound = _Field("float: nor above.")
     told = _Field("bool: the data say what it is; False: from low to high all fits, or at_bound.")
     at_bound = _Field("bool: it stands at a bound and the data ask for a value beyond: widen it.")
+    given_bound = _Field("bool: another one does; low and high are for that bound as a known number.")
     profiled = _Field("bool: the interval is by its profile, not by the curvature alone.")
     sensitivity = _Field("float: by how many times the noise the data change when it grows e times.")
     correlation = _Field("array of float64 [parameters]: with each of the fit, in their order.")

@@ -16,13 +16,13 @@
 /* Memory comes from the host where it gives functions for that (lar_memory_set). Every file of the
  * library is compiled with this header in front (src/CMakeLists.txt), so that none asks for memory,
  * or gives it back, beside it. What the C library allocates, as open_memstream does, goes back to
- * it by (free)(memory). Other libraries have their own ways. */
+ * it by (free)(memory). Other libraries have their own ways. liblariat-fit does as this one. */
 void *lar_host_malloc(size_t bytes);
 void *lar_host_calloc(size_t count, size_t size);
 void *lar_host_realloc(void *memory, size_t bytes);
 void *lar_host_aligned(size_t alignment, size_t bytes);
 void lar_host_free(void *memory);
-#ifdef LARIAT_LIBRARY
+#if defined(LARIAT_LIBRARY) || defined(LARIAT_FIT_LIBRARY)
 #define malloc(bytes)                   lar_host_malloc(bytes)
 #define calloc(count, size)             lar_host_calloc(count, size)
 #define realloc(memory, bytes)          lar_host_realloc(memory, bytes)

@@ -1,15 +1,14 @@
 /* lariat fit: parameters of tissue from experiments. */
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 #include <unistd.h>
 
 #include "base/file/folder.h"
-#include "base/file/part_file.h"
 #include "cli/commands.h"
 #include "cli/report/fit.h"
 #include "cli/report/profile.h"
 #include "cli/stop.h"
+#include "study/inverse/json.h"
 #include "study/inverse/output.h"
 
 enum { PATH_SIZE = 4096 };
@@ -38,50 +37,6 @@ static void write_progress(void *context, const lar_inverse_progress *p) {
     fflush(stderr);
 }
 
-/* ---- results --------------------------------------------------------------------------------- */
-
-/* Letters, digits, - and _ of a name; the others become _. */
-static void file_name(const char *name, char *to, size_t size) {
-    size_t n = 0;
-    for (; *name && n + 1 < size; name++) {
-        char c = *name;
-        bool plain =
-            (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-';
-        to[n++] = plain ? c : '_';
-    }
-    to[n] = '\0';
-}
-
-static lar_status write_tissues(const char *folder, const lar_inverse_problem *p,
-                                const lar_inverse_result *r, lar_error *error) {
-    char path[PATH_SIZE], name[64];
-    lar_status status = LAR_OK;
-    for (int j = 0; j < p->parameters && !status; j++) {
-        if (!lar_inverse_first_of_material(p, j)) continue;
-        file_name(p->parameter[j].material, name, sizeof name);
-        snprintf(path, sizeof path, "%.3900s/%s.tissue.yaml", folder, name);
-        status = lar_inverse_write_tissue(path, p, r, p->parameter[j].material, error);
-    }
-    return status;
-}
-
-static lar_status write_all(const char *folder, const lar_inverse_problem *p,
-                            const lar_inverse_result *r, lar_error *error) {
-    char path[PATH_SIZE], name[64];
-    lar_part_file out;
-    lar_status status = write_tissues(folder, p, r, error);
-    for (int k = 0; k < p->experiments && !status; k++) {
-        file_name(p->experiment[k].name, name, sizeof name);
-        snprintf(path, sizeof path, "%.3900s/%d_%s.svg", folder, k + 1, name);
-        status = lar_inverse_write_svg(path, p, r, k, error);
-    }
-    if (status) return status;
-    snprintf(path, sizeof path, "%.3900s/fit.json", folder);
-    status = lar_part_open(&out, path, error);
-    if (!status) fit_report_json(p, r, out.file);
-    return lar_part_close(&out, status);
-}
-
 /* ---- the command ----------------------------------------------------------------------------- */
 
 static int complain(const lar_error *error) {
@@ -107,9 +62,10 @@ static int fit(const lar_inverse_problem *problem, const char *folder, bool json
                          "interrupted before the first guess was computed: there is no answer");
     else if (failed)
         status = complain(&error);
-    if (!status && folder && write_all(folder, problem, &result, &full)) status = complain(&full);
+    if (!status && folder && lar_inverse_write_folder(folder, problem, &result, &full))
+        status = complain(&full);
     /* What took long is told also where the disk is full. */
-    if (!failed && !status && json) fit_report_json(problem, &result, stdout);
+    if (!failed && !status && json) lar_inverse_json(problem, &result, stdout);
     if (!failed && (status || !json)) fit_report_table(problem, &result, json ? stderr : stdout);
     if (!status && result.interrupted)
         status = cli_complain(&cli_fit, CLI_INTERRUPTED,

@@ -178,6 +178,44 @@ beyond 4000 1e5 6000 smaller
 expect 0 "$LARIAT" fit fit.yaml --json
 grep -q '"at_bound": false' out && grep -q '"told": true' out || fail "no answer: $(cat out)"
 
+# Beside one that stands at its bound the other has the interval that it has with this bound as a known
+# number: a stiffening of 4 in the scene, and one free parameter.
+sed 's/law: .* }$/law: ogden, density: 1050, c1: 2.0e3, m1: 4, bulk_modulus: 4.0e4 }/' one.yaml >ogden.yaml
+two() { # LOW TABLE
+    printf "lariat-fit: 1\nparameters:\n  - { material: gel, parameter: c1, guess: 2.5e3, bounds: [2.5e2, 1.0e5] }\n  - { material: gel, parameter: m1, guess: 5, bounds: [$1, 40] }\nexperiments:\n  - { kind: tension, scene: ogden.yaml, data: $2 }\n"
+}
+two 4 one.csv >two.yaml
+grep -v m1 two.yaml >alone.yaml
+expect 0 "$LARIAT" fit two.yaml --out two
+says 'c1: .* 95 % between .* (given what stands at its bound)'
+says 'm1: 4, AT ITS BOUND'
+says 'intervals of the others hold for a known m1 of 4'
+grep -q '^# c1: fitted, .*, given what stands at its bound\.$' two/gel.tissue.yaml || fail "no word in the tissue"
+expect 0 "$LARIAT" fit two.yaml --json
+grep -q '"given_bound": true' out || fail "no given_bound: $(cat out)"
+interval() { # of the first parameter; the second one's is null
+    sed -n 's/^ *"\(low\|high\)": \([0-9.e+-]*\),$/\2/p' out | head -n 2 | tr '\n' ' '
+}
+given=$(interval)
+expect 0 "$LARIAT" fit alone.yaml --json
+if grep -q '"given_bound": true' out; then fail "given a bound that is not there"; fi
+echo "$given $(interval)" |
+    awk 'NF != 4 { exit 1 } { for (i = 1; i <= 2; i++) if ($i / $(i + 2) < 0.995 || $i / $(i + 2) > 1.005) exit 1 }' ||
+    fail "another interval than with m1 = 4: $given"
+
+# As many parameters as numbers: values, and no word on how well.
+head -n 3 one.csv >half.csv
+two 1 half.csv >two.yaml
+expect 0 "$LARIAT" fit two.yaml --out two
+says 'c1: [0-9.]* Pa, no interval$'
+says 'as many parameters as measured numbers, 2: .*measure more'
+grep -q '^# c1: as many parameters as measured numbers, so HOW WELL IS NOT KNOWN' two/gel.tissue.yaml ||
+    fail "no word in the tissue: $(cat two/gel.tissue.yaml)"
+two 4 half.csv >two.yaml
+expect 0 "$LARIAT" fit two.yaml
+says 'm1: 4, AT ITS BOUND'
+if grep -q 'no interval' out; then fail "one number is left for c1: $(cat out)"; fi
+
 # A tube, of one element: profiles, pressures and the tube's place.
 sed 's/^move.*/load: [ { faces: { plane: { point: [0, 0, 0.02], normal: [0, 0, 1] } }, pressure: -100 } ]/' \
     one.yaml | sed 's/^fix:/&\n  - { nodes: top, axes: xy }/' >tube.yaml

@@ -25,6 +25,7 @@ done
 for product in liblariat.so.0 liblariat.a help/man/man1/lariat.1; do
     [ -e "$build/$product" ] || fail "the products are not built: no $product"
 done
+[ -e "$build/liblariat-fit.so.0" ] || { echo "skipped: built without cminpack"; exit 77; }
 for part in web/dist/index.html:the-page build/python/lariat/_lariat.abi3.so:the-Python-module; do
     case $part in
     build/*) file=$build/${part#build/} ;;
@@ -56,7 +57,9 @@ holds() {
     done
 }
 holds liblariat0 'usr/lib/*/liblariat.so.0'
-holds liblariat-dev usr/include/lariat.h usr/include/lariat_sizes.h usr/include/lariat.hpp \
+holds liblariat-fit0 'usr/lib/*/liblariat-fit.so.0'
+holds liblariat-dev usr/include/lariat.h usr/include/lariat_sizes.h usr/include/lariat.hpp usr/include/lariat_fit.h \
+    'usr/lib/*/liblariat-fit.so' 'usr/lib/*/liblariat-fit.a' 'usr/lib/*/pkgconfig/lariat-fit.pc' \
     'usr/lib/*/liblariat.so' 'usr/lib/*/liblariat.a' 'usr/lib/*/pkgconfig/lariat.pc' 'usr/lib/*/cmake/Lariat/LariatConfig.cmake'
 holds lariat usr/bin/lariat usr/share/man/man1/lariat-run.1 usr/share/zsh/vendor-completions/_lariat
 holds lariat-viewer usr/share/lariat/viewer/index.html
@@ -74,8 +77,10 @@ depends() {
     grep -qx "Version: $version" "debian/$package/DEBIAN/control" || fail "$package has another version"
 }
 depends liblariat0 libc6 'libxml2[a-z0-9]*' libyaml-0-2 'zlib1g'
+depends liblariat-fit0 "liblariat0 \(= $version\)" libc6 'libcminpack[0-9]*'
+! grep -q '^Depends: .*cminpack' debian/liblariat0/DEBIAN/control || fail "the library needs what only fits need"
 depends lariat libc6 libyaml-0-2
-depends liblariat-dev "liblariat0 \(= $version\)"
+depends liblariat-dev "liblariat0 \(= $version\)" "liblariat-fit0 \(= $version\)"
 depends python3-lariat "liblariat0 \(= $version\)" "lariat \(= $version\)" 'python3 \(>= 3.11\)'
 ! grep -q '^Depends: .*liblariat' debian/lariat-viewer/DEBIAN/control || fail "the page needs a library"
 ! grep -rl "$source/" debian/*/usr/lib/*/pkgconfig debian/*/usr/lib/*/cmake 2>/dev/null ||
@@ -102,4 +107,4 @@ print(urllib.request.urlopen(sys.argv[1]).read().decode())' "$(grep '^http' "$sc
 " ] || [ "$page" = "<title>installed</title>" ] || fail "a command on the PATH serves another page: $page"
 fi
 rm -rf "$folder"
-echo "deb: five packages of version $version, each file in one of them"
+echo "deb: six packages of version $version, each file in one of them"

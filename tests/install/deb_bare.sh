@@ -27,7 +27,7 @@ suite=$(sed -n 's/^VERSION_CODENAME=//p' /etc/os-release)
 rm -rf "$scratch"
 mkdir -p "$scratch"
 "$source/tools/deb.sh" >"$scratch/packages" 2>"$scratch/said" || { cat "$scratch/said" >&2; fail "no packages"; }
-[ "$(wc -l <"$scratch/packages")" = 5 ] || fail "these are not five packages: $(cat "$scratch/packages")"
+[ "$(wc -l <"$scratch/packages")" = 6 ] || fail "these are not six packages: $(cat "$scratch/packages")"
 ! grep '^E:' "$scratch/said" || fail "lintian found errors"
 
 system=$scratch/system
@@ -70,7 +70,7 @@ kill $view
 wait $view || true
 trap - EXIT
 rm -r demo results
-apt-get -q purge -y lariat lariat-viewer liblariat0 liblariat-dev python3-lariat >/packages/apt 2>&1 ||
+apt-get -q purge -y lariat lariat-viewer liblariat0 liblariat-fit0 liblariat-dev python3-lariat >/packages/apt 2>&1 ||
     { tail -n 20 /packages/apt; exit 1; }
 left=$(find / -xdev -path /packages -prune -o -iname '*lariat*' -print)
 [ -z "$left" ] || { echo "left behind: $left"; exit 1; }

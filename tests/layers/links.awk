@@ -2,7 +2,7 @@
 # rooms.awk. Every function of ours that a room calls is defined in a room that it may use; the
 # command, what works for it and the viewers' server may call what is public, too.
 
-FILENAME ~ /lariat(_sizes)?\.h$/ {
+FILENAME ~ /lariat(_sizes|_fit)?\.h$/ {
     if (match($0, /lar_[a-z0-9_]+\(/)) public[substr($0, RSTART, RLENGTH - 1)] = 1
     next
 }

@@ -331,7 +331,7 @@ static void time_is_counted(void **state) {
     fclose(in);
     assert_int_equal(rows, 24);
     assert_int_equal(first, 12);
-    twin_write("list.txt", "# a film\nfit_bad/v11.pgm\n\nfit_bad/v8.pgm\n");
+    twin_write("list.txt", "# a film\ntest_frames_bad/v11.pgm\n\ntest_frames_bad/v8.pgm\n");
     if (lar_profiles_read(twin_path("list.txt"), twin_path("view.yaml"), NULL, &p, &error))
         fail_msg("%s", error.message);
     assert_int_equal(p.frames.count, 2);

@@ -8,7 +8,5 @@
 
 void fit_report_table(const lar_inverse_problem *problem, const lar_inverse_result *result,
                       FILE *out);
-void fit_report_json(const lar_inverse_problem *problem, const lar_inverse_result *result,
-                     FILE *out);
 
 #endif

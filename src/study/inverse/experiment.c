@@ -294,20 +294,26 @@ static lar_status check_counts(const lar_inverse_problem *p, lar_error *error) {
     return LAR_OK;
 }
 
-lar_status lar_inverse_problem_read(const char *path, lar_inverse_problem *problem,
-                                    lar_error *error) {
+lar_status lar_inverse_problem_parse(const char *path, const lar_bytes *text,
+                                     lar_inverse_problem *problem, lar_error *error) {
     lar_error unused;
-    lar_bytes bytes;
     lar_yaml_tree tree;
     if (!error) error = &unused;
-    lar_status status = lar_bytes_read(path, &bytes, error);
-    if (status) return status;
-    status = lar_yaml_parse(path, &bytes, &tree, error);
-    lar_bytes_free(&bytes);
+    lar_status status = lar_yaml_parse(path, text, &tree, error);
     if (status) return status;
     reader r = {.scene = {.path = path, .root = tree.root, .error = error}, .problem = problem};
     problem->path = lar_strdup(path);
     status = problem->path ? read_root(&r) : lar_scene_no_memory(&r.scene, strlen(path));
     lar_yaml_clear(&tree);
     return status ? status : check_counts(problem, error);
+}
+
+lar_status lar_inverse_problem_read(const char *path, lar_inverse_problem *problem,
+                                    lar_error *error) {
+    lar_bytes bytes;
+    lar_status status = lar_bytes_read(path, &bytes, error);
+    if (status) return status;
+    status = lar_inverse_problem_parse(path, &bytes, problem, error);
+    lar_bytes_free(&bytes);
+    return status;
 }

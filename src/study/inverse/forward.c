@@ -96,7 +96,8 @@ static lar_status advance(forward *f, uint64_t steps) {
     enum { PORTION = 256 }; /* between looks whether to stop */
     while (steps > 0) {
         uint64_t now = steps < PORTION ? steps : PORTION;
-        if (f->stop && *f->stop) return lar_fail(f->error, LAR_ERROR_ARGUMENT, "%s", "");
+        if (lar_inverse_stop_asked(f->stop))
+            return lar_fail(f->error, LAR_ERROR_ARGUMENT, "%s", "");
         lar_status status = lar_simulation_advance(f->simulation, now, f->error);
         if (status) return status;
         steps -= now;

@@ -17,6 +17,11 @@
 
 #include "study/inverse/experiment.h"
 
+/* Whether *stop, which may be NULL, is not 0: set by a signal or by another thread. */
+static inline bool lar_inverse_stop_asked(const volatile sig_atomic_t *stop) {
+    return stop && __atomic_load_n(stop, __ATOMIC_RELAXED);
+}
+
 /* Into model[values] of experiment k, with value[parameters]. Ends early with LAR_ERROR_ARGUMENT
  * and an empty message when *stop (may be NULL) is not 0. Any thread; runs share nothing. */
 lar_status lar_inverse_forward(const lar_inverse_problem *problem, int k, const double *value,

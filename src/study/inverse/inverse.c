@@ -71,10 +71,11 @@ static void eigen(int n, double a[P][P], double v[P][P]) {
             }
 }
 
-/* s: the root of what is left for each degree of freedom, not less than runs are exact. */
-static double deviation_of(const lar_inverse_solver *s, double squares) {
+/* s: the root of what is left for each degree of freedom, not less than runs are exact. NAN: there
+ * is none. */
+static double deviation_of(const lar_inverse_solver *s, double squares, int parameters) {
     const lar_inverse_problem *p = s->problem;
-    int freedom = s->values - s->parameters;
+    int freedom = s->values - parameters;
     double exact = 0;
     for (int k = 0; k < p->experiments; k++) {
         const lar_inverse_experiment *e = &p->experiment[k];
@@ -113,83 +114,121 @@ static bool near_bound(const lar_inverse_parameter *p, double u, bool high) {
     return (high ? to - u : u - from) <= AT_BOUND * (to - from);
 }
 
-static void note_held_back(const lar_inverse_parameter *p, bool high, lar_inverse_result *result) {
+static void note_held_back(const lar_inverse_problem *problem, const lar_inverse_parameter *p,
+                           bool high, lar_inverse_result *result) {
+    const double bound = high ? p->high : p->low;
+    char others[160] = "";
+    if (problem->parameters > 1)
+        snprintf(others, sizeof others,
+                 ", and the intervals of the others hold for a known %s of %.4g", p->name, bound);
     lar_inverse_note(result,
                      "%s of %s stands at its bound %.4g, and the data ask for a %s value; widen "
-                     "that bound, or look whether a unit is wrong: until then no interval and no "
-                     "other parameter of this fit can be relied on",
-                     p->name, p->material, high ? p->high : p->low, high ? "larger" : "smaller");
+                     "that bound, or look whether a unit is wrong: until then no "
+                     "other parameter of this fit can be relied on%s",
+                     p->name, p->material, bound, high ? "larger" : "smaller", others);
 }
 
 /* Estimates that stand at a bound while the data ask for a value beyond it: the squares would be
  * least farther out than chance explains, by the step of Gauss and Newton without bounds. The
  * deviation is that of a fit which takes this step: what is left at the bound says what the bound
- * costs, not how well the data tell. inverse: covariances for a deviation of 1; slope: half of that
- * of the squares. */
+ * costs, not how well the data tell. Without a degree of freedom chance explains nothing, and a
+ * step as long as that of a difference counts. inverse: covariances for a deviation of 1; slope:
+ * half of that of the squares. */
 static void find_held_back(const lar_inverse_solver *s, double inverse[P][P], const double *slope,
                            lar_inverse_result *result) {
-    int n = s->parameters;
+    static const double SURE = 0.02;
+    int n = s->parameters, m = s->values;
     double step[P] = {0}, squares = s->best_squares;
     for (int i = 0; i < n; i++) {
         for (int j = 0; j < n; j++) step[i] -= inverse[i][j] * slope[j];
         squares += step[i] * slope[i];
     }
-    double t = lar_student_95(s->values - n), deviation = deviation_of(s, squares);
+    double t = m > n ? lar_student_95(m - n) : NAN, deviation = deviation_of(s, squares, n);
     for (int i = 0; i < n; i++) {
         const lar_inverse_parameter *p = &s->problem->parameter[i];
-        double half = t * deviation * sqrt(inverse[i][i]);
+        double half = m > n ? t * deviation * sqrt(inverse[i][i]) : SURE;
         bool high = step[i] > 0;
         if (!near_bound(p, s->best_u[i], high) || half >= WIDE || fabs(step[i]) <= half) continue;
         result->estimate[i].at_bound = true;
         result->estimate[i].low = result->estimate[i].high = NAN;
-        note_held_back(p, high, result);
+        note_held_back(s->problem, p, high, result);
+    }
+}
+
+/* a becomes its eigenvalues, v its directions, inverse what it says. */
+static void invert(int n, double a[P][P], double v[P][P], double inverse[P][P]) {
+    static const double UNSEEN = 1e-12; /* of the largest eigenvalue: rounding */
+    double largest = 0;
+    eigen(n, a, v);
+    for (int d = 0; d < n; d++) largest = fmax(largest, a[d][d]);
+    memset(inverse, 0, P * sizeof *inverse);
+    for (int d = 0; d < n; d++) {
+        a[d][d] = fmax(a[d][d], UNSEEN * largest + 1e-300);
+        for (int i = 0; i < n; i++)
+            for (int j = 0; j < n; j++) inverse[i][j] += v[i][d] * v[j][d] / a[d][d];
+    }
+}
+
+/* u +- half; NAN: there is no interval. */
+static void set_interval(const lar_inverse_parameter *p, double u, double half,
+                         lar_inverse_estimate *e) {
+    double range = lar_inverse_u_high(p) - lar_inverse_u_low(p);
+    e->low = isnan(half) ? NAN : lar_inverse_value(p, u - half);
+    e->high = isnan(half) ? NAN : lar_inverse_value(p, u + half);
+    e->told =
+        half < fmin(WIDE, 0.25 * range) && !near_bound(p, u, false) && !near_bound(p, u, true);
+}
+
+/* Where estimates stand at their bounds the others were fitted with these bounds as known numbers,
+ * and so are their intervals. normal: J^T J. */
+static void give_bounds(const lar_inverse_solver *s, double normal[P][P],
+                        lar_inverse_result *result) {
+    double a[P][P], v[P][P], inverse[P][P];
+    int own[P], n = 0;
+    for (int j = 0; j < s->parameters; j++)
+        if (!result->estimate[j].at_bound) own[n++] = j;
+    if (n == 0 || n == s->parameters) return;
+    for (int i = 0; i < n; i++)
+        for (int j = 0; j < n; j++) a[i][j] = normal[own[i]][own[j]];
+    invert(n, a, v, inverse);
+    double width = lar_student_95(s->values - n) * deviation_of(s, s->best_squares, n);
+    for (int i = 0; i < n; i++) {
+        lar_inverse_estimate *e = &result->estimate[own[i]];
+        set_interval(&s->problem->parameter[own[i]], s->best_u[own[i]], width * sqrt(inverse[i][i]),
+                     e);
+        e->given_bound = true;
     }
 }
 
 /* Covariances, intervals, correlations and the directions that are not seen. r: what is left. */
 static void linearise(const lar_inverse_solver *s, const double *r, const double *jacobian,
                       lar_inverse_result *result) {
-    static const double UNSEEN = 1e-12; /* of the largest eigenvalue: rounding */
     const lar_inverse_problem *p = s->problem;
     int n = s->parameters, m = s->values;
-    double a[P][P], v[P][P], inverse[P][P] = {{0}}, slope[P] = {0}, largest = 0;
+    double a[P][P], normal[P][P], v[P][P], inverse[P][P], slope[P] = {0};
     for (int i = 0; i < n; i++) {
         for (int j = 0; j < n; j++) {
             a[i][j] = 0;
             for (int k = 0; k < m; k++) a[i][j] += jacobian[i * m + k] * jacobian[j * m + k];
+            normal[i][j] = a[i][j];
         }
         for (int k = 0; k < m; k++) slope[i] += jacobian[i * m + k] * r[k];
     }
-    for (int j = 0; j < n; j++) result->estimate[j].sensitivity = sqrt(a[j][j]);
-    eigen(n, a, v);
-    for (int d = 0; d < n; d++) largest = fmax(largest, a[d][d]);
-    double t = m > n ? lar_student_95(m - n) : NAN, deviation = result->deviation;
-    for (int d = 0; d < n; d++) {
-        a[d][d] = fmax(a[d][d], UNSEEN * largest + 1e-300);
-        for (int i = 0; i < n; i++)
-            for (int j = 0; j < n; j++) inverse[i][j] += v[i][d] * v[j][d] / a[d][d];
-    }
+    invert(n, a, v, inverse);
+    double width = m > n ? lar_student_95(m - n) * result->deviation : NAN;
     for (int i = 0; i < n; i++) {
-        double half = t * deviation * sqrt(inverse[i][i]), u = s->best_u[i];
         lar_inverse_estimate *e = &result->estimate[i];
-        const lar_inverse_parameter *own = &p->parameter[i];
-        double range = lar_inverse_u_high(own) - lar_inverse_u_low(own);
-        e->low = m > n ? lar_inverse_value(own, u - half) : NAN;
-        e->high = m > n ? lar_inverse_value(own, u + half) : NAN;
-        e->told = half < fmin(WIDE, 0.25 * range) && !near_bound(own, u, false) &&
-                  !near_bound(own, u, true);
-        for (int j = 0; j < n; j++)
-            result->correlation[i][j] = i == j ? 1
-                                        : m <= n
-                                            ? NAN
-                                            : inverse[i][j] / sqrt(inverse[i][i] * inverse[j][j]);
+        e->sensitivity = sqrt(normal[i][i]);
+        set_interval(&p->parameter[i], s->best_u[i], width * sqrt(inverse[i][i]), e);
+        for (int j = 0; j < n; j++) {
+            double tied = inverse[i][j] / sqrt(inverse[i][i] * inverse[j][j]);
+            result->correlation[i][j] = i == j ? 1 : m > n ? tied : NAN;
+        }
     }
-    if (m <= n) return;
     find_held_back(s, inverse, slope, result);
-    for (int d = 0; d < n && !lar_inverse_at_bound(result); d++) {
-        double width = t * deviation / sqrt(a[d][d]);
-        if (width > WIDE) note_direction(p, v, d, width, result);
-    }
+    give_bounds(s, normal, result);
+    for (int d = 0; d < n && m > n && !lar_inverse_at_bound(result); d++)
+        if (width / sqrt(a[d][d]) > WIDE) note_direction(p, v, d, width / sqrt(a[d][d]), result);
 }
 
 /* ---- what cannot be told --------------------------------------------------------------------- */
@@ -320,7 +359,7 @@ static lar_status know(lar_inverse_solver *s, lar_inverse_result *result) {
         r && jacobian ? lar_inverse_evaluate(s, u, r) : lar_fail_memory(s->error, values, "a fit");
     if (!status) status = lar_inverse_differentiate(s, u, r, jacobian);
     if (!status) {
-        result->deviation = deviation_of(s, s->best_squares);
+        result->deviation = deviation_of(s, s->best_squares, s->parameters);
         linearise(s, r, jacobian, result);
         status = profile_suspects(s, result);
     }
@@ -362,8 +401,14 @@ lar_status lar_inverse_solve(const lar_inverse_problem *problem, const lar_inver
     result->interrupted = lar_inverse_stopped(&s);
     if (result->interrupted && result->model) status = LAR_OK;
     if (!status) lar_inverse_look_at_residuals(problem, result);
-    if (!status && isnan(result->deviation) && !result->interrupted)
-        lar_inverse_note(result, "as many parameters as measured numbers: there are no intervals");
+    if (!status && isnan(result->deviation) && !result->interrupted &&
+        !lar_inverse_at_bound(result))
+        lar_inverse_note(
+            result,
+            "as many parameters as measured numbers, %d: the model can go through all "
+            "of them, wrong ones too, so there is no interval, and no word on the law; "
+            "measure more, or free fewer parameters",
+            s.parameters);
     result->runs += s.runs;
     result->seconds = lar_clock_seconds() - s.begin;
     lar_inverse_solver_clear(&s);

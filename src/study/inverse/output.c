@@ -5,7 +5,9 @@
 #include <string.h>
 #include <time.h>
 
+#include "base/file/folder.h"
 #include "base/file/part_file.h"
+#include "study/inverse/json.h"
 #include "study/inverse/parameters.h"
 
 bool lar_inverse_first_of_material(const lar_inverse_problem *p, int j) {
@@ -24,6 +26,25 @@ static void plain(const char *text, char *to, size_t size) {
     to[n] = '\0';
 }
 
+static void write_how_well(FILE *out, const char *name, const lar_inverse_estimate *e,
+                           const lar_inverse_result *r) {
+    if (e->told && isfinite(e->low))
+        fprintf(out, "# %s: fitted, 95 %% between %.4g and %.4g%s.\n", name, e->low, e->high,
+                e->given_bound ? ", given what stands at its bound" : "");
+    else if (e->at_bound)
+        fprintf(out,
+                "# %s: STANDS AT A BOUND of the fit; the data ask for a value beyond, so rely on "
+                "none of these.\n",
+                name);
+    else if (r->interrupted)
+        fprintf(out, "# %s: the best so far, without an interval.\n", name);
+    else if (isnan(r->deviation))
+        fprintf(out, "# %s: as many parameters as measured numbers, so HOW WELL IS NOT KNOWN.\n",
+                name);
+    else
+        fprintf(out, "# %s: CANNOT BE TOLD from these data; the value is one of many.\n", name);
+}
+
 static void write_provenance(FILE *out, const lar_inverse_problem *p, const lar_inverse_result *r,
                              const char *material) {
     char text[256], date[32] = "";
@@ -39,21 +60,9 @@ static void write_provenance(FILE *out, const lar_inverse_problem *p, const lar_
                 lar_inverse_kind_name[p->experiment[k].kind], text, (int)p->experiment[k].values,
                 100 * r->residuals[k].relative);
     }
-    for (int j = 0; j < p->parameters; j++) {
-        const lar_inverse_estimate *e = &r->estimate[j];
-        if (strcmp(p->parameter[j].material, material) != 0) continue;
-        if (e->told && isfinite(e->low))
-            fprintf(out, "# %s: fitted, 95 %% between %.4g and %.4g.\n", p->parameter[j].name,
-                    e->low, e->high);
-        else if (e->at_bound)
-            fprintf(out,
-                    "# %s: STANDS AT A BOUND of the fit; the data ask for a value beyond, so "
-                    "rely on none of these.\n",
-                    p->parameter[j].name);
-        else
-            fprintf(out, "# %s: CANNOT BE TOLD from these data; the value is one of many.\n",
-                    p->parameter[j].name);
-    }
+    for (int j = 0; j < p->parameters; j++)
+        if (strcmp(p->parameter[j].material, material) == 0)
+            write_how_well(out, p->parameter[j].name, &r->estimate[j], r);
     fprintf(out, "# All else is as the scenes of the fit have it.\n");
 }
 
@@ -222,4 +231,55 @@ lar_status lar_inverse_write_svg(const char *path, const lar_inverse_problem *p,
                 x_of(&a, abscissa(e, i)), y_of(&a, e->measured[i]));
     fprintf(a.out, "</svg>\n");
     return lar_part_close(&out, LAR_OK);
+}
+
+/* ---- all of it ------------------------------------------------------------------------------- */
+
+enum { PATH_SIZE = 4096 };
+
+/* Letters, digits, - and _ of a name; the others become _. */
+static void file_name(const char *name, char *to, size_t size) {
+    size_t n = 0;
+    for (; *name && n + 1 < size; name++) {
+        char c = *name;
+        bool keep =
+            (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-';
+        to[n++] = keep ? c : '_';
+    }
+    to[n] = '\0';
+}
+
+static lar_status write_tissues(const char *folder, const lar_inverse_problem *p,
+                                const lar_inverse_result *r, lar_error *error) {
+    char path[PATH_SIZE], name[64];
+    lar_status status = LAR_OK;
+    for (int j = 0; j < p->parameters && !status; j++) {
+        if (!lar_inverse_first_of_material(p, j)) continue;
+        file_name(p->parameter[j].material, name, sizeof name);
+        snprintf(path, sizeof path, "%.3900s/%s.tissue.yaml", folder, name);
+        status = lar_inverse_write_tissue(path, p, r, p->parameter[j].material, error);
+    }
+    return status;
+}
+
+lar_status lar_inverse_write_json(const char *path, const lar_inverse_problem *p,
+                                  const lar_inverse_result *r, lar_error *error) {
+    lar_part_file out;
+    lar_status status = lar_part_open(&out, path, error);
+    if (!status) lar_inverse_json(p, r, out.file);
+    return lar_part_close(&out, status);
+}
+
+lar_status lar_inverse_write_folder(const char *folder, const lar_inverse_problem *p,
+                                    const lar_inverse_result *r, lar_error *error) {
+    char path[PATH_SIZE], name[64];
+    lar_status status = lar_folder_make(folder, error);
+    if (!status) status = write_tissues(folder, p, r, error);
+    for (int k = 0; k < p->experiments && !status; k++) {
+        file_name(p->experiment[k].name, name, sizeof name);
+        snprintf(path, sizeof path, "%.3900s/%d_%s.svg", folder, k + 1, name);
+        status = lar_inverse_write_svg(path, p, r, k, error);
+    }
+    snprintf(path, sizeof path, "%.3900s/fit.json", folder);
+    return status ? status : lar_inverse_write_json(path, p, r, error);
 }

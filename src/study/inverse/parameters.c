@@ -145,6 +145,11 @@ const lar_material *lar_inverse_material(const lar_inverse_problem *problem, con
     return NULL;
 }
 
+const char *lar_inverse_unit_of(const lar_inverse_problem *problem, int j) {
+    const lar_inverse_parameter *p = &problem->parameter[j];
+    return lar_inverse_unit(lar_inverse_material(problem, p->material), p->name);
+}
+
 void lar_inverse_set_all(const lar_inverse_problem *problem, const double *value,
                          lar_material *material, int materials) {
     for (int j = 0; j < problem->parameters; j++)

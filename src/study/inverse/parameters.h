@@ -31,6 +31,9 @@ const char *lar_inverse_unit(const lar_material *material, const char *name);
 /* The first material of that name in any experiment; NULL: none. */
 const lar_material *lar_inverse_material(const lar_inverse_problem *problem, const char *name);
 
+/* Of parameter j of the problem: "Pa", "s" or "". */
+const char *lar_inverse_unit_of(const lar_inverse_problem *problem, int j);
+
 /* All parameters into the materials of one model; where there is no such material nothing. */
 void lar_inverse_set_all(const lar_inverse_problem *problem, const double *value,
                          lar_material *material, int materials);

@@ -13,6 +13,7 @@ typedef struct lar_inverse_estimate {
     bool told;          /* whether the data say what it is */
     bool profiled;      /* the interval is of a profile */
     bool at_bound;      /* stands at a bound, and the data ask for more: told is false */
+    bool given_bound;   /* another one does: the interval is for that bound as a known number */
     double sensitivity; /* length of its column of J: how many standard deviations of noise the
                            data change when it changes e times */
 } lar_inverse_estimate;

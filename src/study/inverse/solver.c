@@ -35,6 +35,13 @@ static void do_jobs(void *context, int32_t first, int32_t end) {
                                              jobs[i].stop, jobs[i].model, &jobs[i].error);
 }
 
+/* Threads take portions, so fewer portions are fewer threads. */
+static void do_all(const lar_inverse_solver *s, job *jobs, int count) {
+    const int workers = s->options.workers;
+    int portion = workers > 0 ? (count + workers - 1) / workers : 1;
+    lar_parallel_for(count, portion > 1 ? portion : 1, do_jobs, jobs);
+}
+
 static void set_jobs(const lar_inverse_solver *s, const double *u, job *jobs, double *model) {
     const lar_inverse_problem *p = s->problem;
     for (int k = 0; k < p->experiments; k++) {
@@ -68,7 +75,7 @@ static bool no_answer(lar_status status) {
 }
 
 bool lar_inverse_stopped(const lar_inverse_solver *s) {
-    return s->options.stop && *s->options.stop;
+    return lar_inverse_stop_asked(s->options.stop);
 }
 
 static void tell(const lar_inverse_solver *s) {
@@ -77,7 +84,7 @@ static void tell(const lar_inverse_solver *s) {
     int left = ROUNDS - s->rounds;
     const lar_inverse_progress progress = {
         .doing = s->doing,
-        .runs = s->runs,
+        .runs = s->before + s->runs,
         .residual = sqrt(s->best_squares / s->values),
         .remaining = s->rounds > 0 ? s->round * (left > 1 ? left : 1) : -1};
     s->options.progress(s->options.context, &progress);
@@ -92,7 +99,7 @@ lar_status lar_inverse_evaluate(lar_inverse_solver *s, const double *u, double *
     double *model = lar_calloc((size_t)s->values, sizeof *model), squares = 0;
     if (!model) return lar_fail_memory(s->error, (size_t)s->values, s->problem->path);
     set_jobs(s, u, jobs, model);
-    lar_parallel_for(s->problem->experiments, 1, do_jobs, jobs);
+    do_all(s, jobs, s->problem->experiments);
     s->runs += s->problem->experiments;
     lar_status status = outcome(s, jobs);
     if (!status) residuals(s->problem, model, r);
@@ -169,7 +176,7 @@ lar_status lar_inverse_differentiate(lar_inverse_solver *s, const double *u, con
                        model + 2 * (size_t)count * (size_t)s->values);
         count++;
     }
-    if (!status) lar_parallel_for(2 * count * experiments, 1, do_jobs, jobs);
+    if (!status) do_all(s, jobs, 2 * count * experiments);
     for (int i = 0; i < count && !status; i++)
         status = take_difference(s, &d[i], u[d[i].parameter], r,
                                  jacobian + (size_t)d[i].parameter * (size_t)s->values);

@@ -28,6 +28,7 @@ typedef struct lar_inverse_options {
     const volatile sig_atomic_t *stop; /* not 0: end with the best so far; may be NULL */
     void (*progress)(void *context, const lar_inverse_progress *progress); /* may be NULL */
     void *context;
+    int workers; /* runs at a time, at most; 0: one on each core */
 } lar_inverse_options;
 
 typedef struct lar_inverse_solver {
@@ -35,6 +36,7 @@ typedef struct lar_inverse_solver {
     lar_inverse_options options;
     int values, parameters;
     int runs, rounds;    /* simulations; evaluations with derivatives */
+    int before;          /* simulations of the same fit by others, for who is told */
     double begin, round; /* clock at the start [s]; seconds of the last round */
     const char *doing;
     double *best_model; /* [values] */
@@ -64,7 +66,7 @@ lar_status lar_inverse_differentiate(lar_inverse_solver *solver, const double *u
 /* From solver->start to the least squares; where it ends stands in best_*. *converged: whether
  * the squares are as small as they get. An interrupted fit is LAR_OK. */
 lar_status lar_inverse_minimise(lar_inverse_solver *solver, bool *converged);
-/* Whether the user has asked to stop. */
+/* Whether it was asked to stop. */
 bool lar_inverse_stopped(const lar_inverse_solver *solver);
 
 #endif
