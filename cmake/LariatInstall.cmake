@@ -19,7 +19,8 @@ target_include_directories(liblariat INTERFACE
 # Linking lariat_core as well brings its libraries along.
 target_link_libraries(liblariat PRIVATE lariat_core)
 if(NOT LARIAT_SANITIZE)
-  target_link_options(liblariat PRIVATE -Wl,--no-undefined -Wl,--as-needed -Wl,--gc-sections)
+  target_link_options(liblariat PRIVATE -Wl,--no-undefined -Wl,--as-needed -Wl,--gc-sections
+    -Wl,-Bsymbolic-functions)
 endif()
 
 # The same objects as an archive, for programs that shall need no file of ours. What the objects call

@@ -441,6 +441,22 @@ static lar_status notice_mesh(lar_model *model, lar_error *error) {
     return status;
 }
 
+/* What theory.md says of this law where it is nearly incompressible. */
+static lar_status notice_materials(lar_model *model, lar_error *error) {
+    lar_status status = LAR_OK;
+    for (int i = 0; i < model->material_count && !status; i++) {
+        const lar_material *m = &model->material[i];
+        double most = 8 * lar_material_shear(m) / 3;
+        if (m->law == LAR_LAW_holmes_mow && lar_material_bulk(m) > 1.001 * most)
+            status = lar_model_notice(model, error,
+                                      "%.300s: material %d: holmes-mow with a bulk modulus above "
+                                      "%.4g Pa, 8/3 of the shear modulus, gives way when it is "
+                                      "stretched; take less, or another law",
+                                      lar_model_source(model), i + 1, most);
+    }
+    return status;
+}
+
 /* Names go to terminals, tables and pages, from whatever file they are. */
 static void show_names(lar_model *model) {
     lar_text_show(model->title);
@@ -468,5 +484,6 @@ lar_status lar_model_check(lar_model *model, lar_error *error) {
         status = lar_surface_build(&model->mesh, &model->surface, error);
     if (!status) status = check_contacts(model, error);
     if (!status) status = check_tools(model, error);
+    if (!status) status = notice_materials(model, error);
     return status ? status : notice_mesh(model, error);
 }

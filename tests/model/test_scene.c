@@ -314,6 +314,22 @@ static void test_output(void **state) {
     lar_model_destroy(model);
 }
 
+static void laws_that_give_way_are_told(void **state) {
+    (void)state;
+    static const char *const bulk[] = {"2.6e3", "2.7e3"};
+    for (int i = 0; i < 2; i++) {
+        char text[512];
+        snprintf(text, sizeof text,
+                 HEAD "materials: [{cells: all, law: holmes-mow, density: 1, shear_modulus: 1e3, "
+                      "bulk_modulus: %s}]\n",
+                 bulk[i]);
+        lar_model *model = scene(text);
+        assert_int_equal(model->notice_count, i);
+        if (i) assert_non_null(strstr(model->notice[0], "above 2667 Pa, 8/3 of the shear modulus"));
+        lar_model_destroy(model);
+    }
+}
+
 static void test_several_meshes(void **state) {
     (void)state;
     lar_model *model = scene("lariat: 1\nmesh: [brick.vtu, {file: two.vtu, tag: 9}]\n" MATERIAL
@@ -412,6 +428,7 @@ static void test_documented_examples(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_node_selectors),
+        cmocka_unit_test(laws_that_give_way_are_told),
         cmocka_unit_test(test_element_selectors),
         cmocka_unit_test(test_elements_of_a_node_set),
         cmocka_unit_test(test_line_ends_and_byte_order_mark),
