@@ -65,8 +65,8 @@ typedef struct lar_step_division {
     uint64_t decided;  /* the step when it was decided last */
     int32_t base;      /* parts that stiffer materials (settings.h) take at least, a power of two */
     int16_t due;       /* to be decided before the next step, wherever an interval begins */
-    int16_t untouched; /* for how many steps no tool has felt anything, LAR_UNTOUCHED_LONG after a
-                          tenth of a second; 0 where something else may press */
+    int16_t untouched; /* for how many steps, and one, nothing has pressed on the body since a tool
+                          did; LAR_UNTOUCHED_LONG: for a tenth of a second; 0: none ever did */
 } lar_step_division;
 
 /* An element that is strained, and may move with more mass for that (step/mass/heavier.h). */

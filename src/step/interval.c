@@ -95,21 +95,32 @@ static bool bears(const lar_domain *whole, const lar_tools *tools, const lar_ste
     return whole->burden && lar_heavier_bears(whole, &tools->strained, max - springs);
 }
 
-/* For how many steps nothing has been touched, after `seconds` more. */
-static int16_t untouched_now(const lar_domain *whole, const lar_tools *tools, double seconds) {
-    static const double LONG = 0.1; /* [s] */
+/* Whether anything but tools may hold elements in the shape that they have. */
+static bool loaded(const lar_domain *whole, const lar_tools *tools, double time) {
     const lar_model *model = whole->model;
-    bool touched = tools->count == 0 || lar_model_active(model) || model->contact_count > 0 ||
-                   model->move_count > 0 || model->load_count > 0 || model->pressure_count > 0 ||
-                   tools->grasp_count > 0 || tools->forces.count > 0 || tools->supports.count > 0;
+    double gravity[3];
+    lar_gravity_at(model, &tools->settings, time, gravity);
+    return gravity[0] != 0 || gravity[1] != 0 || gravity[2] != 0 || lar_model_active(model) ||
+           model->contact_count > 0 || model->move_count > 0 || model->load_count > 0 ||
+           model->pressure_count > 0 || tools->forces.count > 0 || tools->supports.count > 0;
+}
+
+/* For how many steps nothing has been touched or loaded, after `seconds` more. */
+static int16_t untouched_now(const lar_domain *whole, const lar_tools *tools, double time,
+                             double seconds) {
+    static const double LONG = 0.1; /* [s] */
+    int16_t before = tools->division.untouched;
+    bool touched = tools->grasp_count > 0;
     for (int32_t t = 0; t < tools->count; t++) {
         const lar_tool_felt *felt = &tools->follower[t].felt;
         touched = touched || felt->depth > 0;
         for (int k = 0; k < 3; k++) touched = touched || felt->force[k] != 0;
     }
-    double steps = tools->division.untouched + round(seconds / whole->time_step);
+    if (before == 0 && !touched) return 0;
+    if (touched || loaded(whole, tools, time)) return 1;
+    double steps = before + round(seconds / whole->time_step);
     bool over = steps * whole->time_step >= LONG || !(steps < LAR_UNTOUCHED_LONG);
-    return touched ? 0 : over ? LAR_UNTOUCHED_LONG : (int16_t)steps;
+    return over ? LAR_UNTOUCHED_LONG : (int16_t)steps;
 }
 
 bool lar_interval_divide(const lar_domain *whole, uint64_t step, double seconds, lar_tools *tools) {
@@ -121,7 +132,7 @@ bool lar_interval_divide(const lar_domain *whole, uint64_t step, double seconds,
     double hardness =
         lar_tools_harden(whole->surroundings.list, tools, fading, seconds, 1 / whole->scale);
     bool close = lar_division_is_close(d), let_go = lar_division_lets_go(d);
-    d->untouched = untouched_now(whole, tools, seconds);
+    d->untouched = untouched_now(whole, tools, (double)step * whole->time_step, seconds);
     d->lately = fmax(fmin(d->need, LAR_NEED_MAX), fading * d->lately);
     d->need = 0;
     if (whole->burden) lar_heavier_fade(fading, &tools->strained);
