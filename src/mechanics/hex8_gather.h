@@ -97,21 +97,10 @@ LAR_INLINE void gather_modes(const lar_block_head *head, int lane, lar_block_row
     }
 }
 
-/* A node's four values, whatever the lanes are. */
-typedef double node_values __attribute__((vector_size(4 * sizeof(double)), may_alias));
-
-/* Where the corners of some lanes are: nodes at `rest`, displaced by `u` (may be NULL). Loose, for
- * a block that is looked at on its own; added before nodes are turned into lanes. */
-LAR_INLINE void gather_corners(const lar_block_head *head, int lane, const double *rest,
-                               const double *u, lar_lane x[8][3]) {
-    static const int32_t place[8] = {0, 4, 8, 12, 16, 20, 24, 28};
-    UNROLL8 for (int a = 0; a < 8; a++) {
-        const int32_t *node = head->node[a] + lane;
-        node_values now[LAR_LANES] __attribute__((aligned(64)));
-        for (int k = 0; k < LAR_LANES && u; k++)
-            now[k] = *(const node_values *)(rest + node[k]) + *(const node_values *)(u + node[k]);
-        lar_lane_gather(u ? (const double *)now : rest, u ? place : node, x[a]);
-    }
+/* factor / 64 (a x b), axis i: of the volume's derivatives (LAR_HEX8_VOLUME_TERM). */
+LAR_INLINE lar_lane volume_term(double factor, const lar_lane a[3], const lar_lane b[3], int i) {
+    int j = i == 2 ? 0 : i + 1, k = i == 0 ? 2 : i - 1;
+    return lar_lane_set(factor / 64) * (a[j] * b[k] - a[k] * b[j]);
 }
 
 #endif

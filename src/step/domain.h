@@ -26,6 +26,8 @@ typedef struct lar_lane_base {
     double stiffness[LAR_HEX8_HOURGLASS]; /* c_m [N/m] */
     double limit;                         /* of corner_limit */
     double largest;                       /* corner at rest [m^3] (mechanics/hex8_guard.h) */
+    double areas;                         /* lar_hex8_areas at rest [m^4] */
+    uint32_t corner; /* which corner of the mesh each of the layout's is, four bits each */
 } lar_lane_base;
 
 typedef struct lar_domain {

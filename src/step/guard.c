@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/vector.h"
 #include "mechanics/hex8_guard.h"
@@ -11,8 +12,6 @@
  * comes there before the next list is made is no theorem: in fast pushes with tools at 1.6 m/s the
  * least corner that was not listed stood at 0.48. */
 static const double SHARES[2] = {LAR_GUARD_START, 2 * LAR_GUARD_START};
-
-enum { ALL_LANES = (1 << LAR_BLOCK) - 1 };
 
 /* Part of the step by which the damping leads; it counts twice beside the spring (theory.md 10). */
 static const double LEAD = 0.5;
@@ -51,10 +50,77 @@ void lar_strained_destroy(lar_strained *strained) {
 
 static void corners_of(const lar_domain *domain, const lar_state *state, lar_gid e,
                        double rest[8][3], double now[8][3]) {
-    lar_mesh_corners(&domain->model->mesh, e, rest);
-    lar_domain_corners(domain, state->u, e, now);
-    for (int a = 0; a < 8; a++)
-        for (int i = 0; i < 3; i++) now[a][i] += rest[a][i];
+    const lar_gid *node = domain->model->mesh.element[e];
+    for (int a = 0; a < 8; a++) {
+        size_t at = 4 * (size_t)domain->layout.local[node[a]];
+        for (int i = 0; i < 3; i++) {
+            rest[a][i] = domain->rest[at + (size_t)i];
+            now[a][i] = state->u[at + (size_t)i] + rest[a][i];
+        }
+    }
+}
+
+/* Strained elements of a run that are looked at side by side. */
+typedef struct strained_group {
+    lar_hex8_group hex8;
+    int count;
+    int32_t lane[LAR_BLOCK];  /* block * 8 + lane */
+    int32_t entry[LAR_BLOCK]; /* in the list */
+    lar_gid element[LAR_BLOCK];
+    unsigned lanes;              /* whose corners may be near a barrier: a bit each */
+    unsigned below;              /* of these (lar_hex8_corners) */
+    uint8_t at[LAR_BLOCK];       /* corners below START, likewise */
+    double stiffness[LAR_BLOCK]; /* of the barriers that are at work [N/m] */
+} strained_group;
+
+static void set_nodes(strained_group *group, int at, const lar_block_head *head, int32_t lane) {
+    for (int a = 0; a < 8; a++) group->hex8.node[a][at] = head->node[a][lane];
+}
+
+/* Takes up to eight lanes of run r, from entry `first` of `count` on, and looks at their corners,
+ * but not of those that are listed for being flat alone: these are far from the barrier. Returns
+ * where the next ones begin. */
+static int32_t look(const lar_domain *domain, const lar_state *state, int32_t r,
+                    const int32_t *list, int32_t first, int32_t count, strained_group *group) {
+    const lar_block_run *run = &domain->run[r];
+    const lar_lanes *lanes = domain->layout.block + domain->run_first[r];
+    const lar_lane_base *base = domain->base + LAR_BLOCK * (size_t)domain->run_first[r];
+    const lar_block_head *head = NULL;
+    int32_t i = first;
+    group->count = 0;
+    group->lanes = 0;
+    for (; i < count && group->count < LAR_BLOCK; i++) {
+        int32_t lane = list[i] & ~LAR_LANE_FLAT, block = lane / LAR_BLOCK, at = group->count;
+        lar_gid e = lanes[block].element[lane % LAR_BLOCK];
+        if (e < 0) continue;
+        head = (const void *)((const char *)run->blocks + (size_t)block * lar_run_stride(run));
+        set_nodes(group, at, head, lane % LAR_BLOCK);
+        group->hex8.largest[at] = base[lane].largest;
+        group->lane[at] = lane;
+        group->entry[at] = i;
+        group->element[at] = e;
+        group->stiffness[at] = 0;
+        if (lane == list[i]) group->lanes |= 1u << at;
+        group->count++;
+    }
+    for (int at = group->count; at < LAR_BLOCK && head; at++) {
+        set_nodes(group, at, head, group->lane[group->count - 1] % LAR_BLOCK);
+        group->hex8.largest[at] = 0;
+    }
+    const lar_hex8_places places = {.rest = domain->rest, .u = state->u};
+    group->below = 0;
+    if (group->lanes)
+        group->below =
+            domain->kernels->corners(&group->hex8, group->lanes, &places, SHARES, group->at);
+    return i;
+}
+
+/* Corners of a lane of run r as the mesh counts them: forces of several are added in that order. */
+static unsigned corners_in_mesh(const lar_domain *domain, int32_t r, int32_t lane, unsigned at) {
+    uint32_t corner = domain->base[LAR_BLOCK * domain->run_first[r] + lane].corner;
+    unsigned in_mesh = 0;
+    for (; at; at &= at - 1) in_mesh |= 1u << (corner >> 4 * __builtin_ctz(at) & 7);
+    return in_mesh;
 }
 
 /* What is found in a step counts from the next one on, until that is over or, where steps are not
@@ -67,73 +133,64 @@ static double steps_ahead(const lar_domain *domain, const lar_state *state) {
 
 /* Whether nodes of an element move against each other by more than a tenth of its size in that
  * time: what springs back when it is let go comes to its barriers from where nobody looks. */
-static bool is_thrown(const lar_domain *domain, const lar_state *state, lar_gid e, double volume) {
-    const lar_gid *node = domain->layout.corner[e];
-    const double *first = state->v + 4 * domain->layout.local[node[0]];
-    double most = 0, ahead = steps_ahead(domain, state) * domain->time_step;
-    for (int a = 1; a < 8; a++) {
-        double away[3];
-        lar_minus(state->v + 4 * domain->layout.local[node[a]], first, away);
-        double square = lar_dot(away, away);
-        if (square > most) most = square;
-    }
-    double square = 100 * most * ahead * ahead;
+static bool is_thrown(const lar_domain *domain, const lar_state *state, double parting,
+                      double volume) {
+    double ahead = steps_ahead(domain, state) * domain->time_step;
+    double square = 100 * parting * ahead * ahead;
     return square * square * square > volume * volume;
 }
 
-/* How stiff an element's barriers are: now, where a corner is at one, and where its corners will be
- * after so many steps if nothing stops them. */
-static double barriers_of(const lar_domain *domain, const lar_state *state, lar_gid e, bool at_one,
-                          double steps) {
-    const lar_material *material = lar_domain_material(domain, e);
+/* How stiff an element's barriers will be in `ahead` seconds if nothing stops these corners. */
+static double barriers_ahead(const lar_domain *domain, const lar_state *state, lar_gid e,
+                             double ahead, unsigned corners) {
     double rest[8][3], now[8][3], v[8][3];
-    lar_guard guard = {0}, then;
+    lar_guard then;
     corners_of(domain, state, e, rest, now);
-    if (at_one) lar_hex8_guard((const double(*)[3])rest, (const double(*)[3])now, material, &guard);
     lar_domain_corners(domain, state->v, e, v);
     for (int a = 0; a < 8; a++)
-        for (int i = 0; i < 3; i++) now[a][i] += steps * domain->time_step * v[a][i];
-    lar_hex8_guard((const double(*)[3])rest, (const double(*)[3])now, material, &then);
-    return fmax(guard.stiffness, then.stiffness);
+        for (int i = 0; i < 3; i++) now[a][i] += ahead * v[a][i];
+    lar_hex8_guard_force((const double(*)[3])rest, (const double(*)[3])now, NULL,
+                         lar_domain_material(domain, e), (lar_guard_lead){0}, corners, NULL, &then);
+    return then.stiffness;
 }
 
 /* How the square of a flat element's frequency has grown, with what its neighbours leave of it: its
  * areas as they are, not as those of a cube would be with such a strain. 0 for others. */
-static double growth_of_flat(const lar_domain *domain, const lar_state *state, lar_gid e,
-                             size_t place, const float strain[LAR_STRAIN_NUMBERS]) {
-    double rest[8][3], now[8][3];
+static double growth_of_flat(const lar_domain *domain, lar_gid e, size_t place, double areas,
+                             const float strain[LAR_STRAIN_NUMBERS]) {
     if (!domain->area_limit || !(domain->area_limit[place] < LAR_STRAINED_AREA)) return 0;
-    corners_of(domain, state, e, rest, now);
-    double area =
-        lar_hex8_areas((const double(*)[3])now) / lar_hex8_areas((const double(*)[3])rest);
-    return domain->rate[e].share * lar_hex8_growth(lar_domain_material(domain, e), strain, area);
+    return domain->rate[e].share * lar_hex8_growth(lar_domain_material(domain, e), strain,
+                                                   areas / domain->base[place].areas);
 }
 
-/* What barriers that an element is at, or is coming to, do to the square of its frequency. `below`:
- * the bits of its lane (lar_hex8_corners). */
-static double square_of_barriers(const lar_domain *domain, const lar_state *state, lar_gid e,
-                                 unsigned below, double volume) {
-    double steps = 0;
-    if (below >> LAR_BLOCK & 1)
-        steps = SEEN_IN_STEPS;
-    else if (is_thrown(domain, state, e, volume))
-        steps = steps_ahead(domain, state);
-    if (!(steps > 0)) return 0;
-    return (1 + 2 * LEAD) * barriers_of(domain, state, e, below & 1, steps) / domain->rate[e].mass;
-}
-
-/* Strained lanes of one block, from entry `i` of a monitor on, without those that are listed for
- * being flat alone: their corners are far from the barrier. Returns where those of the next begin.
- */
-static int32_t lanes_of_block(const lar_hex8_monitor *monitor, int32_t i, int32_t *block,
-                              unsigned *lanes) {
-    *block = (monitor->lane[i] & ~LAR_LANE_FLAT) / LAR_BLOCK;
-    for (*lanes = 0; i < monitor->count; i++) {
-        int32_t lane = monitor->lane[i] & ~LAR_LANE_FLAT;
-        if (lane / LAR_BLOCK != *block) break;
-        if (lane == monitor->lane[i]) *lanes |= 1u << lane % LAR_BLOCK;
+/* How stiff the barriers are that lanes of a group are coming to: in some steps where a corner is
+ * close to one, in as many as are ahead where an element is thrown. */
+static void look_ahead(const lar_domain *domain, const lar_state *state, int32_t r,
+                       const strained_group *group, const double parting[LAR_BLOCK],
+                       double stiffness[LAR_BLOCK]) {
+    double ahead[LAR_BLOCK] __attribute__((aligned(64))) = {0};
+    const lar_hex8_places places = {
+        .rest = domain->rest, .u = state->u, .v = state->v, .ahead = ahead};
+    uint8_t at[LAR_BLOCK];
+    unsigned coming = 0;
+    for (unsigned lanes = group->lanes; lanes; lanes &= lanes - 1) {
+        int k = __builtin_ctz(lanes);
+        double volume = domain->base[LAR_BLOCK * domain->run_first[r] + group->lane[k]].volume;
+        if (group->below >> (k + LAR_BLOCK) & 1)
+            ahead[k] = SEEN_IN_STEPS * domain->time_step;
+        else if (is_thrown(domain, state, parting[k], volume))
+            ahead[k] = steps_ahead(domain, state) * domain->time_step;
+        if (ahead[k] > 0) coming |= 1u << k;
     }
-    return i;
+    memcpy(stiffness, group->stiffness, sizeof group->stiffness);
+    if (!coming) return;
+    coming &= domain->kernels->corners(&group->hex8, coming, &places, SHARES, at);
+    for (; coming; coming &= coming - 1) {
+        int k = __builtin_ctz(coming);
+        unsigned corners = corners_in_mesh(domain, r, group->lane[k], at[k]);
+        stiffness[k] =
+            fmax(stiffness[k], barriers_ahead(domain, state, group->element[k], ahead[k], corners));
+    }
 }
 
 /* In whole units, which sum to nothing. */
@@ -188,7 +245,8 @@ static void add_half_work(const double rest[8][3], const double now[8][3], const
  * before the nodes move; `damped` says what the other half comes from, NULL: nothing counts. What
  * opens is damped as in a whole step: it gives back no more than it took while the step was not
  * divided yet. (A damper that never pulls cannot make a corner swing, however much it leads.) */
-static bool apply(const lar_domain *domain, lar_gid e, lar_damped *damped, lar_state *state) {
+static bool apply(const lar_domain *domain, lar_gid e, unsigned corners, lar_damped *damped,
+                  lar_state *state, double *stiffness) {
     double rest[8][3], now[8][3], v[8][3], force[8][3] = {{0}};
     double step = domain->time_step / state->parts;
     double mean = state->past > 0 ? 0.5 * (state->past + step) : step;
@@ -197,7 +255,8 @@ static bool apply(const lar_domain *domain, lar_gid e, lar_damped *damped, lar_s
     corners_of(domain, state, e, rest, now);
     lar_domain_corners(domain, state->v, e, v);
     lar_hex8_guard_force((const double(*)[3])rest, (const double(*)[3])now, (const double(*)[3])v,
-                         lar_domain_material(domain, e), lead, force, &guard);
+                         lar_domain_material(domain, e), lead, corners, force, &guard);
+    if (stiffness) *stiffness = guard.stiffness;
     if (!(guard.min < LAR_GUARD_START)) return false;
     if (state->lets_go) {
         if (damped) *damped = (lar_damped){.element = e, .step = (float)step, .gone = true};
@@ -249,43 +308,38 @@ static void finish_damping(const lar_domain *domain, int32_t r, lar_state *state
     strained->damped_count[r] = 0;
 }
 
-/* Those lanes of a block of run r where a corner is below START, and from bit 8 on those where one
- * is below twice START. */
-static unsigned lanes_below(const lar_domain *domain, int32_t r, int32_t block, unsigned lanes,
-                            const lar_state *state) {
-    const lar_lane_base *base = domain->base + LAR_BLOCK * (size_t)(domain->run_first[r] + block);
-    double largest[LAR_BLOCK] __attribute__((aligned(64)));
-    for (int lane = 0; lane < LAR_BLOCK; lane++) largest[lane] = base[lane].largest;
-    return domain->kernels->corners(&domain->run[r], block, lanes, largest, domain->rest, state->u,
-                                    SHARES);
-}
-
-static void apply_lanes(const lar_domain *domain, int32_t r, const lar_gid *element, unsigned lanes,
+/* Barriers of those lanes of a group that have a corner below START. */
+static void apply_group(const lar_domain *domain, int32_t r, strained_group *group,
                         lar_state *state) {
     lar_damped *damped = state->strained->damped + LAR_BLOCK * (size_t)domain->run_first[r];
     int32_t *count = &state->strained->damped_count[r];
-    for (; lanes; lanes &= lanes - 1)
-        *count += apply(domain, element[__builtin_ctz(lanes)], &damped[*count], state);
+    for (unsigned lanes = group->lanes & group->below; lanes; lanes &= lanes - 1) {
+        int k = __builtin_ctz(lanes);
+        unsigned corners = corners_in_mesh(domain, r, group->lane[k], group->at[k]);
+        *count +=
+            apply(domain, group->element[k], corners, &damped[*count], state, &group->stiffness[k]);
+    }
 }
 
-/* How fast strained elements of a block have become, entries first to end - 1 of a monitor:
- * (omega dt / 2)^2 of each, if it is not heavier for a while. */
-static void measure(const lar_domain *domain, const lar_hex8_monitor *monitor, int32_t first,
-                    int32_t end, size_t place, const lar_gid *element, unsigned below,
-                    lar_state *state) {
-    for (int32_t i = first; i < end; i++) {
-        int32_t lane = monitor->lane[i] % LAR_BLOCK;
-        lar_gid e = element[lane];
-        size_t at = place + (size_t)lane;
-        if (e < 0) continue;
+/* How fast the strained elements of a group have become: (omega dt / 2)^2 of each, if it is not
+ * heavier for a while. */
+static void measure(const lar_domain *domain, const lar_hex8_monitor *monitor, int32_t r,
+                    const strained_group *group, lar_state *state) {
+    const lar_hex8_places places = {.rest = domain->rest, .u = state->u};
+    lar_hex8_motion motion;
+    double stiffness[LAR_BLOCK];
+    domain->kernels->motion(&group->hex8, (1u << group->count) - 1, &places, state->v, &motion);
+    look_ahead(domain, state, r, group, motion.parting, stiffness);
+    for (int k = 0; k < group->count; k++) {
+        lar_gid e = group->element[k];
+        size_t at = LAR_BLOCK * (size_t)domain->run_first[r] + (size_t)group->lane[k];
         double factor = domain->factor[lar_factor_of(domain->model->element_material[e])];
-        const float *strain = monitor->strain[i];
+        const float *strain = monitor->strain[group->entry[k]];
         double rate = factor * domain->rate[e].square;
         double square = rate * lar_hex8_growth(lar_domain_material(domain, e), strain,
                                                strain[LAR_STRAIN_AREA] / 3.0);
-        if (!(monitor->lane[i] & LAR_LANE_FLAT))
-            square += square_of_barriers(domain, state, e, below >> lane, domain->base[at].volume);
-        double flat = rate * growth_of_flat(domain, state, e, at, strain);
+        square += (1 + 2 * LEAD) * stiffness[k] / domain->rate[e].mass;
+        double flat = rate * growth_of_flat(domain, e, at, motion.areas[k], strain);
         if (flat > square) square = flat;
         double need = 0.25 * domain->time_step * domain->time_step * square;
         if (!(need >= 0)) need = INFINITY; /* a corner that is a point has no number */
@@ -297,38 +351,32 @@ static void measure(const lar_domain *domain, const lar_hex8_monitor *monitor, i
 void lar_guard_select_and_apply(const lar_domain *domain, int32_t r,
                                 const lar_hex8_monitor *monitor, bool measures, lar_state *state) {
     int32_t *list = monitor->lane, count = 0;
+    strained_group group;
     finish_damping(domain, r, state);
-    for (int32_t first = 0, end; first < monitor->count; first = end) {
-        int32_t block;
-        unsigned lanes;
-        end = lanes_of_block(monitor, first, &block, &lanes);
-        size_t at = (size_t)(domain->run_first[r] + block);
-        const lar_gid *element = domain->layout.block[at].element;
-        for (int lane = 0; lane < LAR_BLOCK; lane++)
-            if (element[lane] < 0) lanes &= ~(1u << lane);
-        unsigned below = lanes ? lanes_below(domain, r, block, lanes, state) : 0;
-        if (measures) measure(domain, monitor, first, end, LAR_BLOCK * at, element, below, state);
-        lanes &= below >> LAR_BLOCK;
-        if (lanes) list[count++] = (int32_t)((unsigned)block << LAR_BLOCK | lanes);
-        apply_lanes(domain, r, element, lanes & below, state);
+    for (int32_t i = 0; i < monitor->count;) {
+        i = look(domain, state, r, monitor->lane, i, monitor->count, &group);
+        apply_group(domain, r, &group, state);
+        if (measures) measure(domain, monitor, r, &group, state);
+        for (int k = 0; k < group.count; k++) /* never more than were read */
+            if (group.below >> (k + LAR_BLOCK) & 1) list[count++] = group.lane[k];
     }
     state->strained->count[r] = count;
 }
 
 void lar_guard_apply(const lar_domain *domain, int32_t r, lar_state *state) {
     const int32_t *list = state->strained->lane + LAR_BLOCK * (size_t)domain->run_first[r];
+    int32_t count = state->strained->count[r];
+    strained_group group;
     finish_damping(domain, r, state);
-    for (int32_t i = 0; i < state->strained->count[r]; i++) {
-        int32_t block = (int32_t)((uint32_t)list[i] >> LAR_BLOCK);
-        unsigned lanes = (unsigned)list[i] & ALL_LANES;
-        const lar_gid *element = domain->layout.block[domain->run_first[r] + block].element;
-        apply_lanes(domain, r, element, lanes_below(domain, r, block, lanes, state) & ALL_LANES,
-                    state);
+    for (int32_t i = 0; i < count;) {
+        i = look(domain, state, r, list, i, count, &group);
+        apply_group(domain, r, &group, state);
     }
 }
 
 void lar_guard_apply_all(const lar_domain *domain, lar_state *state) {
-    for (lar_gid e = 0; e < domain->model->mesh.element_count; e++) apply(domain, e, NULL, state);
+    for (lar_gid e = 0; e < domain->model->mesh.element_count; e++)
+        apply(domain, e, LAR_ALL_CORNERS, NULL, state, NULL);
 }
 
 double lar_guard_energy(const lar_domain *domain, const lar_state *state, lar_gid e) {
