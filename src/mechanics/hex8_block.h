@@ -223,13 +223,20 @@ typedef struct lar_hex8_places {
     const double *rest, *u, *v, *ahead;
 } lar_hex8_places;
 
-/* Looks at the corners of those of a group that have a bit in `lanes`. A corner's volume is what
- * its edges span. Returns a bit for each lane where one is not above share[0] times that at rest;
- * and for share[1], which is more, eight bits further up. at[lane] becomes a bit for each corner
- * that is not above the first. */
+/* What corners have, their edges span it. */
+typedef struct lar_hex8_corner_look {
+    double above[LAR_BLOCK] __attribute__((aligned(64))); /* of none less than this more than
+                                                             share[1] of that at rest [m^3] */
+    double longest[LAR_BLOCK];                            /* square of an edge [m^2] */
+    uint8_t at[LAR_BLOCK]; /* a bit for each corner that has not more than share[0] */
+} lar_hex8_corner_look;
+
+/* Looks at the corners of those of a group that have a bit in `lanes`. Returns a bit for each lane
+ * where one has not more than share[0] of its volume at rest; and for share[1], which is more,
+ * eight bits further up. */
 typedef unsigned (*lar_hex8_corners)(const lar_hex8_group *group, unsigned lanes,
                                      const lar_hex8_places *places, const double share[2],
-                                     uint8_t at[LAR_BLOCK]);
+                                     lar_hex8_corner_look *look);
 
 /* How such elements are and move: lar_hex8_areas [m^4], and the largest square of a corner's speed
  * beside the first one [m^2/s^2]. */

@@ -116,10 +116,31 @@ LAR_INLINE unsigned look_below(const lar_lane now[8], const lar_lane at_rest[8],
     return any;
 }
 
+/* How much is left above `share`, at least. */
+LAR_INLINE lar_lane least_above(const lar_lane now[8], const lar_lane at_rest[8], double share) {
+    lar_lane missing = lar_lane_set(share) * at_rest[0] - now[0];
+    for (int a = 1; a < 8; a++)
+        missing = lar_lane_max(missing, lar_lane_set(share) * at_rest[a] - now[a]);
+    return -missing;
+}
+
+/* The square of the longest edge. */
+LAR_INLINE lar_lane longest_edge(const lar_lane x[8][3]) {
+    static const int8_t end[12][2] = {{0, 1}, {3, 2}, {4, 5}, {7, 6}, {0, 3}, {1, 2},
+                                      {4, 7}, {5, 6}, {0, 4}, {1, 5}, {2, 6}, {3, 7}};
+    lar_lane longest = lar_lane_set(0);
+    for (int e = 0; e < 12; e++) {
+        lar_lane d[3];
+        UNROLL3 for (int i = 0; i < 3; i++) d[i] = x[end[e][1]][i] - x[end[e][0]][i];
+        longest = lar_lane_max(d[0] * d[0] + d[1] * d[1] + d[2] * d[2], longest);
+    }
+    return longest;
+}
+
 static unsigned corners(const lar_hex8_group *group, unsigned lanes, const lar_hex8_places *places,
-                        const double share[2], uint8_t at[LAR_BLOCK]) {
+                        const double share[2], lar_hex8_corner_look *look) {
     unsigned below[2] = {0, 0};
-    memset(at, 0, LAR_BLOCK);
+    memset(look->at, 0, sizeof look->at);
     for (int lane = 0; lane < LAR_BLOCK; lane += LAR_LANES) {
         lar_lane x[8][3], now[8], at_rest[8];
         unsigned part = lanes >> lane & ((1u << LAR_LANES) - 1);
@@ -127,12 +148,15 @@ static unsigned corners(const lar_hex8_group *group, unsigned lanes, const lar_h
         gather_corners(group->node, lane, places->rest, places->u, x);
         if (places->v) go_ahead(group, lane, places, x);
         corner_volumes((const lar_lane(*)[3])x, now);
+        lar_lane_store(&look->longest[lane], longest_edge((const lar_lane(*)[3])x));
         for (int a = 0; a < 8; a++) at_rest[a] = lar_lane_load(&group->largest[lane]);
-        if (!look_below(now, at_rest, part, share[1], NULL)) continue;
-        gather_corners(group->node, lane, places->rest, NULL, x);
-        corner_volumes((const lar_lane(*)[3])x, at_rest);
-        below[0] |= look_below(now, at_rest, part, share[0], at + lane) << lane;
-        below[1] |= look_below(now, at_rest, part, share[1], NULL) << lane;
+        if (look_below(now, at_rest, part, share[1], NULL)) {
+            gather_corners(group->node, lane, places->rest, NULL, x);
+            corner_volumes((const lar_lane(*)[3])x, at_rest);
+            below[0] |= look_below(now, at_rest, part, share[0], look->at + lane) << lane;
+            below[1] |= look_below(now, at_rest, part, share[1], NULL) << lane;
+        }
+        lar_lane_store(&look->above[lane], least_above(now, at_rest, share[1]));
     }
     return below[0] | below[1] << LAR_BLOCK;
 }

@@ -155,6 +155,7 @@ lar_status lar_simulation_create_state(lar_simulation *simulation, bool search_a
     lar_status status = lar_state_create(&simulation->state, domain->layout.node_padded,
                                          domain->history_count, error);
     if (!status) status = lar_strained_create(domain, &simulation->strained, error);
+    simulation->strained.follows = simulation->strained.follows && !search_always;
     simulation->state.strained = &simulation->strained;
     simulation->state.needs = domain->burden ? &simulation->needs : NULL;
     if (!status)

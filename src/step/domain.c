@@ -101,16 +101,6 @@ static void fill_material(const lar_domain *domain, const lar_lane_base *base, l
     *limit = base->limit * factor * factor;
 }
 
-static uint32_t corners_in_mesh(const lar_gid in_mesh[8], const lar_gid in_layout[8]) {
-    uint32_t corner = 0;
-    for (unsigned a = 0; a < 8; a++) {
-        unsigned k = 0;
-        while (k < 7 && in_mesh[k] != in_layout[a]) k++;
-        corner |= k << 4 * a;
-    }
-    return corner;
-}
-
 /* `memory`: the block; `whole`: where the gradients and shapes of a general one go. */
 static void fill_lane(const lar_domain *domain, const lar_block_run *run, void *memory,
                       lar_hex8_block *whole, int lane, lar_gid e, double *steepest,
@@ -142,7 +132,7 @@ static void fill_lane(const lar_domain *domain, const lar_block_run *run, void *
         lar_hex8_corner_limit(&hex8, (const double(*)[3])corner) * domain->scale * domain->scale;
     base->largest = lar_hex8_largest_corner((const double(*)[3])corner);
     base->areas = lar_hex8_areas((const double(*)[3])corner);
-    base->corner = corners_in_mesh(mesh->element[e], node);
+    base->corner = lar_layout_turn(&domain->layout, mesh, e);
     domain->area_limit[base - domain->base] = lar_hex8_area_limit(&hex8);
 }
 

@@ -22,18 +22,24 @@ lar_status lar_strained_create(const lar_domain *domain, lar_strained *strained,
     *strained = (lar_strained){.lane = lar_calloc(lanes, sizeof *strained->lane),
                                .count = lar_calloc(runs, sizeof *strained->count),
                                .strain = lar_calloc(lanes, sizeof *strained->strain),
+                               .near = lar_calloc(lanes, sizeof *strained->near),
+                               .stiffness = lar_calloc(lanes, sizeof *strained->stiffness),
+                               .sound = lar_calloc(lanes, sizeof *strained->sound),
                                .damped = lar_calloc(lanes, sizeof *strained->damped),
                                .damped_count = lar_calloc(runs, sizeof *strained->damped_count)};
+    strained->follows = domain->layout.thread_count == 1;
     bool active = lar_model_active(domain->model) != NULL;
     if (active) {
         strained->activation = lar_calloc_aligned(lanes, sizeof *strained->activation);
         strained->active_energy = lar_calloc_aligned(lanes, sizeof *strained->active_energy);
     }
-    if (strained->lane && strained->count && strained->strain && strained->damped &&
-        strained->damped_count && (!active || (strained->activation && strained->active_energy)))
+    if (strained->lane && strained->count && strained->strain && strained->near &&
+        strained->stiffness && strained->sound && strained->damped && strained->damped_count &&
+        (!active || (strained->activation && strained->active_energy)))
         return LAR_OK;
     lar_strained_destroy(strained);
-    size_t each = sizeof *strained->lane + sizeof *strained->strain + sizeof *strained->damped;
+    size_t each = 2 * sizeof *strained->lane + sizeof *strained->strain +
+                  2 * sizeof *strained->sound + sizeof *strained->damped;
     return lar_fail_memory(error, lanes * each, "the strained elements");
 }
 
@@ -41,6 +47,9 @@ void lar_strained_destroy(lar_strained *strained) {
     free(strained->lane);
     free(strained->count);
     free(strained->strain);
+    free(strained->near);
+    free(strained->stiffness);
+    free(strained->sound);
     free(strained->damped);
     free(strained->damped_count);
     free(strained->activation);
@@ -65,54 +74,44 @@ typedef struct strained_group {
     lar_hex8_group hex8;
     int count;
     int32_t lane[LAR_BLOCK];  /* block * 8 + lane */
-    int32_t entry[LAR_BLOCK]; /* in the list */
+    int32_t entry[LAR_BLOCK]; /* of a list */
     lar_gid element[LAR_BLOCK];
-    unsigned lanes;              /* whose corners may be near a barrier: a bit each */
-    unsigned below;              /* of these (lar_hex8_corners) */
-    uint8_t at[LAR_BLOCK];       /* corners below START, likewise */
-    double stiffness[LAR_BLOCK]; /* of the barriers that are at work [N/m] */
 } strained_group;
 
 static void set_nodes(strained_group *group, int at, const lar_block_head *head, int32_t lane) {
     for (int a = 0; a < 8; a++) group->hex8.node[a][at] = head->node[a][lane];
 }
 
-/* Takes up to eight lanes of run r, from entry `first` of `count` on, and looks at their corners,
- * but not of those that are listed for being flat alone: these are far from the barrier. Returns
- * where the next ones begin. */
-static int32_t look(const lar_domain *domain, const lar_state *state, int32_t r,
-                    const int32_t *list, int32_t first, int32_t count, strained_group *group) {
+static lar_gid element_of(const lar_domain *domain, int32_t r, int32_t lane) {
+    const lar_lanes *block = domain->layout.block + domain->run_first[r] + lane / LAR_BLOCK;
+    return block->element[lane % LAR_BLOCK];
+}
+
+static bool is_there(const lar_domain *domain, int32_t r, int32_t lane) {
+    return element_of(domain, r, lane) >= 0;
+}
+
+static void add_lane(const lar_domain *domain, int32_t r, int32_t lane, int32_t entry,
+                     strained_group *group) {
     const lar_block_run *run = &domain->run[r];
-    const lar_lanes *lanes = domain->layout.block + domain->run_first[r];
-    const lar_lane_base *base = domain->base + LAR_BLOCK * (size_t)domain->run_first[r];
-    const lar_block_head *head = NULL;
-    int32_t i = first;
-    group->count = 0;
-    group->lanes = 0;
-    for (; i < count && group->count < LAR_BLOCK; i++) {
-        int32_t lane = list[i] & ~LAR_LANE_FLAT, block = lane / LAR_BLOCK, at = group->count;
-        lar_gid e = lanes[block].element[lane % LAR_BLOCK];
-        if (e < 0) continue;
-        head = (const void *)((const char *)run->blocks + (size_t)block * lar_run_stride(run));
-        set_nodes(group, at, head, lane % LAR_BLOCK);
-        group->hex8.largest[at] = base[lane].largest;
-        group->lane[at] = lane;
-        group->entry[at] = i;
-        group->element[at] = e;
-        group->stiffness[at] = 0;
-        if (lane == list[i]) group->lanes |= 1u << at;
-        group->count++;
-    }
-    for (int at = group->count; at < LAR_BLOCK && head; at++) {
-        set_nodes(group, at, head, group->lane[group->count - 1] % LAR_BLOCK);
+    int32_t block = lane / LAR_BLOCK, at = group->count++;
+    const lar_block_head *head =
+        (const void *)((const char *)run->blocks + (size_t)block * lar_run_stride(run));
+    size_t first = LAR_BLOCK * (size_t)domain->run_first[r];
+    set_nodes(group, at, head, lane % LAR_BLOCK);
+    group->hex8.largest[at] = domain->base[first + (size_t)lane].largest;
+    group->lane[at] = lane;
+    group->entry[at] = entry;
+    group->element[at] = element_of(domain, r, lane);
+}
+
+/* All lanes are computed with. */
+static unsigned fill_up(strained_group *group) {
+    for (int at = group->count; at < LAR_BLOCK; at++) {
+        for (int a = 0; a < 8; a++) group->hex8.node[a][at] = group->hex8.node[a][0];
         group->hex8.largest[at] = 0;
     }
-    const lar_hex8_places places = {.rest = domain->rest, .u = state->u};
-    group->below = 0;
-    if (group->lanes)
-        group->below =
-            domain->kernels->corners(&group->hex8, group->lanes, &places, SHARES, group->at);
-    return i;
+    return (1U << group->count) - 1;
 }
 
 /* Corners of a lane of run r as the mesh counts them: forces of several are added in that order. */
@@ -161,36 +160,6 @@ static double growth_of_flat(const lar_domain *domain, lar_gid e, size_t place, 
     if (!domain->area_limit || !(domain->area_limit[place] < LAR_STRAINED_AREA)) return 0;
     return domain->rate[e].share * lar_hex8_growth(lar_domain_material(domain, e), strain,
                                                    areas / domain->base[place].areas);
-}
-
-/* How stiff the barriers are that lanes of a group are coming to: in some steps where a corner is
- * close to one, in as many as are ahead where an element is thrown. */
-static void look_ahead(const lar_domain *domain, const lar_state *state, int32_t r,
-                       const strained_group *group, const double parting[LAR_BLOCK],
-                       double stiffness[LAR_BLOCK]) {
-    double ahead[LAR_BLOCK] __attribute__((aligned(64))) = {0};
-    const lar_hex8_places places = {
-        .rest = domain->rest, .u = state->u, .v = state->v, .ahead = ahead};
-    uint8_t at[LAR_BLOCK];
-    unsigned coming = 0;
-    for (unsigned lanes = group->lanes; lanes; lanes &= lanes - 1) {
-        int k = __builtin_ctz(lanes);
-        double volume = domain->base[LAR_BLOCK * domain->run_first[r] + group->lane[k]].volume;
-        if (group->below >> (k + LAR_BLOCK) & 1)
-            ahead[k] = SEEN_IN_STEPS * domain->time_step;
-        else if (is_thrown(domain, state, parting[k], volume))
-            ahead[k] = steps_ahead(domain, state) * domain->time_step;
-        if (ahead[k] > 0) coming |= 1u << k;
-    }
-    memcpy(stiffness, group->stiffness, sizeof group->stiffness);
-    if (!coming) return;
-    coming &= domain->kernels->corners(&group->hex8, coming, &places, SHARES, at);
-    for (; coming; coming &= coming - 1) {
-        int k = __builtin_ctz(coming);
-        unsigned corners = corners_in_mesh(domain, r, group->lane[k], at[k]);
-        stiffness[k] =
-            fmax(stiffness[k], barriers_ahead(domain, state, group->element[k], ahead[k], corners));
-    }
 }
 
 /* In whole units, which sum to nothing. */
@@ -308,70 +277,183 @@ static void finish_damping(const lar_domain *domain, int32_t r, lar_state *state
     strained->damped_count[r] = 0;
 }
 
-/* Barriers of those lanes of a group that have a corner below START. */
-static void apply_group(const lar_domain *domain, int32_t r, strained_group *group,
+/* A corner's volume changes by no more than (L + 2 d)^3 - L^3 while its nodes go d, with edges of L
+ * at most; that is below 7.28 L^2 d for d up to L / 10. So far may nodes go. */
+static double may_go(double above, double longest) {
+    return above > 0 ? fmin(0.1 * sqrt(longest), above / (7.28 * longest)) : 0;
+}
+
+/* Looks at the corners of a group, which is empty then: adds the forces of their barriers. With
+ * `lists` the lanes with a corner below twice START are listed. */
+static void apply_group(const lar_domain *domain, int32_t r, bool lists, strained_group *group,
                         lar_state *state) {
-    lar_damped *damped = state->strained->damped + LAR_BLOCK * (size_t)domain->run_first[r];
-    int32_t *count = &state->strained->damped_count[r];
-    for (unsigned lanes = group->lanes & group->below; lanes; lanes &= lanes - 1) {
-        int k = __builtin_ctz(lanes);
-        unsigned corners = corners_in_mesh(domain, r, group->lane[k], group->at[k]);
-        *count +=
-            apply(domain, group->element[k], corners, &damped[*count], state, &group->stiffness[k]);
+    lar_strained *strained = state->strained;
+    size_t first = LAR_BLOCK * (size_t)domain->run_first[r];
+    int32_t *count = &strained->count[r], *damped = &strained->damped_count[r];
+    const lar_hex8_places places = {.rest = domain->rest, .u = state->u};
+    lar_hex8_corner_look look;
+    unsigned below = domain->kernels->corners(&group->hex8, fill_up(group), &places, SHARES, &look);
+    for (int k = 0; k < group->count; k++) {
+        size_t place = first + (size_t)group->lane[k];
+        double stiffness = 0;
+        strained->sound[place] = strained->travel + may_go(look.above[k], look.longest[k]);
+        if (below >> k & 1) {
+            unsigned corners = corners_in_mesh(domain, r, group->lane[k], look.at[k]);
+            *damped += apply(domain, group->element[k], corners,
+                             &strained->damped[first + (size_t)*damped], state, &stiffness);
+        }
+        if (!lists || !(below >> (k + LAR_BLOCK) & 1)) continue;
+        strained->near[first + (size_t)*count] = group->lane[k];
+        strained->stiffness[first + (size_t)(*count)++] = stiffness;
+    }
+    group->count = 0;
+}
+
+/* The same of all that are listed, but not for being flat alone: their corners are far from the
+ * barrier. Where it is known how far nodes can have gone, corners that cannot be near one are not
+ * looked at. */
+static void apply_list(const lar_domain *domain, int32_t r, const int32_t *list, int32_t count,
+                       lar_state *state) {
+    lar_strained *strained = state->strained;
+    const double *sound = strained->sound + LAR_BLOCK * (size_t)domain->run_first[r];
+    strained_group group = {.count = 0};
+    strained->count[r] = 0;
+    for (int32_t i = 0; i < count; i++) {
+        int32_t lane = list[i];
+        if (lane & LAR_LANE_FLAT || !is_there(domain, r, lane)) continue;
+        if (strained->follows && strained->travel < sound[lane]) continue;
+        add_lane(domain, r, lane, i, &group);
+        if (group.count == LAR_BLOCK) apply_group(domain, r, true, &group, state);
+    }
+    if (group.count > 0) apply_group(domain, r, true, &group, state);
+}
+
+/* How stiff the barriers are that lanes of a group with a bit in `coming` are coming to in `ahead`
+ * seconds; no less than they are now. */
+static void look_ahead(const lar_domain *domain, const lar_state *state, int32_t r,
+                       const strained_group *group, unsigned coming, const double ahead[LAR_BLOCK],
+                       double stiffness[LAR_BLOCK]) {
+    const lar_hex8_places places = {
+        .rest = domain->rest, .u = state->u, .v = state->v, .ahead = ahead};
+    lar_hex8_corner_look look;
+    coming &= domain->kernels->corners(&group->hex8, coming, &places, SHARES, &look);
+    for (; coming; coming &= coming - 1) {
+        int k = __builtin_ctz(coming);
+        unsigned corners = corners_in_mesh(domain, r, group->lane[k], look.at[k]);
+        stiffness[k] =
+            fmax(stiffness[k], barriers_ahead(domain, state, group->element[k], ahead[k], corners));
     }
 }
 
-/* How fast the strained elements of a group have become: (omega dt / 2)^2 of each, if it is not
- * heavier for a while. */
-static void measure(const lar_domain *domain, const lar_hex8_monitor *monitor, int32_t r,
-                    const strained_group *group, lar_state *state) {
+/* How fast a strained element has become: (omega dt / 2)^2, if it is not heavier for a while. */
+static void measure(const lar_domain *domain, lar_gid e, size_t place, double stiffness,
+                    double areas, const float strain[LAR_STRAIN_NUMBERS], lar_state *state) {
+    double factor = domain->factor[lar_factor_of(domain->model->element_material[e])];
+    double rate = factor * domain->rate[e].square;
+    double square = rate * lar_hex8_growth(lar_domain_material(domain, e), strain,
+                                           strain[LAR_STRAIN_AREA] / 3.0);
+    square += (1 + 2 * LEAD) * stiffness / domain->rate[e].mass;
+    double flat = rate * growth_of_flat(domain, e, place, areas, strain);
+    if (flat > square) square = flat;
+    double need = 0.25 * domain->time_step * domain->time_step * square;
+    if (!(need >= 0)) need = INFINITY; /* a corner that is a point has no number */
+    if (!(need <= state->need)) state->need = need;
+    if (state->needs && need > domain->burden->least) lar_needs_add(state->needs, e, need);
+}
+
+/* Elements of which more than their strain counts, and what is known of them. */
+typedef struct measured_group {
+    strained_group lanes;
+    unsigned moves, near, may_fold; /* bits: areas and speeds are asked for; a corner is below
+                                       twice START; corners may come near a barrier */
+    double stiffness[LAR_BLOCK];    /* of barriers that are at work [N/m] */
+} measured_group;
+
+static void measure_group(const lar_domain *domain, const lar_hex8_monitor *monitor, int32_t r,
+                          measured_group *group, lar_state *state) {
+    strained_group *lanes = &group->lanes;
     const lar_hex8_places places = {.rest = domain->rest, .u = state->u};
-    lar_hex8_motion motion;
-    double stiffness[LAR_BLOCK];
-    domain->kernels->motion(&group->hex8, (1u << group->count) - 1, &places, state->v, &motion);
-    look_ahead(domain, state, r, group, motion.parting, stiffness);
-    for (int k = 0; k < group->count; k++) {
-        lar_gid e = group->element[k];
-        size_t at = LAR_BLOCK * (size_t)domain->run_first[r] + (size_t)group->lane[k];
-        double factor = domain->factor[lar_factor_of(domain->model->element_material[e])];
-        const float *strain = monitor->strain[group->entry[k]];
-        double rate = factor * domain->rate[e].square;
-        double square = rate * lar_hex8_growth(lar_domain_material(domain, e), strain,
-                                               strain[LAR_STRAIN_AREA] / 3.0);
-        square += (1 + 2 * LEAD) * stiffness[k] / domain->rate[e].mass;
-        double flat = rate * growth_of_flat(domain, e, at, motion.areas[k], strain);
-        if (flat > square) square = flat;
-        double need = 0.25 * domain->time_step * domain->time_step * square;
-        if (!(need >= 0)) need = INFINITY; /* a corner that is a point has no number */
-        if (!(need <= state->need)) state->need = need;
-        if (state->needs && need > domain->burden->least) lar_needs_add(state->needs, e, need);
+    size_t first = LAR_BLOCK * (size_t)domain->run_first[r];
+    double ahead[LAR_BLOCK] __attribute__((aligned(64))) = {0};
+    lar_hex8_motion motion = {{0}, {0}};
+    unsigned coming = 0;
+    fill_up(lanes);
+    if (group->moves)
+        domain->kernels->motion(&lanes->hex8, group->moves, &places, state->v, &motion);
+    for (int k = 0; k < lanes->count; k++) {
+        double volume = domain->base[first + (size_t)lanes->lane[k]].volume;
+        if (group->near >> k & 1)
+            ahead[k] = SEEN_IN_STEPS * domain->time_step;
+        else if (group->may_fold >> k & 1 && is_thrown(domain, state, motion.parting[k], volume))
+            ahead[k] = steps_ahead(domain, state) * domain->time_step;
+        if (ahead[k] > 0) coming |= 1U << k;
     }
+    if (coming) look_ahead(domain, state, r, lanes, coming, ahead, group->stiffness);
+    for (int k = 0; k < lanes->count; k++)
+        measure(domain, lanes->element[k], first + (size_t)lanes->lane[k], group->stiffness[k],
+                motion.areas[k], monitor->strain[lanes->entry[k]], state);
+    lanes->count = 0;
+    group->moves = group->near = group->may_fold = 0;
+}
+
+/* No corners part faster than this, where it is known [m^2/s^2]. */
+static double parting_max(const lar_state *state) {
+    return state->strained->follows && state->listed ? 12.0001 * state->fastest * state->fastest
+                                                     : INFINITY;
+}
+
+/* Measures all that are listed: most by their strain alone. */
+static void measure_list(const lar_domain *domain, const lar_hex8_monitor *monitor, int32_t r,
+                         lar_state *state) {
+    const lar_strained *strained = state->strained;
+    size_t first = LAR_BLOCK * (size_t)domain->run_first[r];
+    double parting = parting_max(state);
+    measured_group group = {.lanes = {.count = 0}};
+    int32_t met = 0; /* of strained->near */
+    for (int32_t i = 0; i < monitor->count; i++) {
+        int32_t lane = monitor->lane[i] & ~LAR_LANE_FLAT;
+        size_t place = first + (size_t)lane;
+        if (!is_there(domain, r, lane)) continue;
+        bool near = met < strained->count[r] && strained->near[first + (size_t)met] == lane;
+        bool may_fold = !near && lane == monitor->lane[i] &&
+                        is_thrown(domain, state, parting, domain->base[place].volume);
+        bool flat = domain->area_limit && domain->area_limit[place] < LAR_STRAINED_AREA;
+        if (!near && !may_fold && !flat) {
+            measure(domain, element_of(domain, r, lane), place, 0, 0, monitor->strain[i], state);
+            continue;
+        }
+        int k = group.lanes.count;
+        group.stiffness[k] = near ? strained->stiffness[first + (size_t)met++] : 0;
+        group.near |= (unsigned)near << k;
+        group.may_fold |= (unsigned)may_fold << k;
+        group.moves |= (unsigned)(may_fold || flat) << k;
+        add_lane(domain, r, lane, i, &group.lanes);
+        if (group.lanes.count == LAR_BLOCK) measure_group(domain, monitor, r, &group, state);
+    }
+    if (group.lanes.count > 0) measure_group(domain, monitor, r, &group, state);
 }
 
 void lar_guard_select_and_apply(const lar_domain *domain, int32_t r,
                                 const lar_hex8_monitor *monitor, bool measures, lar_state *state) {
-    int32_t *list = monitor->lane, count = 0;
-    strained_group group;
+    lar_strained *strained = state->strained;
     finish_damping(domain, r, state);
-    for (int32_t i = 0; i < monitor->count;) {
-        i = look(domain, state, r, monitor->lane, i, monitor->count, &group);
-        apply_group(domain, r, &group, state);
-        if (measures) measure(domain, monitor, r, &group, state);
-        for (int k = 0; k < group.count; k++) /* never more than were read */
-            if (group.below >> (k + LAR_BLOCK) & 1) list[count++] = group.lane[k];
-    }
-    state->strained->count[r] = count;
+    if (!state->listed && strained->travel > 0)
+        memset(strained->sound + LAR_BLOCK * (size_t)domain->run_first[r], 0,
+               LAR_BLOCK * (size_t)domain->run[r].count * sizeof *strained->sound);
+    apply_list(domain, r, monitor->lane, monitor->count, state);
+    if (measures) measure_list(domain, monitor, r, state);
 }
 
 void lar_guard_apply(const lar_domain *domain, int32_t r, lar_state *state) {
-    const int32_t *list = state->strained->lane + LAR_BLOCK * (size_t)domain->run_first[r];
-    int32_t count = state->strained->count[r];
-    strained_group group;
+    const lar_strained *strained = state->strained;
+    const int32_t *near = strained->near + LAR_BLOCK * (size_t)domain->run_first[r];
+    strained_group group = {.count = 0};
     finish_damping(domain, r, state);
-    for (int32_t i = 0; i < count;) {
-        i = look(domain, state, r, list, i, count, &group);
-        apply_group(domain, r, &group, state);
+    for (int32_t i = 0; i < strained->count[r]; i++) {
+        add_lane(domain, r, near[i], i, &group);
+        if (group.count == LAR_BLOCK) apply_group(domain, r, false, &group, state);
     }
+    if (group.count > 0) apply_group(domain, r, false, &group, state);
 }
 
 void lar_guard_apply_all(const lar_domain *domain, lar_state *state) {

@@ -256,19 +256,19 @@ static void kernels_see_the_same_corners(void **state) {
         for (int i = 0; i < 4; i++) {
             const lar_kernels *kernels;
             lar_hex8_motion motion;
-            uint8_t at[LAR_BLOCK];
+            lar_hex8_corner_look look;
             if (lar_kernels_find(wanted[i], &kernels, NULL) != LAR_OK) continue;
             unsigned lanes = 0xffu >> k % 8 << k % 3 & 0xff, both = lanes | lanes << LAR_BLOCK;
             const lar_hex8_places now = {.rest = &nodes.rest[0][0], .u = &nodes.u[0][0]};
-            assert_int_equal(kernels->corners(&group, lanes, &now, share, at), expected & both);
-            corners_are(&group, &nodes, lanes, NULL, at);
+            assert_int_equal(kernels->corners(&group, lanes, &now, share, &look), expected & both);
+            corners_are(&group, &nodes, lanes, NULL, look.at);
             kernels->motion(&group, lanes, &now, &nodes.v[0][0], &motion);
             motion_is(&group, &nodes, lanes, &motion);
             lar_hex8_places then = now;
             then.v = &nodes.v[0][0];
             then.ahead = ahead;
-            kernels->corners(&group, lanes, &then, share, at);
-            corners_are(&group, &nodes, lanes, ahead, at);
+            kernels->corners(&group, lanes, &then, share, &look);
+            corners_are(&group, &nodes, lanes, ahead, look.at);
         }
     }
     assert_true(seen[0] > 100 && seen[1] > 100 && seen[2] > 100);
