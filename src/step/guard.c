@@ -69,11 +69,12 @@ static double steps_ahead(const lar_domain *domain, const lar_state *state) {
  * time: what springs back when it is let go comes to its barriers from where nobody looks. */
 static bool is_thrown(const lar_domain *domain, const lar_state *state, lar_gid e, double volume) {
     const lar_gid *node = domain->layout.corner[e];
-    const double *first = state->v + 4 * domain->layout.local[node[0]];
-    double most = 0, ahead = steps_ahead(domain, state) * domain->time_step;
+    double first[3], most = 0, ahead = steps_ahead(domain, state) * domain->time_step;
+    lar_state_velocity(state, domain->layout.local[node[0]], first);
     for (int a = 1; a < 8; a++) {
         double away[3];
-        lar_minus(state->v + 4 * domain->layout.local[node[a]], first, away);
+        lar_state_velocity(state, domain->layout.local[node[a]], away);
+        lar_minus(away, first, away);
         double square = lar_dot(away, away);
         if (square > most) most = square;
     }
@@ -148,8 +149,11 @@ static void add(const lar_domain *domain, lar_gid e, const double force[8][3], l
         }
     for (int i = 0; i < 3; i++) whole[7][i] = -sum[i];
     for (int a = 0; a < 8; a++) {
-        int64_t *to = state->force + 4 * domain->layout.local[domain->model->mesh.element[e][a]];
-        for (int i = 0; i < 3; i++) to[i] = (int64_t)((uint64_t)to[i] + (uint64_t)whole[a][i]);
+        lar_lid node = domain->layout.local[domain->model->mesh.element[e][a]];
+        for (int i = 0; i < 3; i++) {
+            int64_t *to = &state->force[lar_state_at(state, node, i)];
+            *to = (int64_t)((uint64_t)*to + (uint64_t)whole[a][i]);
+        }
     }
 }
 

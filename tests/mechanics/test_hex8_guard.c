@@ -1,6 +1,7 @@
 /* The guard of corners: a barrier with the forces of its energy, that is nothing where corners are
  * sound; and the kernels that look for corners to be guarded, on every instruction set. */
 #include "mechanics_test.h"
+#include "nodes_test.h"
 
 #include "mechanics/hex8_guard.h"
 
@@ -157,7 +158,7 @@ static void fill(uint64_t *seed, bool row, lar_hex8_block *block, block_nodes *n
     memset(nodes, 0, sizeof *nodes);
     for (int n = 0; n < LAR_BLOCK; n++)
         for (int a = 0; a < 8; a++) {
-            int lane = row ? LAR_ROW_LANES[n] : n, right = lar_node_sign[a][0] > 0;
+            int right = lar_node_sign[a][0] > 0;
             int node = row ? 16 * line_of[a] + n + right : 8 * n + a;
             for (int i = 0; i < 3; i++) {
                 nodes->rest[node][i] = 0.5 * size * lar_node_sign[a][i] +
@@ -165,7 +166,7 @@ static void fill(uint64_t *seed, bool row, lar_hex8_block *block, block_nodes *n
                                        0.1 * size * random_value(seed);
                 nodes->u[node][i] = 0.45 * size * random_value(seed);
             }
-            block->head.node[a][lane] = 4 * node;
+            block->head.node[a][n] = node;
         }
 }
 
@@ -176,7 +177,7 @@ static double min_of(const lar_hex8_block *block, const block_nodes *nodes, int 
     lar_guard guard;
     for (int a = 0; a < 8; a++)
         for (int i = 0; i < 3; i++) {
-            int node = block->head.node[a][lane] / 4;
+            int node = block->head.node[a][lane];
             rest[a][i] = nodes->rest[node][i];
             now[a][i] = rest[a][i] + nodes->u[node][i];
         }
@@ -191,6 +192,7 @@ static void kernels_see_the_same_corners(void **state) {
     static const double share[2] = {0.3, 0.6};
     static lar_hex8_block block;
     static block_nodes nodes;
+    static double rest[3 * TEST_STRIDE], u[3 * TEST_STRIDE];
     uint64_t seed = 13;
     int seen[3] = {0};
     for (int k = 0; k < 400; k++) {
@@ -199,7 +201,10 @@ static void kernels_see_the_same_corners(void **state) {
         lar_block_run run = {.shape = LAR_SHAPE_GENERAL,
                              .rows = row ? LAR_ROWS_EIGHT : LAR_ROWS_NONE,
                              .count = 1,
+                             .axis_stride = TEST_STRIDE,
                              .blocks = &block};
+        test_axes((const double(*)[4])nodes.rest, NODES, rest);
+        test_axes((const double(*)[4])nodes.u, NODES, u);
         unsigned expected = 0;
         double largest[LAR_BLOCK] __attribute__((aligned(64)));
         for (int lane = 0; lane < LAR_BLOCK; lane++) {
@@ -212,9 +217,8 @@ static void kernels_see_the_same_corners(void **state) {
             const lar_kernels *kernels;
             if (lar_kernels_find(wanted[i], &kernels, NULL) != LAR_OK) continue;
             unsigned lanes = 0xffu >> k % 8 << k % 3 & 0xff, both = lanes | lanes << LAR_BLOCK;
-            assert_int_equal(
-                kernels->corners(&run, 0, lanes, largest, &nodes.rest[0][0], &nodes.u[0][0], share),
-                expected & both);
+            assert_int_equal(kernels->corners(&run, 0, lanes, largest, rest, u, share),
+                             expected & both);
         }
     }
     assert_true(seen[0] > 100 && seen[1] > 100 && seen[2] > 100);
@@ -236,7 +240,7 @@ static void fill_deformed(uint64_t *seed, const lar_material *material, lar_hex8
         affine((rows)F[n], still, 8, (rows)corner, u);
         for (int a = 0; a < 8; a++) {
             memcpy(nodes->u[8 * n + a], u[a], sizeof u[a]);
-            block->head.node[a][n] = 4 * (8 * n + a);
+            block->head.node[a][n] = 8 * n + a;
         }
         for (int k = 0; k < LAR_LAW_PARAMETERS; k++)
             *lar_block_parameter(&block->head, more, k, n) =
@@ -277,7 +281,8 @@ static void what_stiffens_is_listed(void **state) {
                                            .blocks = &block,
                                            .more = lar_law_has_more((lar_law)law) ? &more : NULL};
                 if (lar_kernels_find(wanted[i], &kernels, NULL) != LAR_OK) continue;
-                kernels->recover(&run, &nodes.u[0][0], &force[0][0], &limits, &monitor);
+                test_recover(kernels, &run, NODES, (const double(*)[4])nodes.u, force, &limits,
+                             &monitor);
                 unsigned found = 0;
                 for (int k = 0; k < monitor.count; k++) found |= 1U << lane[k];
                 for (int n = 0; n < LAR_BLOCK; n++) {
