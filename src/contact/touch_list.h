@@ -19,7 +19,7 @@ typedef struct lar_touch_list {
     int32_t tool;
     int64_t *on_nodes;  /* [3][stride] what each local node gets from the tool [force units]; NULL:
                            not asked for */
-    size_t stride;      /* of that (base/axes.h) */
+    size_t stride;      /* of that (mechanics/axes.h) */
     int32_t max, count; /* room; how many there are */
     lar_touch *touch;   /* [max]. What rubs has its local node in node[0]; others have no nodes */
     int32_t pending;

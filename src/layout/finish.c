@@ -2,7 +2,7 @@
 
 #include <stdlib.h>
 
-#include "base/axes.h"
+#include "mechanics/axes.h"
 
 enum { HALF_ROW = LAR_BLOCK / 2 };
 

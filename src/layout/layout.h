@@ -48,7 +48,7 @@ typedef struct lar_layout {
     int32_t node_count; /* local nodes, spare ones among them, without the padding at the end */
     int32_t
         node_padded;    /* a multiple of LAR_NODES_TOGETHER, with a spare node at the end or more */
-    size_t axis_stride; /* of vectors of all nodes (base/axes.h) */
+    size_t axis_stride; /* of vectors of all nodes (mechanics/axes.h) */
     lar_gid *global;    /* [node_padded] node of the model, -1: spare */
     lar_lid *local;     /* [nodes of the model], -1: not in this layout */
     int32_t thread_count;

@@ -10,8 +10,8 @@
  * The arrays drive allocation, freeing and copies, the rows everything that takes a node's state
  * elsewhere or looks at it: checkpoint, hash, division among processors, comparison. What is in
  * neither does not exist. Nodes are in the domain's local order, vectors axis by axis
- * (base/axes.h), padded and aligned to 64 bytes. `level` is the node's offset in contact of its
- * body with itself (body_contact.h).
+ * (mechanics/axes.h), padded and aligned to 64 bytes. `level` is the node's offset in contact of
+ * its body with itself (body_contact.h).
  */
 #ifndef LAR_LAYOUT_STATE_H
 #define LAR_LAYOUT_STATE_H
@@ -19,7 +19,7 @@
 #include <stdint.h>
 #include <string.h>
 
-#include "base/axes.h"
+#include "mechanics/axes.h"
 #include "base/hash.h"
 #include "base/memory.h"
 

@@ -30,7 +30,7 @@
 #ifndef LAR_MECHANICS_HEX8_BLOCK_H
 #define LAR_MECHANICS_HEX8_BLOCK_H
 
-#include "base/axes.h"
+#include "mechanics/axes.h"
 #include "mechanics/hex8.h"
 
 /* Elements; parameters of a law that a block has room for, and those that stand beside the blocks,

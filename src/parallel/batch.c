@@ -8,7 +8,7 @@
 
 /* ---- force sums, or lists of elements ------------------------------------------------------ */
 
-/* Sums of a worker, axis by axis (base/axes.h). */
+/* Sums of a worker, axis by axis (mechanics/axes.h). */
 typedef struct sums {
     int64_t *value;
     size_t stride;

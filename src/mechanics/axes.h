@@ -7,8 +7,8 @@
  * distance between axes is not near a multiple of 4 KiB, for processors take a load for a later
  * part of a store when the last twelve bits of both addresses are the same.
  */
-#ifndef LAR_BASE_AXES_H
-#define LAR_BASE_AXES_H
+#ifndef LAR_MECHANICS_AXES_H
+#define LAR_MECHANICS_AXES_H
 
 #include <stddef.h>
 #include <stdint.h>
