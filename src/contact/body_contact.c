@@ -135,7 +135,7 @@ static bool same_body(const lar_body_contact *contact, int32_t node, int32_t fac
 
 static double offset_of(const lar_body_contact *contact, const lar_state *state, int32_t node) {
     const lar_contact_view *view = &contact->view;
-    return view->place ? view->place[view->slot[node]][6] : state->u[view->value[node] + 3];
+    return view->place ? view->place[view->slot[node]][6] : state->level[view->local[node]];
 }
 
 /* Notes the offset that the node will have when it moves. */
@@ -144,7 +144,7 @@ static void set_offset(lar_body_contact *contact, const lar_state *state, int32_
     if (offset == offset_of(contact, state, node) || (contact->keeps && !contact->keeps[node]))
         return;
     contact->offset[contact->offset_count++] =
-        (lar_penetration_offset){contact->view.value[node] + 3, offset};
+        (lar_penetration_offset){contact->view.local[node], offset};
 }
 
 /* Who is so deep when it appears behind a face belongs inside. */
@@ -443,11 +443,11 @@ static bool in_contact(lar_body_contact *contact, const lar_state *state, int32_
 /* ---- forces --------------------------------------------------------------------------------- */
 
 /* Adds a force, and notes it for its work. */
-static void add_part(lar_body_contact_part *part, lar_state *state, int32_t value,
+static void add_part(lar_body_contact_part *part, lar_state *state, int32_t node,
                      const int64_t sum[3], double scale) {
-    part->value[part->count] = value;
+    part->node[part->count] = node;
     for (int i = 0; i < 3; i++) {
-        state->force[value + i] += sum[i];
+        state->force[lar_state_at(state, node, i)] += sum[i];
         part->force[part->count][i] = -(double)sum[i] / scale;
     }
     part->count++;
@@ -467,7 +467,7 @@ static void add_to_node(lar_body_contact *contact, const lar_condition_context *
     }
     for (int k = 0; k < count; k++)
         if (!contact->adds_node || contact->adds_node[parent[k]])
-            add_part(part, state, contact->view.value[parent[k]], share[k], context->scale);
+            add_part(part, state, contact->view.local[parent[k]], share[k], context->scale);
 }
 
 static void add_to_face(lar_body_contact *contact, const lar_condition_context *context,
@@ -475,7 +475,7 @@ static void add_to_face(lar_body_contact *contact, const lar_condition_context *
                         lar_body_contact_part *part) {
     if (contact->adds_corner && !contact->adds_corner[face]) return;
     for (int a = 0; a < 4; a++)
-        add_part(part, state, contact->view.value[contact->surface->face[face].corner[a]], force[a],
+        add_part(part, state, contact->view.local[contact->surface->face[face].corner[a]], force[a],
                  context->scale);
 }
 
@@ -546,8 +546,8 @@ void lar_body_contact_half_work(const lar_body_contact *contact,
     for (int32_t p = 0; p < contact->part_count; p++) {
         const lar_body_contact_part *part = &contact->part[p];
         for (int k = 0; k < part->count; k++) {
-            const double *v = state->v + part->value[k];
-            for (int i = 0; i < 3; i++) power += part->force[k][i] * v[i];
+            for (int i = 0; i < 3; i++)
+                power += part->force[k][i] * state->v[lar_state_at(state, part->node[k], i)];
         }
     }
     state->contact -= 0.5 * context->mean_step * power;

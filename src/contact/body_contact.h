@@ -27,7 +27,7 @@
  * offset along. A node that came through the face has the offset 0. One that appears deep belongs
  * inside, as in a thin part that is squeezed: it keeps its offset, and when it comes out through
  * the back of the face nothing hinders it on its way in. Offsets are the one thing that contact
- * remembers: they stand behind the node's displacement, state->u[4 * node + 3] [m], 0 for who is
+ * remembers: they stand in state->level [m], 0 for who is
  * not inside, and belong to the state like u and v.
  *
  * Prediction (T 3.8.2). The thesis assumes a greatest acceleration. Here nothing is assumed: the
@@ -66,7 +66,7 @@ typedef struct lar_body_friction lar_body_friction;
 /* Where the contact nodes are: in the state of whoever has all of them, or in the exchange buffer.
  */
 typedef struct lar_contact_view {
-    const int32_t *value;                    /* [contact nodes] 4 * local node, -1: not here */
+    const int32_t *local;                    /* [contact nodes] local node, -1: not here */
     const double (*place)[LAR_PLACE_VALUES]; /* NULL, or by slot */
     const int32_t *slot;                     /* [contact nodes] with `place` */
     const double (*stick)[LAR_STICK_VALUES]; /* likewise, where friction asks for it */
@@ -78,7 +78,7 @@ enum { LAR_CONTACT_FACES = 4, LAR_CONTACT_PARTS = 2 + 4 * (LAR_CONTACT_FACES + 1
 /* What this thread adds in the step under way: forces on its local nodes. */
 typedef struct lar_body_contact_part {
     int32_t count;
-    int32_t value[LAR_CONTACT_PARTS]; /* 4 * local node */
+    int32_t node[LAR_CONTACT_PARTS]; /* local */
     double force[LAR_CONTACT_PARTS][3];
 } lar_body_contact_part;
 
@@ -91,14 +91,14 @@ typedef struct lar_body_contact_part {
 
 /* An offset that is another than in the last step. */
 typedef struct lar_penetration_offset {
-    int32_t value; /* 4 * local node + 3 */
-    double depth;  /* [m] */
+    int32_t node; /* local */
+    double depth; /* [m] */
 } lar_penetration_offset;
 
 /* The list and what has moved since, of whoever has the whole model. */
 typedef struct lar_body_contact_search_state {
     lar_contact_search *search;
-    int32_t *value;            /* [contact nodes] of lar_contact_view */
+    int32_t *local;            /* [contact nodes] of lar_contact_view */
     double (*x)[3];            /* [contact nodes] places at the search under way [m] */
     double (*searched)[3];     /* and at the last one */
     double since;              /* what has moved since the search under way began [m] */
@@ -150,9 +150,9 @@ static inline void lar_contact_place_of_node(const lar_body_contact *contact,
         return;
     }
     const double *rest = contact->surface->rest[node];
-    const double *u = state->u + view->value[node];
-    for (int i = 0; i < 3; i++) x[i] = rest[i] + u[i];
-    if (v) memcpy(v, state->v + view->value[node], 3 * sizeof *v);
+    const int32_t local = view->local[node];
+    for (int i = 0; i < 3; i++) x[i] = rest[i] + state->u[lar_state_at(state, local, i)];
+    if (v) lar_state_velocity(state, local, v);
 }
 
 /* Of a node or a point of an edge; v may be NULL. */

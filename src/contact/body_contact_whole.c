@@ -16,7 +16,8 @@ static double fetch_places(lar_body_contact *contact, const lar_state *state) {
     lar_body_contact_search_state *search_state = contact->search_state;
     double max = 0;
     for (int32_t n = 0; n < contact->surface->node_count; n++) {
-        const double *u = state->u + contact->view.value[n];
+        double u[3];
+        lar_state_displacement(state, contact->view.local[n], u);
         for (int i = 0; i < 3; i++) {
             search_state->x[n][i] = contact->surface->rest[n][i] + u[i];
             max = lar_larger(max, fabs(search_state->x[n][i] - search_state->searched[n][i]));
@@ -120,7 +121,7 @@ void lar_body_contact_apply(lar_body_contact *contact, const lar_condition_conte
 
 void lar_body_contact_moved(lar_body_contact *contact, lar_state *state, double way) {
     for (int32_t i = 0; i < contact->offset_count; i++)
-        state->u[contact->offset[i].value] = contact->offset[i].depth;
+        state->level[contact->offset[i].node] = contact->offset[i].depth;
     contact->offset_count = 0;
     if (contact->friction) lar_body_friction_keep(contact, state);
     contact->moved += way;
@@ -143,8 +144,8 @@ static lar_status allocate(lar_body_contact *contact, const int32_t *local, lar_
     size_t nodes = (size_t)surface->node_count,
            groups = (size_t)search_state->search->list.group_room;
     size_t pairs = (size_t)search_state->search->list.face_room;
-    int32_t *value = lar_calloc(nodes, sizeof *value);
-    contact->view.value = search_state->value = value;
+    int32_t *own = lar_calloc(nodes, sizeof *own);
+    contact->view.local = search_state->local = own;
     search_state->x = lar_calloc(nodes, sizeof *search_state->x);
     search_state->searched = lar_calloc(nodes, sizeof *search_state->searched);
     contact->due = lar_calloc(groups, sizeof *contact->due);
@@ -153,10 +154,10 @@ static lar_status allocate(lar_body_contact *contact, const int32_t *local, lar_
     contact->away = lar_calloc(pairs, sizeof *contact->away);
     contact->part = lar_calloc(groups, sizeof *contact->part);
     contact->offset = lar_calloc(groups, sizeof *contact->offset);
-    if (!value || !search_state->x || !search_state->searched || !contact->due || !contact->last ||
+    if (!own || !search_state->x || !search_state->searched || !contact->due || !contact->last ||
         !contact->near || !contact->away || !contact->part || !contact->offset)
         return lar_fail_memory(error, groups * sizeof *contact->part, "contact of bodies");
-    for (size_t n = 0; n < nodes; n++) value[n] = 4 * local[surface->node[n].node];
+    for (size_t n = 0; n < nodes; n++) own[n] = local[surface->node[n].node];
     return LAR_OK;
 }
 
@@ -203,7 +204,7 @@ void lar_body_contact_destroy(lar_body_contact *contact) {
     free(contact->part);
     free(contact->offset);
     if (search_state) {
-        free(search_state->value);
+        free(search_state->local);
         if (search_state->search) lar_contact_search_clear(search_state->search);
         free(search_state->search);
         free(search_state->x);

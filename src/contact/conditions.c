@@ -31,7 +31,7 @@ static void add_constraints(lar_conditions *c, const int32_t *local,
         for (int axis = 0; axis < 3; axis++)
             if (fresh & (1u << axis))
                 c->constraint[c->constraint_count++] =
-                    (lar_constraint){.value = 4 * local[node] + axis, .curve = curve, .by = by};
+                    (lar_constraint){.node = local[node], .axis = axis, .curve = curve, .by = by};
         c->held[node] |= (uint8_t)fresh;
     }
 }
@@ -53,7 +53,7 @@ static void add_pressure(lar_conditions *c, const lar_mesh *mesh, const int32_t 
     *p = (lar_face_pressure){.curve = load->curve, .pressure = load->pressure};
     for (int a = 0; a < 4; a++) {
         int32_t node = mesh->element[face / 6][lar_face_node[face % 6][a]];
-        p->node[a] = 4 * local[node];
+        p->node[a] = local[node];
         memcpy(p->position[a], mesh->position[node], sizeof p->position[a]);
     }
 }
@@ -64,7 +64,7 @@ static void add_forces(lar_conditions *c, const int32_t *local, const lar_condit
         int32_t node = load->nodes.node[k];
         if (share && share->loads[node] != share->thread) continue;
         lar_point_force *f = &c->force[c->force_count++];
-        *f = (lar_point_force){.node = 4 * local[node], .curve = load->curve};
+        *f = (lar_point_force){.node = local[node], .curve = load->curve};
         memcpy(f->force, load->force, sizeof f->force);
     }
 }
@@ -213,12 +213,13 @@ static double factor_at(const lar_model *model, int curve, double time) {
 
 /* Subtracts an external force from the residual, in force units, rounded to nearest. False, and
  * that part left out, where the sum would come near the end of the integers. */
-static bool add_external(int64_t *force, double scale, const double external[3]) {
+static bool add_external(lar_state *state, int32_t node, double scale, const double external[3]) {
     bool fits = true;
     for (int i = 0; i < 3; i++) {
         double units = external[i] * scale;
-        if (fabs(units) + fabs((double)force[i]) < 0x1p60)
-            force[i] -= llrint(units);
+        int64_t *force = &state->force[lar_state_at(state, node, i)];
+        if (fabs(units) + fabs((double)*force) < 0x1p60)
+            *force -= llrint(units);
         else
             fits = false;
     }
@@ -251,6 +252,12 @@ static double half_work(const double force[3], const double *v, double dt) {
     return 0.5 * dt * (force[0] * v[0] + force[1] * v[1] + force[2] * v[2]);
 }
 
+static double half_work_on(const double force[3], const lar_state *state, int32_t node, double dt) {
+    double v[3];
+    lar_state_velocity(state, node, v);
+    return half_work(force, v, dt);
+}
+
 /* Half the work of gravity that follows a curve. (Constant gravity is a potential.) */
 static double gravity_half_work(const lar_condition_context *context, double time,
                                 const lar_state *state) {
@@ -259,7 +266,7 @@ static double gravity_half_work(const lar_condition_context *context, double tim
     for (int32_t n = context->first; n < context->end; n++) {
         double weight = context->weight[n];
         if (context->added && weight > 0) weight -= context->added[n];
-        for (int i = 0; i < 3; i++) momentum[i] += weight * state->v[4 * n + i];
+        for (int i = 0; i < 3; i++) momentum[i] += weight * state->v[lar_state_at(state, n, i)];
     }
     return half_work(gravity, momentum, context->mean_step);
 }
@@ -280,8 +287,7 @@ static int32_t add_set_forces(const lar_conditions *c, const lar_condition_conte
         for (int32_t i = 0; i < nodes.count; i++) {
             if (!bears(c, nodes.node[i])) continue;
             int32_t n = c->local[nodes.node[i]];
-            if (!add_external(state->force + 4 * (size_t)n, context->scale, entry->force))
-                beyond = n;
+            if (!add_external(state, n, context->scale, entry->force)) beyond = n;
         }
     }
     return beyond;
@@ -296,8 +302,8 @@ static double set_half_work(const lar_conditions *c, const lar_condition_context
         lar_force_nodes nodes = lar_force_nodes_of(context->model, entry);
         for (int32_t i = 0; i < nodes.count; i++)
             if (bears(c, nodes.node[i]))
-                work += half_work(entry->force, state->v + 4 * (size_t)c->local[nodes.node[i]],
-                                  context->mean_step);
+                work +=
+                    half_work_on(entry->force, state, c->local[nodes.node[i]], context->mean_step);
     }
     return work;
 }
@@ -309,10 +315,10 @@ double lar_conditions_half_work(const lar_conditions *c, const lar_condition_con
                                 const lar_state *state) {
     double dt = context->mean_step, work = 0;
     for (int32_t i = 0; i < c->force_count; i++)
-        work += half_work(notes->force[i], state->v + c->force[i].node, dt);
+        work += half_work_on(notes->force[i], state, c->force[i].node, dt);
     for (int32_t i = 0; i < c->pressure_count; i++)
         for (int a = 0; a < 4; a++)
-            work += half_work(notes->pressure[i][a], state->v + c->pressure[i].node[a], dt);
+            work += half_work_on(notes->pressure[i][a], state, c->pressure[i].node[a], dt);
     if (lar_gravity_varies(context->model, context->settings))
         work += gravity_half_work(context, time, state);
     return work + set_half_work(c, context, state);
@@ -325,17 +331,17 @@ int32_t lar_conditions_load(const lar_conditions *c, const lar_condition_context
         const lar_point_force *f = &c->force[i];
         double factor = factor_at(context->model, f->curve, time), *now = notes->force[i];
         for (int k = 0; k < 3; k++) now[k] = factor * f->force[k];
-        if (!add_external(state->force + f->node, context->scale, now)) beyond = f->node / 4;
+        if (!add_external(state, f->node, context->scale, now)) beyond = f->node;
     }
     for (int32_t i = 0; i < c->pressure_count; i++) {
         const lar_face_pressure *p = &c->pressure[i];
         double x[4][3], (*now)[3] = notes->pressure[i];
         for (int a = 0; a < 4; a++)
-            for (int k = 0; k < 3; k++) x[a][k] = p->position[a][k] + state->u[p->node[a] + k];
+            for (int k = 0; k < 3; k++)
+                x[a][k] = p->position[a][k] + state->u[lar_state_at(state, p->node[a], k)];
         pressure_forces(x, p->pressure * factor_at(context->model, p->curve, time), now);
         for (int a = 0; a < 4; a++)
-            if (!add_external(state->force + p->node[a], context->scale, now[a]))
-                beyond = p->node[a] / 4;
+            if (!add_external(state, p->node[a], context->scale, now[a])) beyond = p->node[a];
     }
     int32_t set = add_set_forces(c, context, state);
     return set >= 0 ? set : beyond;
@@ -344,10 +350,11 @@ int32_t lar_conditions_load(const lar_conditions *c, const lar_condition_context
 void lar_conditions_observe(const lar_condition_context *context, lar_condition_notes *notes,
                             lar_state *state) {
     /* The support takes it: a large reaction is no fast node. */
-    for (int32_t i = 0; i < notes->fixed_count; i++) state->force[notes->constraint[i].value] = 0;
+    for (int32_t i = 0; i < notes->fixed_count; i++)
+        state->force[lar_constraint_at(state, &notes->constraint[i])] = 0;
     for (int32_t i = notes->fixed_count; i < notes->constraint_count; i++) {
         lar_constraint *constraint = &notes->constraint[i];
-        int32_t value = constraint->value;
+        size_t value = lar_constraint_at(state, constraint);
         int64_t *force = &state->force[value];
         notes->moved[i - notes->fixed_count] =
             (lar_moved_axis){(double)*force / context->scale, state->v[value]};
@@ -365,8 +372,8 @@ double lar_constraint_value(const lar_model *model, const lar_constraint *constr
 static double hold(const lar_condition_notes *notes, const double *weight, lar_state *state) {
     double counted = 0, *restrict u = state->u, *restrict v = state->v;
     for (int32_t i = 0; i < notes->fixed_count; i++) {
-        int32_t value = notes->constraint[i].value;
-        counted += weight[value / 4] * v[value] * v[value];
+        size_t value = lar_constraint_at(state, &notes->constraint[i]);
+        counted += weight[notes->constraint[i].node] * v[value] * v[value];
         u[value] = v[value] = 0;
     }
     return counted;
@@ -383,9 +390,9 @@ double lar_conditions_impose(const lar_condition_context *context, double time,
     for (int32_t i = notes->fixed_count; i < notes->constraint_count; i++) {
         const lar_constraint *constraint = &notes->constraint[i];
         const lar_moved_axis *noted = &notes->moved[i - notes->fixed_count];
-        double *u = &state->u[constraint->value], *v = &state->v[constraint->value];
-        double mass = context->mass[constraint->value / 4];
-        double weight = context->weight[constraint->value / 4];
+        size_t value = lar_constraint_at(state, constraint);
+        double *u = &state->u[value], *v = &state->v[value];
+        double mass = context->mass[constraint->node], weight = context->weight[constraint->node];
         double before = noted->before, free = before + *v;
         double old = lar_constraint_value(model, constraint, time);
         *u = lar_constraint_value(model, constraint, time + dt);
@@ -396,7 +403,7 @@ double lar_conditions_impose(const lar_condition_context *context, double time,
         double mean = 0.5 * (*v + before);
         double acceleration = (*v - before) / step;
         double reaction =
-            mass * (acceleration + damping * mean - gravity[constraint->value % 4]) + noted->force;
+            mass * (acceleration + damping * mean - gravity[constraint->axis]) + noted->force;
         if (weight > 0) work += reaction * mean * step;
     }
     return work;

@@ -26,24 +26,29 @@
 
 /* One axis of one node held at, or moved to, by * curve(t). */
 typedef struct lar_constraint {
-    int32_t value; /* index into u and v: 4 * local node + axis */
-    int32_t curve; /* -1: held at 0; LAR_CURVE_HERE */
-    double by;     /* of LAR_CURVE_HERE: where it is, as of the step under way [m] */
+    int32_t node, axis; /* local */
+    int32_t curve;      /* -1: held at 0; LAR_CURVE_HERE */
+    double by;          /* of LAR_CURVE_HERE: where it is, as of the step under way [m] */
 } lar_constraint;
+
+/* Where it stands in u, v and force. */
+static inline size_t lar_constraint_at(const lar_state *state, const lar_constraint *constraint) {
+    return lar_state_at(state, constraint->node, constraint->axis);
+}
 
 /* Held where it is: a support that was set (model/supports.h). */
 enum { LAR_CURVE_HERE = -2 };
 
 /* A dead force on one node. */
 typedef struct lar_point_force {
-    int32_t node; /* 4 * local node */
+    int32_t node; /* local */
     int32_t curve;
     double force[3];
 } lar_point_force;
 
 /* A pressure on one face. */
 typedef struct lar_face_pressure {
-    int32_t node[4]; /* 4 * local node, counter-clockwise from outside */
+    int32_t node[4]; /* local, counter-clockwise from outside */
     int32_t curve;
     double pressure;
     double position[4][3]; /* reference */

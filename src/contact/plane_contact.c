@@ -15,9 +15,9 @@ static inline double dot(const double a[3], const double *b) {
 /* Supports are stronger than planes: a node gives way along its free axes only, and not at all when
  * these lie along the plane. */
 LAR_SETUP static void add_node(lar_planes *planes, const lar_contact *plane,
-                               const double position[3], int32_t value, unsigned held) {
+                               const double position[3], int32_t local, unsigned held) {
     lar_plane_way way = {.held = plane->friction > 0 && held != 0};
-    lar_plane_node node = {.value = value};
+    lar_plane_node node = {.node = local};
     double free = 0;
     for (int i = 0; i < 3; i++) {
         way.normal[i] = plane->normal[i];
@@ -45,7 +45,7 @@ LAR_SETUP static void add_plane(lar_planes *planes, const lar_model *model, cons
             int32_t face = contact->face[f];
             int32_t node = model->mesh.element[face / 6][lar_face_node[face % 6][a]];
             if (held[node] & SEEN || (share && share->holds[node] != share->thread)) continue;
-            add_node(planes, contact, model->mesh.position[node], 4 * local[node],
+            add_node(planes, contact, model->mesh.position[node], local[node],
                      held[node] & LAR_AXIS_ALL);
             held[node] |= SEEN;
         }
@@ -54,7 +54,7 @@ LAR_SETUP static void add_plane(lar_planes *planes, const lar_model *model, cons
 
 static int by_node(const void *a, const void *b) {
     const lar_plane_node *x = a, *y = b;
-    if (x->value != y->value) return x->value < y->value ? -1 : 1;
+    if (x->node != y->node) return x->node < y->node ? -1 : 1;
     return (x->way > y->way) - (x->way < y->way);
 }
 
@@ -129,7 +129,9 @@ static double travel_of_all(const lar_plane_contact *plane_contact,
     double fastest = 0;
     for (int32_t i = 0; i < plane_contact->planes->count; i++)
         for (int k = 0; k < 3; k++)
-            fastest = larger(fastest, fabs(state->v[plane_contact->planes->node[i].value + k]));
+            fastest =
+                larger(fastest,
+                       fabs(state->v[lar_state_at(state, plane_contact->planes->node[i].node, k)]));
     return 1.7320508075688774 * context->whole_step * fastest;
 }
 
@@ -148,12 +150,14 @@ static void search(lar_plane_contact *plane_contact, const lar_condition_context
     const lar_planes *planes = plane_contact->planes;
     for (int32_t i = 0; i < planes->count; i++) {
         const lar_plane_node *n = &planes->node[i];
-        double height = n->offset + dot(planes->way[n->way].normal, state->u + n->value);
+        double u[3];
+        lar_state_displacement(state, n->node, u);
+        double height = n->offset + dot(planes->way[n->way].normal, u);
         /* A little more, for rounding. Not a number counts as near. */
         if (height > (1 + 1e-9) * plane_contact->reach) continue;
         lar_plane_near *near = &plane_contact->near[plane_contact->near_count++];
-        *near = (lar_plane_near){.node = *n, .weight = context->weight[n->value / 4]};
-        memcpy(near->before, state->v + n->value, sizeof near->before);
+        *near = (lar_plane_near){.node = *n, .weight = context->weight[n->node]};
+        lar_state_velocity(state, n->node, near->before);
     }
     plane_contact->known = true;
     seen->searches++;
@@ -170,8 +174,7 @@ void lar_plane_contact_observe(lar_plane_contact *plane_contact,
         return;
     }
     for (int32_t i = 0; i < plane_contact->near_count; i++)
-        memcpy(plane_contact->near[i].before, state->v + plane_contact->near[i].node.value,
-               sizeof plane_contact->near[i].before);
+        lar_state_velocity(state, plane_contact->near[i].node.node, plane_contact->near[i].before);
 }
 
 /* ---- stopping ------------------------------------------------------------------------------ */
@@ -192,10 +195,11 @@ typedef struct stops {
     int32_t touching;
 } stops;
 
-static inline void stop_node(const lar_plane_near *near, const lar_plane_way *way, double dt,
+/* Returns whether it changes u and v. */
+static inline bool stop_node(const lar_plane_near *near, const lar_plane_way *way, double dt,
                              double rate, double *restrict u, double *restrict v, stops *sum) {
     double height = near->node.offset + dot(way->normal, u);
-    if (height >= 0) return;
+    if (height >= 0) return false;
     double speed = dot(way->normal, v);
     double change = min_velocity(height - dt * speed, rate) - speed;
     if (change > 0) {
@@ -217,6 +221,7 @@ static inline void stop_node(const lar_plane_near *near, const lar_plane_way *wa
     }
     sum->touching += near->weight > 0; /* once, of several processors */
     sum->deepest = larger(sum->deepest, -height);
+    return change > 0;
 }
 
 /* ---- friction ------------------------------------------------------------------------------ */
@@ -232,8 +237,8 @@ static void search_again(lar_plane_contact *plane_contact, const lar_condition_c
     search(plane_contact, context, state, seen);
     for (int32_t i = 0; i < plane_contact->near_count; i++) {
         lar_plane_near *near = &plane_contact->near[i];
-        while (k < count && last[k].node.value < near->node.value) k++;
-        if (k < count && last[k].node.value == near->node.value)
+        while (k < count && last[k].node.node < near->node.node) k++;
+        if (k < count && last[k].node.node == near->node.node)
             memcpy(near->before, last[k].before, sizeof near->before);
         else
             near->before[0] = NAN;
@@ -326,15 +331,23 @@ static inline void rub_node(const lar_plane_near *near, int32_t count, const lar
     sum->damped += near->weight * (work + damped);
 }
 
+static inline void put_node(lar_state *state, int32_t node, const double u[3], const double v[3]) {
+    lar_axes_put(state->u, state->stride, node, u);
+    lar_axes_put(state->v, state->stride, node, v);
+}
+
 static void rub_nodes(const lar_plane_contact *plane_contact, double dt, double rate,
                       lar_state *state, stops *sum) {
     const lar_plane_near *near = plane_contact->near;
     const int32_t near_count = plane_contact->near_count;
     for (int32_t i = 0, count; i < near_count; i += count) {
-        int32_t value = near[i].node.value;
-        for (count = 1; i + count < near_count && near[i + count].node.value == value;) count++;
-        rub_node(&near[i], count, plane_contact->planes->way, dt, rate, state->u + value,
-                 state->v + value, sum);
+        int32_t node = near[i].node.node;
+        double u[3], v[3];
+        for (count = 1; i + count < near_count && near[i + count].node.node == node;) count++;
+        lar_state_displacement(state, node, u);
+        lar_state_velocity(state, node, v);
+        rub_node(&near[i], count, plane_contact->planes->way, dt, rate, u, v, sum);
+        put_node(state, node, u, v);
     }
 }
 
@@ -344,12 +357,13 @@ static void rub_nodes(const lar_plane_contact *plane_contact, double dt, double 
  * where a body stands: it falls in every step, with all the weight that it bears and its own small
  * mass, before it is stopped. Searches would see a body fly that does not move. */
 static double fastest_of(const lar_condition_context *context, const lar_state *state) {
-    double max[4] = {0}; /* the fourth is 0 */
-    for (const double *v = state->v + 4 * (size_t)context->first,
-                      *end = state->v + 4 * (size_t)context->end;
-         v < end; v += 4)
-        for (int i = 0; i < 4; i++) max[i] = larger(max[i], fabs(v[i]));
-    return larger(max[0], larger(max[1], max[2]));
+    enum { TOGETHER = 4 }; /* chains that do not wait for each other */
+    double max[TOGETHER] = {0};
+    for (int axis = 0; axis < 3; axis++)
+        for (int32_t n = context->first; n < context->end; n += TOGETHER)
+            for (int i = 0; i < TOGETHER; i++)
+                max[i] = larger(max[i], fabs(state->v[lar_state_at(state, n + i, axis)]));
+    return larger(larger(max[0], max[1]), larger(max[2], max[3]));
 }
 
 void lar_plane_contact_stop(lar_plane_contact *plane_contact, const lar_condition_context *context,
@@ -367,8 +381,11 @@ void lar_plane_contact_stop(lar_plane_contact *plane_contact, const lar_conditio
     int32_t smooth = plane_contact->planes->rough ? 0 : plane_contact->near_count;
     for (int32_t i = 0; i < smooth; i++) {
         const lar_plane_near *near = &plane_contact->near[i];
-        stop_node(near, &way[near->node.way], dt, rate, state->u + near->node.value,
-                  state->v + near->node.value, &sum);
+        double u[3], v[3];
+        lar_state_displacement(state, near->node.node, u);
+        lar_state_velocity(state, near->node.node, v);
+        if (stop_node(near, &way[near->node.way], dt, rate, u, v, &sum))
+            put_node(state, near->node.node, u, v);
     }
     if (!(sum.stopped < state->fastest)) state->fastest = fastest_of(context, state);
     state->fastest = larger(state->fastest, sum.fastest);
@@ -386,14 +403,17 @@ void lar_plane_contact_stop(lar_plane_contact *plane_contact, const lar_conditio
 int32_t lar_planes_ahead(const lar_planes *planes, const lar_condition_context *context,
                          const lar_state *state, int32_t entry, double ahead[3]) {
     double rate = 1 / context->time_step;
-    int32_t first = entry, value = planes->node[entry].value, met = 0, only = -1;
-    while (entry < planes->count && planes->node[entry].value == value) entry++;
+    int32_t first = entry, node = planes->node[entry].node, met = 0, only = -1;
+    double u[3], v[3];
+    lar_state_displacement(state, node, u);
+    lar_state_velocity(state, node, v);
+    while (entry < planes->count && planes->node[entry].node == node) entry++;
     for (int again = 0; again < (planes->rough ? 2 : 1); again++) /* as rub_node */
         for (int32_t k = first; k < entry; k++) {
             const lar_plane_way *way = &planes->way[planes->node[k].way];
-            double height = planes->node[k].offset + dot(way->normal, state->u + value), change[3];
+            double height = planes->node[k].offset + dot(way->normal, u), change[3];
             if (again && met == 1 && k == only) continue;
-            if (!meet(way, height, rate, again ? NULL : state->v + value, ahead, change)) continue;
+            if (!meet(way, height, rate, again ? NULL : v, ahead, change)) continue;
             for (int i = 0; i < 3; i++) ahead[i] += change[i];
             if (!again) only = k;
             met++;

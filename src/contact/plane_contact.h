@@ -40,7 +40,7 @@ typedef struct lar_plane_way {
 
 /* A node before a plane. */
 typedef struct lar_plane_node {
-    int32_t value; /* 4 * local node */
+    int32_t node; /* local */
     int32_t way;
     double offset; /* height above the plane at rest [m] */
 } lar_plane_node;
@@ -91,9 +91,9 @@ void lar_plane_contact_observe(lar_plane_contact *plane_contact,
 void lar_plane_contact_stop(lar_plane_contact *plane_contact, const lar_condition_context *context,
                             lar_state *state, bool always, lar_contact_info *seen);
 
-/* The velocity that nodes would have half a step later: from `ahead` [local nodes][4], what it were
- * without planes, to what it will be, for one node; `entry` is its first in `node`. Returns the
- * entry behind its last. (For energies; changes nothing.) */
+/* The velocity that nodes would have half a step later: from `ahead`, what it were without planes,
+ * to what it will be, for one node; `entry` is its first in `node`. Returns the entry behind its
+ * last. (For energies; changes nothing.) */
 int32_t lar_planes_ahead(const lar_planes *planes, const lar_condition_context *context,
                          const lar_state *state, int32_t entry, double ahead[3]);
 

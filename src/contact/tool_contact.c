@@ -21,7 +21,7 @@ static void add_face(const lar_model *model, const int32_t *local, const uint8_t
     *f = (lar_tool_contact_face){.of = face};
     for (int a = 0; a < 4; a++) {
         int32_t node = model->surface.corner[face][a];
-        f->value[a] = 4 * local[node];
+        f->node[a] = local[node];
         f->share[a] = 1.0 / faces_at[node];
         memcpy(f->rest[a], model->mesh.position[node], sizeof f->rest[a]);
     }
@@ -44,7 +44,7 @@ static void list_foreign(const lar_model *model, const int32_t *local,
             int32_t node = model->surface.corner[faces->face[f].of][a];
             if (share->holds[node] == share->thread || marked[node]) continue;
             marked[node] = 1;
-            faces->foreign[faces->foreign_count++] = 4 * local[node];
+            faces->foreign[faces->foreign_count++] = local[node];
         }
 }
 
@@ -95,7 +95,7 @@ void lar_tool_faces_destroy(lar_tool_faces *faces) {
     free(faces->face_of);
     free(faces->weights);
     free(faces->rub);
-    free(faces->rub_value);
+    free(faces->rub_node);
     *faces = (lar_tool_faces){0};
 }
 
@@ -273,7 +273,7 @@ static void give(lar_tool_contact *contact, const lar_condition_context *context
     for (int a = 0; a < 4; a++) {
         int64_t whole[3];
         for (int i = 0; i < 3; i++) whole[i] = llrint(force[a][i] * context->scale);
-        lar_touch_push(touches, contact->faces->face[f].value[a], whole);
+        lar_touch_push(touches, contact->faces->face[f].node[a], whole);
     }
 }
 
@@ -294,14 +294,14 @@ static void touch_near(lar_tool_contact *contact, const lar_condition_context *c
                                         .touches = touches_of(contact, tool),
                                         .closest = INFINITY};
         double center[3];
-        lar_tool_contact_corners(patch.face, state->u, patch.x);
+        lar_tool_contact_corners(patch.face, state, patch.x);
         double size = lar_tool_contact_ball_of((const double(*)[3])patch.x, center);
         double gap = lar_tool_contact_distance(&vicinity->body, patch.radius, center) - size;
         contact->seen.tested++;
         vicinity->look[i] = vicinity->path + lar_tool_contact_clear(gap, patch.radius);
         if (gap > 0) continue;
-        lar_tool_contact_push_face(&patch, law, state->v, context->springs,
-                                   contact->faces->weights);
+        for (int a = 0; a < 4; a++) lar_state_velocity(state, patch.face->node[a], patch.v[a]);
+        lar_tool_contact_push_face(&patch, law, context->springs, contact->faces->weights);
         vicinity->look[i] = vicinity->path + lar_tool_contact_clear(patch.closest, patch.radius);
         if (patch.touching == 0) continue;
         lar_tool_sum *sum = &contact->sum[tool];
@@ -350,8 +350,8 @@ static void grasp_point(lar_tool_contact *contact, const lar_condition_context *
     double pull[3], force[4][3], length = 0;
     place_anchor(&motion->now, grasp->anchor, now);
     place_anchor(&motion->next, grasp->anchor, next);
-    lar_tool_contact_corners(face, state->u, x);
-    for (int a = 0; a < 4; a++) memcpy(v[a], state->v + face->value[a], sizeof v[a]);
+    lar_tool_contact_corners(face, state, x);
+    for (int a = 0; a < 4; a++) lar_state_velocity(state, face->node[a], v[a]);
     lar_face_mean((const double(*)[3])x, grasp->weight, point);
     lar_face_mean((const double(*)[3])v, grasp->weight, speed);
     double max = lar_grasp_stiffness_limit(face, tool->radius, law, context->springs);
@@ -406,7 +406,8 @@ static double step_travel(const lar_tool_contact *contact, const lar_condition_c
     double fastest = state->fastest;
     for (int32_t i = 0; i < contact->faces->foreign_count; i++)
         for (int k = 0; k < 3; k++)
-            fastest = fmax(fastest, fabs(state->v[contact->faces->foreign[i] + k]));
+            fastest =
+                fmax(fastest, fabs(state->v[lar_state_at(state, contact->faces->foreign[i], k)]));
     return 1.7320508075688774 * context->whole_step * fastest;
 }
 
@@ -436,12 +437,13 @@ static void clear_loaded(lar_tool_contact *contact) {
     contact->seen.deepest = 0;
 }
 
-static void add_forces(const lar_tool_contact *contact, int64_t *force) {
+static void add_forces(const lar_tool_contact *contact, lar_state *state) {
     for (int32_t i = 0; i < contact->loaded_count; i++) {
         const lar_tool_contact_force *loaded = &contact->loaded[i];
         for (int a = 0; a < 4; a++)
             for (int k = 0; k < 3; k++)
-                force[contact->faces->face[loaded->face].value[a] + k] -= loaded->force[a][k];
+                state->force[lar_state_at(state, contact->faces->face[loaded->face].node[a], k)] -=
+                    loaded->force[a][k];
     }
 }
 
@@ -464,7 +466,7 @@ void lar_tool_contact_apply(lar_tool_contact *contact, const lar_condition_conte
             apply_tool(contact, context, state, t, known ? travel : 0, &tool_law);
     }
     apply_grasps(contact, context, state, &law);
-    add_forces(contact, state->force);
+    add_forces(contact, state);
 }
 
 void lar_tool_contact_half_work(const lar_tool_contact *contact,
@@ -474,8 +476,9 @@ void lar_tool_contact_half_work(const lar_tool_contact *contact,
         const lar_tool_contact_force *loaded = &contact->loaded[i];
         for (int a = 0; a < 4; a++)
             for (int k = 0; k < 3; k++)
-                work += (double)loaded->force[a][k] *
-                        state->v[contact->faces->face[loaded->face].value[a] + k];
+                work +=
+                    (double)loaded->force[a][k] *
+                    state->v[lar_state_at(state, contact->faces->face[loaded->face].node[a], k)];
     }
     state->external += 0.5 * context->mean_step * work / context->scale;
     if (contact->rubbed_count > 0) lar_tool_friction_half_work(contact, context, state);

@@ -47,7 +47,7 @@ static const double LAR_TORQUE_REST = 0x1p-20;
 
 /* A face of the surface. */
 typedef struct lar_tool_contact_face {
-    int32_t value[4];  /* 4 * local node */
+    int32_t node[4];   /* local */
     int32_t of;        /* index into the model's surface */
     double share[4];   /* of a corner's mass: one over the number of faces that it is a corner of */
     double rest[4][3]; /* positions at rest [m] */
@@ -78,10 +78,10 @@ typedef struct lar_tool_faces {
     lar_tool_contact_face *face;   /* [face_count] group after group */
     lar_tool_contact_group *group; /* [group_count] */
     int32_t *face_of;              /* [faces of the model's surface] index into `face`, or -1 */
-    int32_t *foreign;              /* [foreign_count] 4 * local node: corners that others move */
+    int32_t *foreign;              /* [foreign_count] local nodes: corners that others move */
     lar_point_weights *weights;    /* NULL: no faces */
     int32_t rub_count, local_count;
-    int32_t *rub_value;     /* [rub_count] 4 * local node, ascending */
+    int32_t *rub_node;      /* [rub_count] local, ascending */
     lar_tool_rub_node *rub; /* [rub_count] moved by the thread; NULL: no tool has friction. Of all
                                nodes of the processor there are `local_count` */
 } lar_tool_faces;
@@ -100,7 +100,7 @@ typedef struct lar_tool_contact_force {
 
 /* Friction of a node in the step under way [force units]. */
 typedef struct lar_tool_rubbed {
-    int32_t value;
+    int32_t node; /* local */
     int64_t force[3];
 } lar_tool_rubbed;
 
@@ -136,7 +136,7 @@ typedef struct lar_tool_contact {
     int32_t *loaded_at;             /* [faces->face_count] index into `loaded`; -1: nothing acts on
                                        the face in this step */
     lar_tool_contact_ball *ball;    /* [faces->group_count] */
-    int64_t *press;                 /* [4 * faces->local_count] sums of mu times what tools push, in
+    int64_t *press;                 /* [3][faces->local_count] sums of mu times what tools push, in
                                        force units, empty between steps; NULL: without friction */
     int32_t rubbed_count;
     lar_tool_rubbed *rubbed; /* [rubbed_count] of [faces->rub_count] */
@@ -191,7 +191,8 @@ lar_status lar_tool_faces_group(lar_tool_faces *faces, lar_error *error);
 int lar_tool_contact_points(const lar_tool_contact_face *face, double radius);
 void lar_tool_contact_weights(int point, int n, double weight[4]);
 /* Corners of a face now [m], and the ball around them. */
-void lar_tool_contact_corners(const lar_tool_contact_face *face, const double *u, double x[4][3]);
+void lar_tool_contact_corners(const lar_tool_contact_face *face, const lar_state *state,
+                              double x[4][3]);
 double lar_tool_contact_ball_of(const double x[4][3], double center[3]);
 /* Adds a force on the tissue [force units], `arm` from the tip, to what the tool feels. */
 static inline void lar_tool_sum_add(lar_tool_sum *sum, int32_t shares, const double arm[3],

@@ -19,7 +19,7 @@ void lar_tool_contact_weights(int point, int n, double weight[4]) {
 
 double lar_tool_contact_point_mass(const lar_tool_contact_face *face, const double *mass, int n) {
     double min = INFINITY;
-    for (int a = 0; a < 4; a++) min = fmin(min, mass[face->value[a] / 4] * face->share[a]);
+    for (int a = 0; a < 4; a++) min = fmin(min, mass[face->node[a]] * face->share[a]);
     return 4 * min / (n * n);
 }
 
@@ -143,7 +143,7 @@ static double wall_mass(const lar_tool_contact_face *face, const double *mass,
                         const double weight[4]) {
     double max = INFINITY;
     for (int a = 0; a < 4; a++)
-        if (weight[a] > 0) max = fmin(max, mass[face->value[a] / 4] * face->share[a] / weight[a]);
+        if (weight[a] > 0) max = fmin(max, mass[face->node[a]] * face->share[a] / weight[a]);
     return max;
 }
 
@@ -200,14 +200,12 @@ static double touch_walls(lar_tool_contact_patch *patch, const lar_contact_law *
 /* ---- the face ------------------------------------------------------------------------------ */
 
 void lar_tool_contact_push_face(lar_tool_contact_patch *patch, const lar_contact_law *law,
-                                const double *v, const double *mass,
-                                const lar_point_weights *weights) {
+                                const double *mass, const lar_point_weights *weights) {
     const lar_tool_contact_face *face = patch->face;
     const lar_tool_body *body = patch->body;
     int n = lar_tool_contact_points(face, patch->radius);
     lar_segment_axis axis[2];
     patch->mass = lar_tool_contact_point_mass(face, mass, n);
-    for (int a = 0; a < 4; a++) memcpy(patch->v[a], v + face->value[a], sizeof patch->v[a]);
     lar_face_normal((const double(*)[3])patch->x, patch->out);
     double size = lar_length(patch->out);
     for (int i = 0; i < 3; i++) patch->out[i] = size > 0 ? patch->out[i] / size : 0;

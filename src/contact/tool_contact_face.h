@@ -39,10 +39,9 @@ double lar_tool_contact_point_mass(const lar_tool_contact_face *face, const doub
 double lar_grasp_stiffness_limit(const lar_tool_contact_face *face, double radius,
                                  const lar_contact_law *law, const double *mass);
 
-/* Fills in the forces on the corners of a face [N] whose places `x` are known, and what the tool
- * has of them. `weights`: of the points (lar_tool_contact.weights). */
+/* Fills in the forces on the corners of a face [N] whose places `x` and velocities `v` are known,
+ * and what the tool has of them. `weights`: of the points (lar_tool_contact.weights). */
 void lar_tool_contact_push_face(lar_tool_contact_patch *patch, const lar_contact_law *law,
-                                const double *v, const double *mass,
-                                const lar_point_weights *weights);
+                                const double *mass, const lar_point_weights *weights);
 
 #endif

@@ -11,9 +11,11 @@ static double distance_between(const double a[3], const double b[3]) {
     return sqrt(square);
 }
 
-void lar_tool_contact_corners(const lar_tool_contact_face *face, const double *u, double x[4][3]) {
+void lar_tool_contact_corners(const lar_tool_contact_face *face, const lar_state *state,
+                              double x[4][3]) {
     for (int a = 0; a < 4; a++)
-        for (int i = 0; i < 3; i++) x[a][i] = face->rest[a][i] + u[face->value[a] + i];
+        for (int i = 0; i < 3; i++)
+            x[a][i] = face->rest[a][i] + state->u[lar_state_at(state, face->node[a], i)];
 }
 
 double lar_tool_contact_ball_of(const double x[4][3], double center[3]) {
@@ -90,18 +92,18 @@ lar_status lar_tool_faces_group(lar_tool_faces *faces, lar_error *error) {
 
 /* The ball around all corners of a group: that of the corners' mean, which is not the smallest. */
 static void measure_group(const lar_tool_contact *contact, const lar_tool_contact_group *group,
-                          const double *u, lar_tool_contact_ball *ball) {
+                          const lar_state *state, lar_tool_contact_ball *ball) {
     const lar_tool_contact_face *face = contact->faces->face;
     double x[4][3], center[3];
     memset(ball->center, 0, sizeof ball->center);
     for (int32_t f = group->first; f < group->first + group->count; f++) {
-        lar_tool_contact_corners(&face[f], u, x);
+        lar_tool_contact_corners(&face[f], state, x);
         lar_tool_contact_ball_of((const double(*)[3])x, center);
         for (int i = 0; i < 3; i++) ball->center[i] += center[i] / group->count;
     }
     ball->radius = 0;
     for (int32_t f = group->first; f < group->first + group->count; f++) {
-        lar_tool_contact_corners(&face[f], u, x);
+        lar_tool_contact_corners(&face[f], state, x);
         for (int a = 0; a < 4; a++)
             ball->radius = fmax(ball->radius, distance_between(ball->center, x[a]));
     }
@@ -109,10 +111,11 @@ static void measure_group(const lar_tool_contact *contact, const lar_tool_contac
 }
 
 static void search_group(lar_tool_contact *contact, lar_tool_vicinity *vicinity, double radius,
-                         double reach, const lar_tool_contact_group *group, const double *u) {
+                         double reach, const lar_tool_contact_group *group,
+                         const lar_state *state) {
     double x[4][3], center[3];
     for (int32_t f = group->first; f < group->first + group->count; f++) {
-        lar_tool_contact_corners(&contact->faces->face[f], u, x);
+        lar_tool_contact_corners(&contact->faces->face[f], state, x);
         double size = lar_tool_contact_ball_of((const double(*)[3])x, center);
         double gap = lar_tool_contact_distance(&vicinity->body, radius, center) - size;
         if (gap > reach) continue; /* not a number is near */
@@ -141,12 +144,12 @@ void lar_tool_contact_search(lar_tool_contact *contact, int32_t tool, const lar_
         if (lar_tool_contact_distance(&vicinity->body, radius, ball->center) - grown > reach)
             continue;
         if (!(contact->travel == ball->travel)) {
-            measure_group(contact, group, state->u, ball);
+            measure_group(contact, group, state, ball);
             if (lar_tool_contact_distance(&vicinity->body, radius, ball->center) - ball->radius >
                 reach)
                 continue;
         }
-        search_group(contact, vicinity, radius, reach, group, state->u);
+        search_group(contact, vicinity, radius, reach, group, state);
     }
     contact->seen.searches++;
 }

@@ -33,21 +33,21 @@ lar_status lar_tool_friction_list(const lar_model *model, const int32_t *local,
     size_t nodes = (size_t)model->surface.node_count, all = (size_t)faces->local_count;
     int32_t *node = lar_calloc(all, sizeof *node), *place = lar_calloc(all, sizeof *place);
     faces->rub = lar_calloc(nodes, sizeof *faces->rub);
-    faces->rub_value = lar_calloc(nodes, sizeof *faces->rub_value);
+    faces->rub_node = lar_calloc(nodes, sizeof *faces->rub_node);
     lar_status status = LAR_OK;
-    if (!node || !place || !faces->rub || !faces->rub_value)
+    if (!node || !place || !faces->rub || !faces->rub_node)
         status = lar_fail_memory(error, nodes * sizeof *faces->rub, "the nodes before tools");
     for (size_t n = 0; n < all && !status; n++) node[n] = place[n] = -1;
     if (!status) find_nodes(model, local, share, node);
     for (int32_t n = 0; n < faces->local_count && !status; n++) {
         if (node[n] < 0) continue;
         place[n] = faces->rub_count++;
-        faces->rub_value[place[n]] = 4 * n;
+        faces->rub_node[place[n]] = n;
         faces->rub[place[n]].node = node[n];
         memcpy(faces->rub[place[n]].rest, model->mesh.position[node[n]], sizeof faces->rub->rest);
     }
     for (int32_t i = 0; i < conditions->constraint_count && !status; i++) {
-        int32_t at = place[conditions->constraint[i].value / 4];
+        int32_t at = place[conditions->constraint[i].node];
         if (at >= 0) faces->rub[at].held = true;
     }
     free(node);
@@ -57,7 +57,7 @@ lar_status lar_tool_friction_list(const lar_model *model, const int32_t *local,
 
 lar_status lar_tool_friction_create(lar_tool_contact *contact, lar_error *error) {
     if (!lar_tool_friction_any(contact->list)) return LAR_OK;
-    size_t values = 4 * (size_t)contact->faces->local_count;
+    size_t values = 3 * (size_t)contact->faces->local_count;
     size_t nodes = (size_t)contact->faces->rub_count;
     contact->press = lar_calloc(values, sizeof *contact->press);
     contact->rubbed = lar_calloc(nodes, sizeof *contact->rubbed);
@@ -75,10 +75,14 @@ void lar_tool_friction_destroy(lar_tool_contact *contact) {
 
 void lar_tool_friction_forget(lar_tool_contact *contact) {
     if (!contact->press) return;
-    memset(contact->press, 0, 4 * (size_t)contact->faces->local_count * sizeof *contact->press);
+    memset(contact->press, 0, 3 * (size_t)contact->faces->local_count * sizeof *contact->press);
 }
 
 /* ---- the step ------------------------------------------------------------------------------ */
+
+static inline int64_t *press_at(const lar_tool_contact *contact, int32_t node, int axis) {
+    return contact->press + node + (size_t)axis * (size_t)contact->faces->local_count;
+}
 
 void lar_tool_friction_press(lar_tool_contact *contact, const lar_condition_context *context,
                              double friction, const lar_tool_contact_face *face,
@@ -86,7 +90,7 @@ void lar_tool_friction_press(lar_tool_contact *contact, const lar_condition_cont
     for (int a = 0; a < 4; a++)
         for (int i = 0; i < 3; i++) {
             double units = friction * force[a][i] * context->scale;
-            if (fabs(units) < 0x1p56) contact->press[face->value[a] + i] += llrint(units);
+            if (fabs(units) < 0x1p56) *press_at(contact, face->node[a], i) += llrint(units);
         }
 }
 
@@ -198,19 +202,23 @@ static void rub_node(lar_tool_contact *contact, const lar_condition_context *con
                      int32_t count, int32_t at, const int64_t sum[3], lar_state *state) {
     const double press[3] = {(double)sum[0], (double)sum[1], (double)sum[2]};
     const lar_tool_rub_node *node = &contact->faces->rub[at];
-    const int32_t value = contact->faces->rub_value[at];
-    double x[3], velocity[3], unit = leapfrog->push * push[value / 4];
-    for (int i = 0; i < 3; i++) x[i] = node->rest[i] + state->u[value + i];
+    const int32_t local = contact->faces->rub_node[at];
+    double x[3], v[3], velocity[3], unit = leapfrog->push * push[local];
+    int64_t force[3];
+    for (int i = 0; i < 3; i++) {
+        x[i] = node->rest[i] + state->u[lar_state_at(state, local, i)];
+        force[i] = state->force[lar_state_at(state, local, i)];
+    }
+    lar_state_velocity(state, local, v);
     const rough_tool *tool = nearest(contact, rough, count, x);
     tool_velocity(tool, contact->list->tool[tool->tool].radius, x, context->time_step, velocity);
     lar_tool_rubbed *rubbed = &contact->rubbed[contact->rubbed_count++];
-    rubbed->value = value;
-    rub(press, velocity, unit, leapfrog, state->v + value, state->force + value, rubbed->force);
-    for (int i = 0; i < 3; i++) state->force[value + i] -= rubbed->force[i];
-    if (!(context->weight[value / 4] > 0)) return; /* another processor tells the tool */
+    rubbed->node = local;
+    rub(press, velocity, unit, leapfrog, v, force, rubbed->force);
+    for (int i = 0; i < 3; i++) state->force[lar_state_at(state, local, i)] -= rubbed->force[i];
+    if (!(context->weight[local] > 0)) return; /* another processor tells the tool */
     if (contact->touches && contact->touches->tool == tool->tool) {
-        lar_touch touch = {
-            .kind = LAR_TOUCH_RUBBED, .face = -1, .node = {value / 4}, .weight = {1}};
+        lar_touch touch = {.kind = LAR_TOUCH_RUBBED, .face = -1, .node = {local}, .weight = {1}};
         double size = lar_length(press);
         for (int i = 0; i < 3; i++) {
             touch.place[i] = x[i];
@@ -218,7 +226,7 @@ static void rub_node(lar_tool_contact *contact, const lar_condition_context *con
         }
         lar_touch_note(contact->touches, &touch);
         lar_touch_settle(contact->touches, rubbed->force, context->scale);
-        lar_touch_push(contact->touches, value, rubbed->force);
+        lar_touch_push(contact->touches, local, rubbed->force);
     }
     double arm[3];
     lar_minus(x, tool->now.position, arm);
@@ -235,10 +243,10 @@ void lar_tool_friction_add(lar_tool_contact *contact, const lar_condition_contex
     int32_t count = 0;
     contact->rubbed_count = 0;
     for (int32_t i = 0; i < contact->faces->rub_count; i++) {
-        int64_t *press = contact->press + contact->faces->rub_value[i];
-        if (!(press[0] | press[1] | press[2])) continue;
-        const int64_t sum[3] = {press[0], press[1], press[2]};
-        memset(press, 0, sizeof sum);
+        int64_t sum[3];
+        for (int k = 0; k < 3; k++) sum[k] = *press_at(contact, contact->faces->rub_node[i], k);
+        if (!(sum[0] | sum[1] | sum[2])) continue;
+        for (int k = 0; k < 3; k++) *press_at(contact, contact->faces->rub_node[i], k) = 0;
         if (is_held(&contact->faces->rub[i], context)) continue;
         if (count == 0) count = place_tools(contact, context, state, rough);
         rub_node(contact, context, leapfrog, push, rough, count, i, sum, state);
@@ -251,8 +259,9 @@ void lar_tool_friction_half_work(const lar_tool_contact *contact,
     for (int32_t i = 0; i < contact->rubbed_count; i++) {
         const lar_tool_rubbed *rubbed = &contact->rubbed[i];
         /* A node that several processors have is accounted for by one. */
-        if (!(context->weight[rubbed->value / 4] > 0)) continue;
-        for (int k = 0; k < 3; k++) work += (double)rubbed->force[k] * state->v[rubbed->value + k];
+        if (!(context->weight[rubbed->node] > 0)) continue;
+        for (int k = 0; k < 3; k++)
+            work += (double)rubbed->force[k] * state->v[lar_state_at(state, rubbed->node, k)];
     }
     state->external += 0.5 * context->mean_step * work / context->scale;
 }

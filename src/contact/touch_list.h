@@ -17,8 +17,9 @@ enum { LAR_TOUCHES_OF_FACE = 74 };
 
 typedef struct lar_touch_list {
     int32_t tool;
-    int64_t *on_nodes;  /* [local nodes][4] what each gets from the tool [force units]; NULL: not
-                           asked for */
+    int64_t *on_nodes;  /* [3][stride] what each local node gets from the tool [force units]; NULL:
+                           not asked for */
+    size_t stride;      /* of that (mechanics/axes.h) */
     int32_t max, count; /* room; how many there are */
     lar_touch *touch;   /* [max]. What rubs has its local node in node[0]; others have no nodes */
     int32_t pending;
@@ -27,9 +28,10 @@ typedef struct lar_touch_list {
 
 /* A point of the face under way; its force on the tool is still exact. */
 void lar_touch_note(lar_touch_list *list, const lar_touch *touch);
-/* The node at `value` (4 * local node) gets a force from the tool. */
-static inline void lar_touch_push(lar_touch_list *list, int32_t value, const int64_t force[3]) {
-    for (int i = 0; i < 3 && list->on_nodes; i++) list->on_nodes[value + i] += force[i];
+/* The local node gets a force from the tool. */
+static inline void lar_touch_push(lar_touch_list *list, int32_t node, const int64_t force[3]) {
+    for (int i = 0; i < 3 && list->on_nodes; i++)
+        list->on_nodes[(size_t)node + (size_t)i * list->stride] += force[i];
 }
 /* The face is done: the tissue gets `total` from the tool [force units, `scale` in a newton]. */
 void lar_touch_settle(lar_touch_list *list, const int64_t total[3], double scale);

@@ -2,7 +2,7 @@
 
 #include <stdlib.h>
 
-#include "base/simd.h"
+#include "mechanics/axes.h"
 
 enum { HALF_ROW = LAR_BLOCK / 2 };
 
@@ -49,10 +49,10 @@ static lar_kind kind_of(const lar_lanes *block) {
 static void join_halves(lar_draft *draft, lar_lanes *first, lar_lanes *second) {
     lar_lanes *emptied = second ? second : first;
     for (int k = 0; k < HALF_ROW; k++) {
-        lar_gid e = emptied->element[LAR_ROW_LANES[k]];
+        lar_gid e = emptied->element[k];
         draft->open[e] = true;
-        emptied->element[LAR_ROW_LANES[k]] = -1;
-        if (second) lar_draft_put(draft, first, LAR_ROW_LANES[HALF_ROW + k], e);
+        emptied->element[k] = -1;
+        if (second) lar_draft_put(draft, first, HALF_ROW + k, e);
     }
 }
 
@@ -166,8 +166,8 @@ static bool number_rest(lar_draft *draft) {
     return true;
 }
 
-/* Puts the owners' ranges one behind the other. Each is filled up to an even length, the last one
- * with at least one spare node. */
+/* Puts the owners' ranges one behind the other. Each is filled up to whole lanes, the last one with
+ * at least one spare node. */
 static bool join_ranges(lar_draft *draft) {
     lar_layout *layout = draft->layout;
     int32_t nodes = 0;
@@ -175,9 +175,10 @@ static bool join_ranges(lar_draft *draft) {
     for (int32_t t = 0; t < draft->threads; t++) {
         layout->first_node[t] = nodes;
         layout->node_count = nodes + draft->range[t].count;
-        nodes = (layout->node_count + 1) & ~1;
+        nodes = lar_whole_lanes(layout->node_count);
     }
-    layout->node_padded = (layout->node_count + 2) & ~1;
+    layout->node_padded = lar_whole_lanes(layout->node_count + 1);
+    layout->axis_stride = lar_axis_stride((size_t)layout->node_padded);
     for (int32_t t = draft->threads; t <= LAR_LAYOUT_THREADS; t++)
         layout->first_node[t] = layout->node_padded;
     layout->global = lar_calloc((size_t)layout->node_padded, sizeof *layout->global);

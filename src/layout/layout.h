@@ -43,15 +43,17 @@ typedef struct lar_layout {
     lar_gid (*corner)[8]; /* [elements of the model] nodes, turned along the row */
     bool corner_lent;     /* `corner` belongs to the whole layout (part_layout.h) */
     int32_t block_count;
-    lar_lanes *block;    /* sorted by thread and batch; then equal law, viscosity, fibres,
-                            shape, turn, rows */
-    int32_t node_count;  /* local nodes, spare ones among them, without the padding at the end */
-    int32_t node_padded; /* even, with at least one spare node at the end */
-    lar_gid *global;     /* [node_padded] node of the model, -1: spare */
-    lar_lid *local;      /* [nodes of the model], -1: not in this layout */
+    lar_lanes *block;   /* sorted by thread and batch; then equal law, viscosity, fibres,
+                           shape, turn, rows */
+    int32_t node_count; /* local nodes, spare ones among them, without the padding at the end */
+    int32_t
+        node_padded;    /* a multiple of LAR_NODES_TOGETHER, with a spare node at the end or more */
+    size_t axis_stride; /* of vectors of all nodes (mechanics/axes.h) */
+    lar_gid *global;    /* [node_padded] node of the model, -1: spare */
+    lar_lid *local;     /* [nodes of the model], -1: not in this layout */
     int32_t thread_count;
-    /* Nodes first_node[t] .. first_node[t + 1] - 1 are moved by thread t, all even; node_padded
-     * from thread_count on. */
+    /* Nodes first_node[t] .. first_node[t + 1] - 1 are moved by thread t, all multiples of
+     * LAR_NODES_TOGETHER; node_padded from thread_count on. */
     lar_lid first_node[LAR_LAYOUT_THREADS + 1];
 } lar_layout;
 

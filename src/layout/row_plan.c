@@ -3,7 +3,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/simd.h"
 #include "layout/rows.h"
 
 enum { LONGEST_RUN = 1024, BEYOND = LONGEST_RUN, ROW = LAR_BLOCK, HALF_ROW = LAR_BLOCK / 2 };
@@ -135,7 +134,7 @@ static bool place_row(planner *plan, int from, int count) {
     lar_lanes *block = lar_draft_block(draft, own, count == ROW ? LAR_ROWS_EIGHT : LAR_ROWS_FOUR);
     if (!block) return false;
     for (int k = 0; k < count; k++) {
-        lar_draft_put(draft, block, LAR_ROW_LANES[k], run[k]);
+        lar_draft_put(draft, block, k, run[k]);
         if (!plan->ways->turned)
             memcpy(draft->layout->corner[run[k]], plan->run_corner[from + k],
                    sizeof plan->run_corner[0]);

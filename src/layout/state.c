@@ -4,7 +4,9 @@
 
 lar_status lar_state_create(lar_state *state, int32_t node_count, size_t history_count,
                             lar_error *error) {
-    *state = (lar_state){.node_count = node_count, .history_count = history_count};
+    *state = (lar_state){.node_count = node_count,
+                         .stride = lar_axis_stride((size_t)node_count),
+                         .history_count = history_count};
     bool complete = true;
     size_t bytes = 0;
 #define LAR_STATE_CREATE(type, name, of_node, of_history, kept)                                    \

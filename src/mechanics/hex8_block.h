@@ -10,16 +10,15 @@
  *   rows     +---+---+---+---+   Lane k+1 continues lane k in the xi direction: its left nodes are
  *            | 0 | 1 | 2 | 3 |   lane k's right nodes. Four lines of nine nodes are loaded and
  *            +---+---+---+---+   stored instead of 64 nodes, whole vectors at a time because the
- *                                nodes of a line are consecutive, and neighbours' forces are added
- *                                in registers. Elements 1 and 2, 5 and 6 change lanes
- *                                (LAR_ROW_LANES in base/simd.h).
+ *                                nodes of a line are consecutive: the right ones are the same load
+ *                                one node further. Neighbours' forces are added in registers.
  *   boxes    edges along the axes: of the 18 modal gradients three are not zero, and the hourglass
  *            shapes vanish (112 bytes per element instead of 328).
  *
  * And one makes models that are larger than caches cheaper, again with the same bits:
  *
  *     lean     gradients and shapes follow from where the nodes are at rest, which neighbours
- * share: 96 bytes per element and 32 per node are read instead of 328, and the rest is made anew in
+ * share: 96 bytes per element and 24 per node are read instead of 328, and the rest is made anew in
  * every step, a few blocks at a time (docs/performance.md, "Lean blocks").
  *
  * Forces are 64-bit integers, newtons times the model's scale, a power of two (docs/theory.md). The
@@ -31,6 +30,7 @@
 #ifndef LAR_MECHANICS_HEX8_BLOCK_H
 #define LAR_MECHANICS_HEX8_BLOCK_H
 
+#include "mechanics/axes.h"
 #include "mechanics/hex8.h"
 
 /* Elements; parameters of a law that a block has room for, and those that stand beside the blocks,
@@ -55,7 +55,7 @@ typedef enum lar_block_shape { LAR_SHAPE_GENERAL, LAR_SHAPE_BOX, LAR_SHAPE_COUNT
 typedef struct lar_block_head {
     double modulus[LAR_BLOCK_PARAMETERS][LAR_BLOCK]; /* law parameters times volume and scale */
     double stiffness[LAR_HEX8_HOURGLASS][LAR_BLOCK]; /* c_m times scale */
-    int32_t node[8][LAR_BLOCK];                      /* 4 times the local node's index */
+    int32_t node[8][LAR_BLOCK];                      /* local nodes */
 } __attribute__((aligned(64))) lar_block_head;
 
 typedef struct lar_hex8_block { /* LAR_SHAPE_GENERAL */
@@ -125,9 +125,10 @@ typedef struct lar_block_run {
     int turn;      /* of boxes, 0..2; else 0 */
     bool streamed; /* the blocks of the model are more than caches hold: ask ahead */
     int32_t count;
-    const void *blocks;         /* lar_hex8_block, lar_box_block or lar_lean_block [count] */
+    size_t axis_stride; /* values from one axis of a node to the next, in all of its arrays */
+    const void *blocks; /* lar_hex8_block, lar_box_block or lar_lean_block [count] */
     const lar_block_more *more; /* [count], NULL when the law has no more parameters */
-    const double *rest;         /* [nodes][4] at rest [m]: the blocks are lean. Else NULL */
+    const double *rest;         /* [3][axis_stride] at rest [m]: the blocks are lean. Else NULL */
     int viscous; /* lar_viscosity_kind; 0: elastic, and what follows does not count */
     int terms;
     bool isochoric;
@@ -193,8 +194,8 @@ typedef struct lar_hex8_monitor {
     float (*strain)[LAR_STRAIN_NUMBERS]; /* [as many] of each */
 } lar_hex8_monitor;
 
-/* Recovers a run: adds the internal forces for the displacements `u` [nodes][4] to `force`
- * [nodes][4]. Returns -1, or where the first block with elements beyond the limits is:
+/* Recovers a run: adds the internal forces for the displacements `u` to `force`, both
+ * [3][axis_stride]. Returns -1, or where the first block with elements beyond the limits is:
  * block << 8 | a bit for each lane; all forces are added in any case. With `monitor` (may be NULL)
  * hourglass forces are compared with their limit, and strained elements are listed. */
 typedef int64_t (*lar_hex8_recover)(const lar_block_run *run, const double *u, int64_t *force,
@@ -218,8 +219,9 @@ typedef struct lar_hex8_group {
 } lar_hex8_group;
 
 /* Where nodes are: at `rest`, displaced by `u`, and, with `v` (else NULL), moved on with that for
- * ahead[lane] seconds; all [nodes][4]. */
+ * ahead[lane] seconds; all [3][stride]. */
 typedef struct lar_hex8_places {
+    size_t stride;
     const double *rest, *u, *v, *ahead;
 } lar_hex8_places;
 
@@ -245,7 +247,7 @@ typedef struct lar_hex8_motion {
     double parting[LAR_BLOCK];
 } lar_hex8_motion;
 
-/* Of those lanes that have a bit; nodes move with `v` [nodes][4]. */
+/* Of those lanes that have a bit; nodes move with `v` [3][stride]. */
 typedef void (*lar_hex8_motion_of)(const lar_hex8_group *group, unsigned lanes,
                                    const lar_hex8_places *places, const double *v,
                                    lar_hex8_motion *motion);
@@ -255,20 +257,21 @@ typedef struct lar_leapfrog {
     double keep;     /* (1 - c dt/2) / (1 + c dt/2) */
     double dt;       /* [s] */
     double speed;    /* no node may be this fast along an axis [m/s] */
-    double drift[4]; /* gravity g dt / (1 + c dt/2) [m/s]; the fourth value is 0 */
+    double drift[3]; /* gravity g dt / (1 + c dt/2) [m/s] */
     double push;     /* how many times lar_node_update's `push` counts: 1 but for divided steps */
 } lar_leapfrog;
 
-/* Moves nodes first..end-1 (both even) by one step and clears their forces:
- *     v' = keep v - push f + drift,   u' = u + dt v',   f = 0
- * u, v, f are [nodes][4], aligned to 64 bytes; push [nodes] is dt / (m (1 + c dt/2)) times the
- * force unit, and counts leapfrog->push times. With `mass` (not NULL; [nodes], kg) *damped grows by
- * sum m |v + v'|^2, for the energy that damping takes. *fastest becomes the largest |v'| of an axis
- * where that is more: nothing has moved further than sqrt(3) dt of it, which is what the search for
- * contact builds on. Returns false when a node reached `speed`; *fastest then says nothing. */
-typedef bool (*lar_node_update)(const lar_leapfrog *leapfrog, int32_t first, int32_t end, double *u,
-                                double *v, int64_t *force, const double *push, const double *mass,
-                                double *damped, double *fastest);
+/* Moves nodes first..end-1 (both multiples of LAR_NODES_TOGETHER) by one step and clears their
+ * forces: v' = keep v - push f + drift,   u' = u + dt v',   f = 0 u, v, f are [3][stride], aligned
+ * to 64 bytes; push [nodes] is dt / (m (1 + c dt/2)) times the force unit, and counts
+ * leapfrog->push times. With `mass` (not NULL; [nodes], kg) *damped grows by sum m |v + v'|^2, for
+ * the energy that damping takes. *fastest becomes the largest |v'| of an axis where that is more:
+ * nothing has moved further than sqrt(3) dt of it, which is what the search for contact builds on.
+ * Returns false when a node reached `speed`; *fastest then says nothing. */
+typedef bool (*lar_node_update)(const lar_leapfrog *leapfrog, int32_t first, int32_t end,
+                                size_t stride, double *u, double *v, int64_t *force,
+                                const double *push, const double *mass, double *damped,
+                                double *fastest);
 
 /* The kernels of one instruction set. */
 typedef struct lar_kernels {

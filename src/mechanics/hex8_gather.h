@@ -44,21 +44,106 @@ enum { CHUNK = 4, PARTS = LAR_BLOCK / LAR_LANES };
  * ++. */
 static const int left_node[4] = {0, 3, 4, 7}, right_node[4] = {1, 2, 5, 6};
 
-LAR_INLINE void gather_pair(const lar_block_head *head, int lane, lar_block_rows rows, int edge,
-                            const double *u, lar_lane left[3], lar_lane right[3]) {
-    const int32_t *a = head->node[left_node[edge]] + lane, *b = head->node[right_node[edge]] + lane;
-    if (rows == LAR_ROWS_NONE) {
-        lar_lane_gather(u, a, left);
-        lar_lane_gather(u, b, right);
-    } else {
-        lar_lane_gather_row(u, a, b, rows == LAR_ROWS_FOUR, left, right);
+/* Nodes, and sums of forces, axis by axis: `stride` values from one axis to the next. */
+typedef struct lane_nodes {
+    const double *value;
+    size_t stride;
+} lane_nodes;
+typedef struct lane_sums {
+    int64_t *value;
+    size_t stride;
+} lane_sums;
+
+/* Whether a vector's elements are neighbours in a row, so that their nodes are found as lanes. One
+ * element is a row of its own. Vectors of eight find two rows of four in halves (`fours`, always a
+ * constant). */
+#ifndef LANES_LIE_IN_ROWS
+#define LANES_LIE_IN_ROWS(rows)                                                                    \
+    (LAR_LANES == 1 || (rows) == LAR_ROWS_EIGHT || ((rows) == LAR_ROWS_FOUR && LAR_LANES <= 4))
+#define LANES_KNOW_FOURS (LAR_LANES == 8)
+#endif
+
+/* What other lanes have at their corners is picked up, and later handed out, node by node. */
+typedef struct picked_corners {
+    double of[8][3][LAR_LANES] __attribute__((aligned(64)));
+} picked_corners;
+static const int32_t picked_place[8][LAR_BLOCK] = {
+    {0},
+    {3 * LAR_LANES},
+    {6 * LAR_LANES},
+    {9 * LAR_LANES},
+    {12 * LAR_LANES},
+    {15 * LAR_LANES},
+    {18 * LAR_LANES},
+    {21 * LAR_LANES},
+};
+
+/* A function of its own and a loop: three loads for each node of each lane are many instructions,
+ * and every phase would have them. */
+__attribute__((noinline)) static void pick_corners(const lar_block_head *head, int lane,
+                                                   lar_block_rows rows, lane_nodes u,
+                                                   picked_corners *picked) {
+    for (int a = 0; a < 8; a++) {
+        lar_lane corner[3];
+        const int32_t *node = head->node[a] + lane;
+        if (rows == LAR_ROWS_NONE)
+            lar_lane_gather(u.value, u.stride, node, corner);
+        else
+            lar_lane_gather_row(u.value, u.stride, node, rows == LAR_ROWS_FOUR, corner);
+        UNROLL3 for (int i = 0; i < 3; i++) lar_lane_store(picked->of[a][i], corner[i]);
     }
 }
 
-LAR_INLINE void gather_edge(const lar_block_head *head, int lane, lar_block_rows rows, int edge,
-                            const double *u, lar_lane sum[3], lar_lane difference[3]) {
+__attribute__((noinline)) static void hand_out(const lar_block_head *head, int lane,
+                                               lar_block_rows rows, const lar_ilane corner[8][3],
+                                               lane_sums force) {
+    for (int edge = 0; edge < 4; edge++) {
+        const int left = left_node[edge], right = right_node[edge];
+        const int32_t *a = head->node[left] + lane, *b = head->node[right] + lane;
+        if (rows == LAR_ROWS_NONE) {
+            lar_ilane_scatter_add(force.value, force.stride, a, corner[left]);
+            lar_ilane_scatter_add(force.value, force.stride, b, corner[right]);
+        } else {
+            lar_ilane_scatter_row(force.value, force.stride, a, b, rows == LAR_ROWS_FOUR,
+                                  corner[left], corner[right]);
+        }
+    }
+}
+
+/* Where the corners of some lanes are: corner a begins at value[at[a * LAR_BLOCK]]. */
+typedef struct lane_corners {
+    const double *value;
+    size_t stride;
+    const int32_t *at;
+} lane_corners;
+
+LAR_INLINE lane_corners find_corners(const lar_block_head *head, int lane, lar_block_rows rows,
+                                     bool fours, lane_nodes u, picked_corners *picked) {
+    if (fours || LANES_LIE_IN_ROWS(rows))
+        return (lane_corners){u.value, u.stride, head->node[0] + lane};
+    pick_corners(head, lane, rows, u, picked);
+    return (lane_corners){picked->of[0][0], LAR_LANES, picked_place[0]};
+}
+
+LAR_INLINE void load_corner(lane_corners from, int a, bool fours, lar_lane corner[3]) {
+    const int32_t *at = from.at + a * LAR_BLOCK;
+#if LANES_KNOW_FOURS
+    if (fours) {
+        lar_lane_gather_row(from.value, from.stride, at, true, corner);
+        return;
+    }
+#endif
+    (void)fours;
+    const double *axis = from.value + at[0];
+    UNROLL3 for (int i = 0; i < 3; i++) corner[i] =
+        lar_lane_load_row(axis + (size_t)i * from.stride);
+}
+
+LAR_INLINE void gather_edge(lane_corners from, int edge, bool fours, lar_lane sum[3],
+                            lar_lane difference[3]) {
     lar_lane left[3], right[3];
-    gather_pair(head, lane, rows, edge, u, left, right);
+    load_corner(from, left_node[edge], fours, left);
+    load_corner(from, right_node[edge], fours, right);
     UNROLL3 for (int i = 0; i < 3; i++) {
         sum[i] = right[i] + left[i];
         difference[i] = right[i] - left[i];
@@ -67,11 +152,10 @@ LAR_INLINE void gather_edge(const lar_block_head *head, int lane, lar_block_rows
 
 /* Sums and differences along xi and eta of the four nodes with one sign of zeta:
  * index 0: ++, 1: +-, 2: -+, 3: -- (xi first). */
-LAR_INLINE void gather_layer(const lar_block_head *head, int lane, lar_block_rows rows, int edge,
-                             const double *u, lar_lane layer[4][3]) {
+LAR_INLINE void gather_layer(lane_corners from, int edge, bool fours, lar_lane layer[4][3]) {
     lar_lane s0[3], d0[3], s1[3], d1[3];
-    gather_edge(head, lane, rows, edge, u, s0, d0);
-    gather_edge(head, lane, rows, edge + 1, u, s1, d1);
+    gather_edge(from, edge, fours, s0, d0);
+    gather_edge(from, edge + 1, fours, s1, d1);
     UNROLL3 for (int i = 0; i < 3; i++) {
         layer[0][i] = s1[i] + s0[i];
         layer[1][i] = s1[i] - s0[i];
@@ -81,11 +165,13 @@ LAR_INLINE void gather_layer(const lar_block_head *head, int lane, lar_block_row
 }
 
 /* Modal displacements: xi, eta, zeta, eta zeta, xi zeta, xi eta, xi eta zeta. */
-LAR_INLINE void gather_modes(const lar_block_head *head, int lane, lar_block_rows rows,
-                             const double *u, lar_lane U[7][3]) {
+LAR_INLINE void gather_modes(const lar_block_head *head, int lane, lar_block_rows rows, bool fours,
+                             lane_nodes u, lar_lane U[7][3]) {
+    picked_corners picked;
     lar_lane lower[4][3], upper[4][3];
-    gather_layer(head, lane, rows, 0, u, lower);
-    gather_layer(head, lane, rows, 2, u, upper);
+    const lane_corners from = find_corners(head, lane, rows, fours, u, &picked);
+    gather_layer(from, 0, fours, lower);
+    gather_layer(from, 2, fours, upper);
     UNROLL3 for (int i = 0; i < 3; i++) {
         U[0][i] = upper[2][i] + lower[2][i];
         U[1][i] = upper[1][i] + lower[1][i];

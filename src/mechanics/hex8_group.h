@@ -15,21 +15,10 @@
 /* These are called and not inlined: several times, for a few groups in a step. */
 #define GROUP_CALL static __attribute__((noinline))
 
-/* A node's four values, whatever the lanes are. */
-typedef double node_values __attribute__((vector_size(4 * sizeof(double)), may_alias));
-
-/* Where the corners of some lanes are: nodes at `rest`, displaced by `u` (may be NULL). Loose, for
- * elements that are looked at on their own; added before nodes are turned into lanes. */
-GROUP_CALL void gather_corners(const int32_t corner[8][LAR_BLOCK], int lane, const double *rest,
-                               const double *u, lar_lane x[8][3]) {
-    static const int32_t place[8] = {0, 4, 8, 12, 16, 20, 24, 28};
-    for (int a = 0; a < 8; a++) {
-        const int32_t *node = corner[a] + lane;
-        node_values now[LAR_LANES] __attribute__((aligned(64)));
-        for (int k = 0; k < LAR_LANES && u; k++)
-            now[k] = *(const node_values *)(rest + node[k]) + *(const node_values *)(u + node[k]);
-        lar_lane_gather(u ? (const double *)now : rest, u ? place : node, x[a]);
-    }
+/* A vector of the corners of some lanes. */
+GROUP_CALL void gather_corners(const lar_hex8_group *group, int lane, const double *of,
+                               size_t stride, lar_lane x[8][3]) {
+    for (int a = 0; a < 8; a++) lar_lane_gather(of, stride, group->node[a] + lane, x[a]);
 }
 
 /* The volumes that the edges span in the eight corners. */
@@ -95,11 +84,18 @@ LAR_INLINE lar_lane parting_of(const lar_lane v[8][3]) {
     return most;
 }
 
+/* Where corners are. */
+LAR_INLINE void displace(const lar_hex8_group *group, int lane, const lar_hex8_places *places,
+                         lar_lane rest[8][3], lar_lane x[8][3]) {
+    gather_corners(group, lane, places->u, places->stride, x);
+    for (int a = 0; a < 8; a++) UNROLL3 for (int i = 0; i < 3; i++) x[a][i] += rest[a][i];
+}
+
 /* Where corners are that move on. */
 LAR_INLINE void go_ahead(const lar_hex8_group *group, int lane, const lar_hex8_places *places,
                          lar_lane x[8][3]) {
     lar_lane v[8][3], ahead = lar_lane_load(&places->ahead[lane]);
-    gather_corners(group->node, lane, places->v, NULL, v);
+    gather_corners(group, lane, places->v, places->stride, v);
     for (int a = 0; a < 8; a++) UNROLL3 for (int i = 0; i < 3; i++) x[a][i] += ahead * v[a][i];
 }
 
@@ -142,17 +138,17 @@ static unsigned corners(const lar_hex8_group *group, unsigned lanes, const lar_h
     unsigned below[2] = {0, 0};
     memset(look->at, 0, sizeof look->at);
     for (int lane = 0; lane < LAR_BLOCK; lane += LAR_LANES) {
-        lar_lane x[8][3], now[8], at_rest[8];
+        lar_lane rest[8][3], x[8][3], now[8], at_rest[8];
         unsigned part = lanes >> lane & ((1u << LAR_LANES) - 1);
         if (!part) continue;
-        gather_corners(group->node, lane, places->rest, places->u, x);
+        gather_corners(group, lane, places->rest, places->stride, rest);
+        displace(group, lane, places, rest, x);
         if (places->v) go_ahead(group, lane, places, x);
         corner_volumes((const lar_lane(*)[3])x, now);
         lar_lane_store(&look->longest[lane], longest_edge((const lar_lane(*)[3])x));
         for (int a = 0; a < 8; a++) at_rest[a] = lar_lane_load(&group->largest[lane]);
         if (look_below(now, at_rest, part, share[1], NULL)) {
-            gather_corners(group->node, lane, places->rest, NULL, x);
-            corner_volumes((const lar_lane(*)[3])x, at_rest);
+            corner_volumes((const lar_lane(*)[3])rest, at_rest);
             below[0] |= look_below(now, at_rest, part, share[0], look->at + lane) << lane;
             below[1] |= look_below(now, at_rest, part, share[1], NULL) << lane;
         }
@@ -164,11 +160,12 @@ static unsigned corners(const lar_hex8_group *group, unsigned lanes, const lar_h
 static void motion(const lar_hex8_group *group, unsigned lanes, const lar_hex8_places *places,
                    const double *v, lar_hex8_motion *out) {
     for (int lane = 0; lane < LAR_BLOCK; lane += LAR_LANES) {
-        lar_lane x[8][3];
+        lar_lane rest[8][3], x[8][3];
         if (!(lanes >> lane & ((1u << LAR_LANES) - 1))) continue;
-        gather_corners(group->node, lane, places->rest, places->u, x);
+        gather_corners(group, lane, places->rest, places->stride, rest);
+        displace(group, lane, places, rest, x);
         lar_lane_store(&out->areas[lane], areas_of((const lar_lane(*)[3])x));
-        gather_corners(group->node, lane, v, NULL, x);
+        gather_corners(group, lane, v, places->stride, x);
         lar_lane_store(&out->parting[lane], parting_of((const lar_lane(*)[3])x));
     }
 }

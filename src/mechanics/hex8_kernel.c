@@ -36,9 +36,9 @@ LAR_INLINE lar_lane quotient(lar_lane a, lar_lane b, lar_lane reciprocal) {
 
 /* Gradients and shapes of some lanes, as hex8.c makes them, operation for operation. */
 LAR_INLINE void expand_lanes(const lar_lean_block *lean, int lane, lar_block_rows rows,
-                             const double *rest, lar_hex8_block *whole) {
+                             lane_nodes rest, lar_hex8_block *whole) {
     lar_lane X[7][3];
-    gather_modes(&lean->head, lane, rows, rest, X);
+    gather_modes(&lean->head, lane, rows, false, rest, X);
     lar_lane volume = lar_lane_load(&lean->volume[lane]), reciprocal = lar_lane_set(1) / volume;
     UNROLL6 for (int m = 0; m < LAR_HEX8_GRADIENTS; m++) UNROLL3 for (int i = 0; i < 3; i++) {
         lar_lane term[2];
@@ -53,25 +53,22 @@ LAR_INLINE void expand_lanes(const lar_lean_block *lean, int lane, lar_block_row
         lar_lane_store(&whole->shape[m][i][lane], X[3 + m][i]);
 }
 
-#define DEFINE_EXPAND(name, rows)                                                                  \
-    static void expand_##name(const lar_lean_block *lean, size_t count, const double *rest,        \
-                              lar_hex8_block *whole) {                                             \
-        for (; count > 0; count--, lean++, whole++) {                                              \
-            whole->head = lean->head;                                                              \
-            for (int lane = 0; lane < LAR_BLOCK; lane += LAR_LANES)                                \
-                expand_lanes(lean, lane, rows, rest, whole);                                       \
-        }                                                                                          \
+static void expand_some(const lar_lean_block *lean, size_t count, lar_block_rows rows,
+                        lane_nodes rest, lar_hex8_block *whole) {
+    for (; count > 0; count--, lean++, whole++) {
+        whole->head = lean->head;
+        for (int lane = 0; lane < LAR_BLOCK; lane += LAR_LANES)
+            expand_lanes(lean, lane, rows, rest, whole);
     }
-DEFINE_EXPAND(none, LAR_ROWS_NONE)
-DEFINE_EXPAND(four, LAR_ROWS_FOUR)
-DEFINE_EXPAND(eight, LAR_ROWS_EIGHT)
+}
 
-typedef void (*expand_phase)(const lar_lean_block *lean, size_t count, const double *rest,
-                             lar_hex8_block *whole);
-static const expand_phase expand_table[LAR_ROWS_COUNT] = {expand_none, expand_four, expand_eight};
+static lane_nodes nodes_of(const lar_block_run *run, const double *value) {
+    return (lane_nodes){value, run->axis_stride};
+}
 
 static void expand(const lar_block_run *run, int32_t b, lar_hex8_block *whole) {
-    expand_table[run->rows]((const lar_lean_block *)run->blocks + b, 1, run->rest, whole);
+    expand_some((const lar_lean_block *)run->blocks + b, 1, run->rows, nodes_of(run, run->rest),
+                whole);
 }
 
 /* ---- phases -------------------------------------------------------------------------------- */
@@ -107,10 +104,11 @@ LAR_INLINE void strain_box(const lar_box_block *block, int lane, int turn, lar_l
 
 /* Phase 1: displacements to deformation gradient and hourglass forces. */
 LAR_INLINE void strain_lanes(const void *block, int lane, lar_block_shape shape,
-                             lar_block_rows rows, int turn, const double *u, lane_record *record) {
+                             lar_block_rows rows, bool fours, int turn, lane_nodes u,
+                             lane_record *record) {
     const lar_block_head *head = block;
     lar_lane U[7][3];
-    gather_modes(head, lane, rows, u, U);
+    gather_modes(head, lane, rows, fours, u, U);
     if (shape == LAR_SHAPE_BOX) {
         strain_box(block, lane, turn, U, record->F);
     } else {
@@ -206,26 +204,29 @@ LAR_INLINE void force_box(const lar_box_block *block, int lane, int turn, const 
     }
 }
 
-LAR_INLINE void scatter_edge(const lar_block_head *head, int lane, lar_block_rows rows, int edge,
-                             const lar_ilane sum[3], const lar_ilane difference[3],
-                             int64_t *force) {
+LAR_INLINE void scatter_edge(const lar_block_head *head, int lane, lar_block_rows rows, bool fours,
+                             int edge, const lar_ilane sum[3], const lar_ilane difference[3],
+                             lane_sums force, lar_ilane corner[8][3]) {
     lar_ilane left[3], right[3];
-    const int32_t *a = head->node[left_node[edge]] + lane, *b = head->node[right_node[edge]] + lane;
     UNROLL3 for (int i = 0; i < 3; i++) {
         left[i] = sum[i] - difference[i];
         right[i] = sum[i] + difference[i];
     }
-    if (rows == LAR_ROWS_NONE) {
-        lar_ilane_scatter_add(force, a, left);
-        lar_ilane_scatter_add(force, b, right);
-    } else {
-        lar_ilane_scatter_row(force, a, b, rows == LAR_ROWS_FOUR, left, right);
+    if (fours || LANES_LIE_IN_ROWS(rows)) {
+        lar_ilane_scatter_row(force.value, force.stride, head->node[left_node[edge]] + lane,
+                              head->node[right_node[edge]] + lane, fours, left, right);
+        return;
+    }
+    UNROLL3 for (int i = 0; i < 3; i++) {
+        corner[left_node[edge]][i] = left[i];
+        corner[right_node[edge]][i] = right[i];
     }
 }
 
 /* The transform back, from the modes n: along zeta, eta, xi. */
-LAR_INLINE void scatter_modes(const lar_block_head *head, int lane, lar_block_rows rows,
-                              lar_ilane n[7][3], int64_t *force) {
+LAR_INLINE void scatter_modes(const lar_block_head *head, int lane, lar_block_rows rows, bool fours,
+                              lar_ilane n[7][3], lane_sums force) {
+    lar_ilane corner[8][3];
     UNROLL3 for (int top = 0; top < 2; top++) {
         lar_ilane s0[3], s1[3], d0[3], d1[3];
         UNROLL3 for (int i = 0; i < 3; i++) {
@@ -238,21 +239,23 @@ LAR_INLINE void scatter_modes(const lar_block_head *head, int lane, lar_block_ro
             d0[i] = xi - xieta;
             d1[i] = xi + xieta;
         }
-        scatter_edge(head, lane, rows, 2 * top, s0, d0, force);
-        scatter_edge(head, lane, rows, 2 * top + 1, s1, d1, force);
+        scatter_edge(head, lane, rows, fours, 2 * top, s0, d0, force, corner);
+        scatter_edge(head, lane, rows, fours, 2 * top + 1, s1, d1, force, corner);
     }
+    if (!fours && !LANES_LIE_IN_ROWS(rows))
+        hand_out(head, lane, rows, (const lar_ilane(*)[3])corner, force);
 }
 
 /* Phase 3: stress and hourglass forces to the nodes. */
 LAR_INLINE void force_lanes(const void *block, int lane, lar_block_shape shape, lar_block_rows rows,
-                            int turn, const lane_record *record, int64_t *force) {
+                            bool fours, int turn, const lane_record *record, lane_sums force) {
     lar_ilane n[7][3];
     if (shape == LAR_SHAPE_BOX)
         force_box(block, lane, turn, record, n);
     else
         force_general(block, lane, record, n);
     UNROLL3 for (int i = 0; i < 3; i++) n[6][i] = lar_lane_round(record->cq[3][i]);
-    scatter_modes(block, lane, rows, n, force);
+    scatter_modes(block, lane, rows, fours, n, force);
 }
 
 #define FOR_PARTS(blocks, count, size)                                                             \
@@ -260,39 +263,42 @@ LAR_INLINE void force_lanes(const void *block, int lane, lar_block_shape shape, 
          block += (size))                                                                          \
         for (int lane = 0; lane < LAR_BLOCK; lane += LAR_LANES, record++)
 
-typedef void (*strain_phase)(const char *blocks, size_t count, int turn, const double *u,
-                             lane_record *record);
+typedef void (*strain_phase)(const char *blocks, size_t count, lar_block_rows rows, int turn,
+                             lane_nodes u, lane_record *record);
 typedef unsigned (*stress_phase)(const char *blocks, const lar_block_more *more, size_t count,
                                  size_t size, lane_record *record, const lar_hex8_limits *limits,
                                  double share, const double *limit, lane_strain *strain,
                                  unsigned *strained);
-typedef void (*force_phase)(const char *blocks, size_t count, int turn, const lane_record *record,
-                            int64_t *force);
+typedef void (*force_phase)(const char *blocks, size_t count, lar_block_rows rows, int turn,
+                            const lane_record *record, lane_sums force);
 
-#define DEFINE_PHASES(name, shape, rows)                                                           \
-    static void strain_##name(const char *blocks, size_t count, int turn, const double *u,         \
-                              lane_record *record) {                                               \
+#define DEFINE_PHASES(name, shape, fours)                                                          \
+    static void strain_##name(const char *blocks, size_t count, lar_block_rows rows, int turn,     \
+                              lane_nodes u, lane_record *record) {                                 \
         FOR_PARTS(blocks, count, lar_block_size(shape))                                            \
-        strain_lanes(block, lane, shape, rows, turn, u, record);                                   \
+        strain_lanes(block, lane, shape, rows, fours, turn, u, record);                            \
     }                                                                                              \
-    static void force_##name(const char *blocks, size_t count, int turn,                           \
-                             const lane_record *record, int64_t *force) {                          \
+    static void force_##name(const char *blocks, size_t count, lar_block_rows rows, int turn,      \
+                             const lane_record *record, lane_sums force) {                         \
         FOR_PARTS(blocks, count, lar_block_size(shape))                                            \
-        force_lanes(block, lane, shape, rows, turn, record, force);                                \
+        force_lanes(block, lane, shape, rows, fours, turn, record, force);                         \
     }
-DEFINE_PHASES(general_none, LAR_SHAPE_GENERAL, LAR_ROWS_NONE)
-DEFINE_PHASES(general_four, LAR_SHAPE_GENERAL, LAR_ROWS_FOUR)
-DEFINE_PHASES(general_eight, LAR_SHAPE_GENERAL, LAR_ROWS_EIGHT)
-DEFINE_PHASES(box_none, LAR_SHAPE_BOX, LAR_ROWS_NONE)
-DEFINE_PHASES(box_four, LAR_SHAPE_BOX, LAR_ROWS_FOUR)
-DEFINE_PHASES(box_eight, LAR_SHAPE_BOX, LAR_ROWS_EIGHT)
+DEFINE_PHASES(generals, LAR_SHAPE_GENERAL, false)
+DEFINE_PHASES(boxes, LAR_SHAPE_BOX, false)
+#if LANES_KNOW_FOURS
+DEFINE_PHASES(general_fours, LAR_SHAPE_GENERAL, true)
+DEFINE_PHASES(box_fours, LAR_SHAPE_BOX, true)
+#define BY_ROWS(name, fours)                                                                       \
+    { name, fours, name }
+#else
+#define BY_ROWS(name, fours)                                                                       \
+    { name, name, name }
+#endif
 
 static const strain_phase strain_table[LAR_SHAPE_COUNT][LAR_ROWS_COUNT] = {
-    {strain_general_none, strain_general_four, strain_general_eight},
-    {strain_box_none, strain_box_four, strain_box_eight}};
+    BY_ROWS(strain_generals, strain_general_fours), BY_ROWS(strain_boxes, strain_box_fours)};
 static const force_phase force_table[LAR_SHAPE_COUNT][LAR_ROWS_COUNT] = {
-    {force_general_none, force_general_four, force_general_eight},
-    {force_box_none, force_box_four, force_box_eight}};
+    BY_ROWS(force_generals, force_general_fours), BY_ROWS(force_boxes, force_box_fours)};
 
 /* Returns a bit per element of the chunk that is beyond the limits. */
 #define DEFINE_LAW(identifier)                                                                     \
@@ -425,10 +431,10 @@ LAR_INLINE int64_t recover_form(const lar_block_run *run, int fibrous, const lar
         size_t count = (size_t)(run->count - b < CHUNK ? run->count - b : CHUNK);
         const char *kept = (const char *)run->blocks + (size_t)b * stride, *blocks = kept;
         if (run->rest) {
-            expand_table[run->rows]((const void *)kept, count, run->rest, made);
+            expand_some((const void *)kept, count, run->rows, nodes_of(run, run->rest), made);
             blocks = (const void *)made;
         }
-        strain(blocks, count, run->turn, u, record);
+        strain(blocks, count, run->rows, run->turn, nodes_of(run, u), record);
         if (run->streamed) ask_for_next_chunk(kept, CHUNK * stride);
         unsigned strained = 0;
         const double *limit = monitor ? monitor->limit + b * LAR_BLOCK : NULL;
@@ -442,7 +448,7 @@ LAR_INLINE int64_t recover_form(const lar_block_run *run, int fibrous, const lar
                               strains, &strained);
         if (step) beyond |= relax(run, step, b, count, limits, gradient, record);
         if (fibrous) beyond |= contract(run, active, b, count, limits, gradient, record);
-        forces(blocks, count, run->turn, record, force);
+        forces(blocks, count, run->rows, run->turn, record, (lane_sums){force, run->axis_stride});
         unsigned flat = 0;
         if (monitor && monitor->area)
             flat = flat_lanes(monitor->area + b * LAR_BLOCK, count * PARTS, strains);

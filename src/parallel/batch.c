@@ -8,6 +8,30 @@
 
 /* ---- force sums, or lists of elements ------------------------------------------------------ */
 
+/* Sums of a worker, axis by axis (mechanics/axes.h). */
+typedef struct sums {
+    int64_t *value;
+    size_t stride;
+} sums;
+
+/* Forces, and with friction of tools what these press (contact/tool_friction.h). They travel in the
+ * same packets, one layer behind the other. */
+static inline sums sums_of(const lar_worker *worker, int32_t layer) {
+    const lar_tool_contact *contact = &worker->interactions.tool_contact;
+    return layer == 0 ? (sums){worker->state.force, worker->state.stride}
+                      : (sums){contact->press, (size_t)contact->faces->local_count};
+}
+
+static inline void take_vector(sums of, int32_t node, int64_t *vector) {
+    for (int i = 0; i < 3; i++) vector[i] = of.value[(size_t)node + (size_t)i * of.stride];
+}
+static inline void put_vector(sums of, int32_t node, const int64_t *vector) {
+    for (int i = 0; i < 3; i++) of.value[(size_t)node + (size_t)i * of.stride] = vector[i];
+}
+static inline void clear_vector(sums of, int32_t node) {
+    put_vector(of, node, (const int64_t[3]){0});
+}
+
 static inline void add_vector(const lar_processor *p, int64_t *sum, const int64_t *part) {
     if (p->check) {
         lar_list_join(sum, part);
@@ -17,33 +41,32 @@ static inline void add_vector(const lar_processor *p, int64_t *sum, const int64_
     for (int i = 0; i < 3; i++) sum[i] = (int64_t)((uint64_t)sum[i] + (uint64_t)part[i]);
 }
 
-/* Sums of a worker: forces, and with friction of tools what these press (contact/tool_friction.h).
- * They travel in the same packets, one layer behind the other. */
-static inline int64_t *sums_of(const lar_worker *worker, int32_t layer) {
-    return layer == 0 ? worker->state.force : worker->interactions.tool_contact.press;
+static inline void add_to_sum(const lar_processor *p, sums to, int32_t node, const int64_t *part) {
+    int64_t sum[3];
+    take_vector(to, node, sum);
+    add_vector(p, sum, part);
+    put_vector(to, node, sum);
 }
 
-/* What all threads of the processor together have at some values, one vector after the other. */
-static void collect(const lar_processor *p, int32_t layer, const int32_t *value, int32_t count,
+/* What all threads of the processor together have at some nodes, one vector after the other. */
+static void collect(const lar_processor *p, int32_t layer, const int32_t *node, int32_t count,
                     int64_t *restrict vector) {
-    const int64_t *force = sums_of(&p->worker[0], layer);
-    for (int32_t i = 0; i < count; i++) memcpy(vector + 3 * i, force + value[i], LAR_VECTOR_BYTES);
+    sums of = sums_of(&p->worker[0], layer);
+    for (int32_t i = 0; i < count; i++) take_vector(of, node[i], vector + 3 * i);
     for (int32_t t = 1; t < p->thread_count; t++) {
-        force = sums_of(&p->worker[t], layer);
-        for (int32_t i = 0; i < count; i++) add_vector(p, vector + 3 * i, force + value[i]);
+        of = sums_of(&p->worker[t], layer);
+        for (int32_t i = 0; i < count; i++) {
+            int64_t part[3];
+            take_vector(of, node[i], part);
+            add_vector(p, vector + 3 * i, part);
+        }
     }
 }
 
-/* Adds vectors, one after the other, at some values. */
-static void spread(const lar_processor *p, const int32_t *value, int32_t count,
-                   const int64_t *restrict vector, int64_t *restrict force) {
-    if (p->check)
-        for (int32_t i = 0; i < count; i++) lar_list_join(force + value[i], vector + 3 * i);
-    else
-        for (int32_t i = 0; i < count; i++)
-            for (int k = 0; k < 3; k++)
-                force[value[i] + k] =
-                    (int64_t)((uint64_t)force[value[i] + k] + (uint64_t)vector[3 * i + k]);
+/* Adds vectors, one after the other, at some nodes. */
+static void spread(const lar_processor *p, const int32_t *node, int32_t count,
+                   const int64_t *restrict vector, sums to) {
+    for (int32_t i = 0; i < count; i++) add_to_sum(p, to, node[i], vector + 3 * i);
 }
 
 /* Packs what this thread has for the nodes of others that wait for batch b. The sums themselves
@@ -54,10 +77,10 @@ static void pack_reduction(const lar_worker *worker, int32_t b) {
         const lar_reduction_buffer *reduction = &worker->reduction[to];
         if (reduction->batch != b) continue;
         for (int32_t layer = 0; layer < p->layers; layer++) {
-            const int64_t *force = sums_of(worker, layer);
+            const sums own = sums_of(worker, layer);
             int64_t *vector = reduction->vector + 3 * (size_t)layer * (size_t)reduction->count;
             for (int32_t i = 0; i < reduction->count; i++)
-                memcpy(vector + 3 * i, force + reduction->value[i], LAR_VECTOR_BYTES);
+                take_vector(own, reduction->node[i], vector + 3 * i);
         }
     }
 }
@@ -68,9 +91,8 @@ static void clear_reduction(const lar_worker *worker) {
     for (int32_t to = 0; to < p->thread_count; to++) {
         const lar_reduction_buffer *reduction = &worker->reduction[to];
         for (int32_t layer = 0; layer < p->layers; layer++) {
-            int64_t *force = sums_of(worker, layer);
-            for (int32_t i = 0; i < reduction->count; i++)
-                memset(force + reduction->value[i], 0, LAR_VECTOR_BYTES);
+            const sums own = sums_of(worker, layer);
+            for (int32_t i = 0; i < reduction->count; i++) clear_vector(own, reduction->node[i]);
         }
     }
 }
@@ -78,17 +100,18 @@ static void clear_reduction(const lar_worker *worker) {
 /* Takes the sums of the other threads over into the one that moves the nodes. */
 static void join_layer(lar_worker *worker, int32_t layer) {
     const lar_processor *p = worker->processor;
-    int64_t *force = sums_of(worker, layer);
+    const sums own = sums_of(worker, layer);
     for (int32_t t = 0; t < p->thread_count; t++) {
         if (t == worker->thread) continue;
         const lar_reduction_buffer *reduction = &p->worker[t].reduction[worker->thread];
-        spread(p, reduction->value, reduction->count,
-               reduction->vector + 3 * (size_t)layer * (size_t)reduction->count, force);
-        int64_t *other = sums_of(&p->worker[t], layer);
+        spread(p, reduction->node, reduction->count,
+               reduction->vector + 3 * (size_t)layer * (size_t)reduction->count, own);
+        const sums other = sums_of(&p->worker[t], layer);
         for (int32_t i = 0; i < worker->shared_count; i++) {
-            int32_t value = worker->shared_node[i];
-            add_vector(p, force + value, other + value);
-            memset(other + value, 0, LAR_VECTOR_BYTES);
+            int64_t part[3];
+            take_vector(other, worker->shared_node[i], part);
+            add_to_sum(p, own, worker->shared_node[i], part);
+            clear_vector(other, worker->shared_node[i]);
         }
     }
 }
@@ -103,13 +126,13 @@ static void join_sums(lar_worker *worker) {
 static const int64_t *receive_layer(lar_worker *worker, int32_t layer,
                                     const lar_packet_plan *packet, const int64_t *vector) {
     lar_processor *p = worker->processor;
-    const int32_t *value = p->value + packet->first;
-    int64_t *force = sums_of(worker, layer);
-    spread(p, value, packet->added, vector, force);
+    const int32_t *node = p->node + packet->first;
+    const sums own = sums_of(worker, layer);
+    spread(p, node, packet->added, vector, own);
     for (int32_t i = packet->added; i < packet->added + packet->whole; i++) {
         for (int32_t t = 0; t < p->thread_count; t++)
-            memset(sums_of(&p->worker[t], layer) + value[i], 0, LAR_VECTOR_BYTES);
-        memcpy(force + value[i], vector + 3 * i, LAR_VECTOR_BYTES);
+            clear_vector(sums_of(&p->worker[t], layer), node[i]);
+        put_vector(own, node[i], vector + 3 * i);
     }
     return vector + 3 * (packet->added + packet->whole);
 }
@@ -142,7 +165,7 @@ static lar_status send(lar_worker *worker, const lar_packet_plan *packet, uint64
     int64_t *vector = (int64_t *)(void *)(bytes + LAR_SIGNAL_BYTES);
     const int32_t count = packet->added + packet->whole;
     for (int32_t layer = 0; layer < p->layers; layer++)
-        collect(p, layer, p->value + packet->first, count, vector + 3 * layer * count);
+        collect(p, layer, p->node + packet->first, count, vector + 3 * layer * count);
     return lar_comm_put(p->comm, packet->peer, packet->offset, bytes, packet->bytes, round, error);
 }
 
@@ -165,7 +188,9 @@ static void delay_at_random(lar_worker *worker) {
 /* The displacements that other threads have computed are in their cores' caches. */
 static void fetch_foreign(const lar_worker *worker) {
     for (int32_t i = 0; i < worker->foreign_count; i++)
-        __builtin_prefetch(worker->state.u + worker->foreign[i]);
+        for (int k = 0; k < 3; k++)
+            __builtin_prefetch(
+                &worker->state.u[lar_state_at(&worker->state, worker->foreign[i], k)]);
 }
 
 /* How far the memory of a batch's packets has been asked for. */

@@ -65,19 +65,19 @@ void lar_contact_close(lar_computer *computer) {
 /* ---- looking --------------------------------------------------------------------------------- */
 
 /* A node's displacement, and its velocity. */
-static void values_of(const lar_computer *computer, int32_t n, const double **u, const double **v) {
+static void values_of(const lar_computer *computer, int32_t n, double u[3], double v[3]) {
     const lar_contact_map *map = &computer->contact.map;
     const lar_state *state = computer->state;
-    size_t value;
+    int32_t local;
     if (computer->control) {
-        value = 4 * (size_t)computer->whole->layout.local[map->surface->node[n].node];
+        local = computer->whole->layout.local[map->surface->node[n].node];
     } else {
         const lar_processor *p = &computer->processor[map->reporter[n]];
         state = &p->worker[0].state;
-        value = (size_t)p->exchange->value[n];
+        local = p->exchange->local[n];
     }
-    *u = state->u + value;
-    *v = state->v + value;
+    lar_state_displacement(state, local, u);
+    lar_state_velocity(state, local, v);
 }
 
 /* Fetches the places of all contact nodes; returns how far the farthest has moved since the search,
@@ -92,8 +92,8 @@ static lar_status fetch_places(lar_computer *computer, double *moved, double *wa
         if (status) return status;
     }
     for (int32_t n = 0; n < surface->node_count; n++) {
-        const double *u, *v;
-        values_of(computer, n, &u, &v);
+        double u[3], v[3];
+        values_of(computer, n, u, v);
         for (int i = 0; i < 3; i++) {
             contact->x[n][i] = surface->rest[n][i] + u[i];
             farthest = lar_larger(farthest, fabs(contact->x[n][i] - contact->searched[n][i]));

@@ -218,7 +218,7 @@ static lar_status create_contact(const lar_body_contact *whole, int32_t thread, 
     *contact = (lar_body_contact){.surface = surface,
                                   .law = whole->law,
                                   .time_step = whole->time_step,
-                                  .view = {.value = exchange->value, .slot = exchange->slot},
+                                  .view = {.local = exchange->local, .slot = exchange->slot},
                                   .adds_node = adds_node,
                                   .adds_corner = adds_corner,
                                   .keeps = keeps,
@@ -252,7 +252,7 @@ static lar_status allocate_exchange(const lar_contact_surface *surface, int32_t 
     bool fits = true;
 #define LAR_EXCHANGE_ARRAY(name, count)                                                            \
     fits = fits && (exchange->name = lar_calloc_aligned((count), sizeof *exchange->name)) != NULL
-    LAR_EXCHANGE_ARRAY(value, nodes);
+    LAR_EXCHANGE_ARRAY(local, nodes);
     LAR_EXCHANGE_ARRAY(mover, nodes);
     LAR_EXCHANGE_ARRAY(loader, nodes);
     LAR_EXCHANGE_ARRAY(pusher, faces);
@@ -294,7 +294,7 @@ lar_status lar_contact_exchange_create(const lar_body_contact *whole,
     if (status) return status;
     for (int32_t n = 0; n < surface->node_count; n++) {
         int32_t node = surface->node[n].node;
-        exchange->value[n] = local[node] < 0 ? -1 : 4 * local[node];
+        exchange->local[n] = local[node];
         exchange->mover[n] = share->holds[node];
         exchange->loader[n] = reporter[node] == p->self ? share->loads[node] : -1;
     }
@@ -325,7 +325,7 @@ void lar_contact_exchange_destroy(lar_processor *p) {
         free(exchange->peer[i].send);
         free(exchange->peer[i].receive);
     }
-    free(exchange->value);
+    free(exchange->local);
     free(exchange->mover);
     free(exchange->loader);
     free(exchange->pusher);

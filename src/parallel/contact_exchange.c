@@ -31,12 +31,12 @@ void lar_contact_publish(lar_worker *worker, uint64_t round) {
     for (int32_t i = 0; i < publish->count; i++) {
         const double *rest = exchange->map->surface->rest[publish->node[i]];
         double *to = place[publish->slot[i]];
-        int32_t value = exchange->value[publish->node[i]];
+        int32_t local = exchange->local[publish->node[i]];
         for (int k = 0; k < 3; k++) {
-            to[k] = rest[k] + state->u[value + k];
-            to[3 + k] = state->v[value + k];
+            to[k] = rest[k] + state->u[lar_state_at(state, local, k)];
+            to[3 + k] = state->v[lar_state_at(state, local, k)];
         }
-        to[6] = state->u[value + 3];
+        to[6] = state->level[local];
         if (exchange->stick[0])
             memcpy(exchange->stick[round & 1][publish->slot[i]],
                    lar_stick_of(exchange->map->surface, state, publish->node[i]),

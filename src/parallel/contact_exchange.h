@@ -94,7 +94,7 @@ typedef struct lar_publish_list {
 /* One processor's part of it. */
 typedef struct lar_contact_exchange {
     const lar_contact_map *map;
-    int32_t *value;  /* [contact nodes] 4 * local node, -1: not here */
+    int32_t *local;  /* [contact nodes] local node, -1: not here */
     int32_t *mover;  /* [contact nodes] thread that moves it, -1: not here */
     int32_t *pusher; /* [contact faces] thread that recovers its element, -1: not here */
     int32_t *loader; /* [contact nodes] thread that adds its force, -1: another processor */

@@ -122,8 +122,8 @@ static lar_status compile_packets(const lar_schedule *schedule, lar_processor *p
                                   lar_error *error) {
     size_t packets = (size_t)schedule->transfer_count, values = (size_t)schedule->vector_count;
     p->packet = lar_calloc(packets, sizeof *p->packet);
-    p->value = lar_calloc(values, sizeof *p->value);
-    if (!p->packet || !p->value)
+    p->node = lar_calloc(values, sizeof *p->node);
+    if (!p->packet || !p->node)
         return lar_fail_memory(error, packets * sizeof *p->packet + 4 * values, "packets");
     p->packet_count = schedule->transfer_count;
     for (size_t i = 0; i < values; i++) {
@@ -133,7 +133,7 @@ static lar_status compile_packets(const lar_schedule *schedule, lar_processor *p
                             "the schedule of processor %d exchanges a node that it does not have "
                             "(number %d from 0); make the schedules anew with lariat partition",
                             (int)p->self, (int)schedule->vector[i]);
-        p->value[i] = 4 * local;
+        p->node[i] = local;
     }
     for (int32_t b = 0; b < schedule->batch_count; b++)
         for (int direction = 0; direction < 2; direction++) {
@@ -162,13 +162,15 @@ static lar_status create_state(lar_processor *p, lar_worker *worker, lar_error *
         return lar_state_create(&worker->state, nodes, p->domain.history_count, error);
     const lar_state *first = &p->worker[0].state;
     worker->state = (lar_state){.node_count = nodes,
+                                .stride = first->stride,
                                 .history_count = first->history_count,
                                 .u = first->u,
                                 .v = first->v,
+                                .level = first->level,
                                 .history = first->history};
-    worker->state.force = lar_calloc_aligned(4 * (size_t)nodes, sizeof *worker->state.force);
+    worker->state.force = lar_calloc_aligned(3 * first->stride, sizeof *worker->state.force);
     if (worker->state.force) return LAR_OK;
-    return lar_fail_memory(error, 32 * (size_t)nodes, "the force sums of a thread");
+    return lar_fail_memory(error, 24 * first->stride, "the force sums of a thread");
 }
 
 static lar_status create_worker(const lar_schedule *schedule, const lar_processor_setting *setting,
@@ -289,7 +291,7 @@ void lar_processor_destroy(lar_processor *p) {
     free(p->batch);
     free(p->sequence);
     free(p->packet);
-    free(p->value);
+    free(p->node);
     free(p->wait);
     *p = (lar_processor){0};
 }
@@ -297,8 +299,9 @@ void lar_processor_destroy(lar_processor *p) {
 void lar_processor_scatter(lar_processor *p, const lar_domain *whole, const lar_state *state) {
     const lar_layout *layout = &p->domain.layout;
     lar_state *own = &p->worker[0].state;
-    memset(own->u, 0, 4 * (size_t)layout->node_padded * sizeof *own->u);
-    memset(own->v, 0, 4 * (size_t)layout->node_padded * sizeof *own->v);
+    memset(own->u, 0, 3 * own->stride * sizeof *own->u);
+    memset(own->v, 0, 3 * own->stride * sizeof *own->v);
+    memset(own->level, 0, own->stride * sizeof *own->level);
     for (lar_lid n = 0; n < layout->node_padded; n++) {
         if (layout->global[n] < 0) continue;
         double value[LAR_NODE_VALUES];
@@ -315,7 +318,7 @@ void lar_processor_scatter(lar_processor *p, const lar_domain *whole, const lar_
         worker->state.external = worker->state.damped = worker->state.contact = 0;
         worker->fault = (lar_fault){0};
         lar_interactions_forget(&worker->interactions);
-        memset(worker->state.force, 0, 4 * (size_t)layout->node_padded * sizeof(int64_t));
+        memset(worker->state.force, 0, 3 * own->stride * sizeof(int64_t));
         lar_tool_friction_forget(&worker->interactions.tool_contact);
     }
     p->ahead = (int64_t)(state->step - p->worker[0].round);

@@ -23,7 +23,7 @@
 typedef struct lar_packet_plan {
     int32_t peer;
     int32_t added, whole; /* vectors; the whole ones come last */
-    int32_t first;        /* in processor->value */
+    int32_t first;        /* in processor->node */
     size_t offset;        /* in a half of the receiver's buffer */
     size_t bytes;         /* signal word and vectors */
 } lar_packet_plan;
@@ -45,7 +45,7 @@ typedef struct lar_batch_sequence {
 typedef struct lar_reduction_buffer {
     int32_t batch; /* packed at its end: the one that the other waits for; -1: nothing */
     int32_t count;
-    int32_t *value;  /* [count] 4 * local node */
+    int32_t *node;   /* [count] local nodes */
     int64_t *vector; /* [3 count] for each layer */
 } lar_reduction_buffer;
 
@@ -65,10 +65,9 @@ typedef struct lar_worker {
     lar_condition_context context;   /* the nodes that it moves */
     lar_reduction_buffer *reduction; /* [threads] for each of them */
     int32_t shared_count;
-    int32_t
-        *shared_node; /* 4 * local node: moved here, and summed where it is (thread_reduction.h) */
+    int32_t *shared_node; /* local: moved here, and summed where it is (thread_reduction.h) */
     int32_t foreign_count;
-    int32_t *foreign; /* 4 * local node: read here, moved by others */
+    int32_t *foreign; /* local nodes: read here, moved by others */
     lar_fault fault;
     unsigned char *gather; /* for packets to peers whose memory cannot be written from here */
     uint64_t random;       /* of the delays; 0: none */
@@ -85,7 +84,7 @@ typedef struct lar_processor {
     lar_batch_plan *batch;        /* [batch_count] thread after thread */
     lar_batch_sequence *sequence; /* [batch_count], atomic */
     lar_packet_plan *packet;
-    int32_t *value;          /* 4 * local node, of all packets */
+    int32_t *node;           /* local, of all packets */
     int32_t *wait;           /* of all batches */
     int32_t layers;          /* of sums: forces, and what tools press (contact/tool_friction.h) */
     lar_comm *comm;          /* not owned */

@@ -77,7 +77,7 @@ static lar_status find_use(const lar_schedule *schedule, const int32_t *thread,
         for (int32_t i = receives.first; i < receives.first + receives.count; i++) {
             const lar_transfer *t = &schedule->transfer[i];
             for (int32_t v = 0; v < t->vectors.count; v++) {
-                lar_lid n = p->value[t->vectors.first + v] / 4;
+                lar_lid n = p->node[t->vectors.first + v];
                 use->adds[n] |= (uint16_t)(1u << lar_batch_thread(schedule, b));
                 use->replaced[n] = use->replaced[n] || v >= t->vectors.count - t->whole;
             }
@@ -110,14 +110,14 @@ static lar_status create_buffer(const lar_schedule *schedule, const node_use *us
                         "for thread %d, which has elements there; make the schedules anew with "
                         "lariat partition",
                         (int)p->self, (int)to, (int)from);
-    reduction->value = lar_calloc((size_t)reduction->count, sizeof *reduction->value);
+    reduction->node = lar_calloc((size_t)reduction->count, sizeof *reduction->node);
     reduction->vector = lar_calloc_aligned(3 * (size_t)p->layers * (size_t)reduction->count,
                                            sizeof *reduction->vector);
-    if (!reduction->value || !reduction->vector)
+    if (!reduction->node || !reduction->vector)
         return lar_fail_memory(error, 28 * (size_t)reduction->count, "sums between threads");
     int32_t count = 0;
     for (lar_lid n = moved->first; n < moved->end; n++)
-        if (is_packed(use, n, from, to)) reduction->value[count++] = 4 * n;
+        if (is_packed(use, n, from, to)) reduction->node[count++] = n;
     return LAR_OK;
 }
 
@@ -134,8 +134,8 @@ static lar_status join_worker(const lar_schedule *schedule, const node_use *use,
         return lar_fail_memory(error, 8 * nodes, "sums between threads");
     for (lar_lid n = 0; n < (lar_lid)nodes; n++) {
         bool moved = n >= own->first && n < own->end;
-        if (moved && is_shared(use, n, thread)) worker->shared_node[worker->shared_count++] = 4 * n;
-        if (!moved && use->reads[n] >> thread & 1) worker->foreign[worker->foreign_count++] = 4 * n;
+        if (moved && is_shared(use, n, thread)) worker->shared_node[worker->shared_count++] = n;
+        if (!moved && use->reads[n] >> thread & 1) worker->foreign[worker->foreign_count++] = n;
     }
     lar_status status = LAR_OK;
     for (int32_t to = 0; to < p->thread_count && !status; to++) {
@@ -157,7 +157,7 @@ lar_status lar_thread_reduction_create(const lar_schedule *schedule, const int32
 
 void lar_thread_reduction_destroy(lar_worker *worker) {
     for (int32_t to = 0; worker->reduction && to < worker->processor->thread_count; to++) {
-        free(worker->reduction[to].value);
+        free(worker->reduction[to].node);
         free(worker->reduction[to].vector);
     }
     free(worker->reduction);

@@ -52,7 +52,7 @@ void lar_verification_destroy(lar_verification *verification) {
 
 /* ---- instead of adding --------------------------------------------------------------------- */
 
-void lar_list_join(int64_t *sum, const int64_t *part) {
+void lar_list_join(int64_t sum[3], const int64_t part[3]) {
     list into = load(sum), from = load(part);
     if (into.count > LAR_LIST_MAX || from.count > LAR_LIST_MAX ||
         into.count + from.count > LAR_LIST_MAX) {
@@ -64,11 +64,21 @@ void lar_list_join(int64_t *sum, const int64_t *part) {
     store(sum, &into);
 }
 
-static void insert(int64_t *vector, int32_t number) {
+static void take(const lar_state *state, int32_t node, int64_t vector[3]) {
+    for (int i = 0; i < 3; i++) vector[i] = state->force[lar_state_at(state, node, i)];
+}
+
+static void put(lar_state *state, int32_t node, const int64_t vector[3]) {
+    for (int i = 0; i < 3; i++) state->force[lar_state_at(state, node, i)] = vector[i];
+}
+
+static void insert(lar_state *state, int32_t node, int32_t number) {
     list one = {1, {(uint16_t)number}};
-    int64_t part[3];
+    int64_t sum[3], part[3];
     store(part, &one);
-    lar_list_join(vector, part);
+    take(state, node, sum);
+    lar_list_join(sum, part);
+    put(state, node, sum);
 }
 
 void lar_verification_recover(const lar_verification *verification, const lar_domain *domain,
@@ -81,16 +91,15 @@ void lar_verification_recover(const lar_verification *verification, const lar_do
             /* The nodes that the kernel would use. */
             const lar_block_head *head =
                 domain->kind == LAR_ELEMENT_HEX8
-                    ? (const void *)((const char *)run->blocks +
-                                     (size_t)b * lar_run_stride(run))
+                    ? (const void *)((const char *)run->blocks + (size_t)b * lar_run_stride(run))
                     : NULL;
             for (int lane = 0; lane < LAR_BLOCK; lane++) {
                 lar_gid e = lanes->element[lane];
                 if (e < 0 || e % passes != pass) continue;
                 for (int a = 0; a < 8; a++) {
-                    int32_t value = head ? head->node[a][lane]
-                                         : 4 * domain->layout.local[domain->layout.corner[e][a]];
-                    insert(state->force + value, e / passes);
+                    lar_lid node = head ? head->node[a][lane]
+                                        : domain->layout.local[domain->layout.corner[e][a]];
+                    insert(state, node, e / passes);
                 }
             }
         }
@@ -150,7 +159,9 @@ lar_status lar_verification_compare(const lar_verification *verification, const 
                                     lar_error *error) {
     lar_status status = LAR_OK;
     for (int32_t n = first; n < end; n++) {
-        list found = load(state->force + 4 * (size_t)n);
+        int64_t vector[3];
+        take(state, n, vector);
+        list found = load(vector);
         lar_gid node = domain->layout.global[n];
         list wanted = expected_list(verification, node, state->step);
         if (found.count <= LAR_LIST_MAX)
@@ -158,7 +169,7 @@ lar_status lar_verification_compare(const lar_verification *verification, const 
         if (!status && (found.count != wanted.count ||
                         memcmp(found.number, wanted.number, wanted.count * sizeof(uint16_t)) != 0))
             status = report(verification, processor, node, state->step, &found, &wanted, error);
-        memset(state->force + 4 * (size_t)n, 0, 4 * sizeof *state->force);
+        put(state, n, (const int64_t[3]){0});
     }
     return status;
 }

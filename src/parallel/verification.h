@@ -30,7 +30,7 @@ lar_status lar_verification_create(const lar_model *model, lar_verification *ver
 void lar_verification_destroy(lar_verification *verification); /* idempotent */
 
 /* Joins the list `part` to `sum`. A list that grows too long stays too long. */
-void lar_list_join(int64_t *sum, const int64_t *part);
+void lar_list_join(int64_t sum[3], const int64_t part[3]);
 
 /* Puts the elements of runs first .. first + count - 1 into the lists of their nodes. */
 void lar_verification_recover(const lar_verification *verification, const lar_domain *domain,

@@ -17,8 +17,9 @@ static size_t head_size(void) {
     return (sizeof(frame) + 63) / 64 * 64;
 }
 
-static size_t values_of(const lar_simulation *simulation) {
-    return 4 * (size_t)simulation->domain.layout.node_padded;
+/* Of the state's arrays, one behind the other. */
+static size_t stride_of(const lar_simulation *simulation) {
+    return simulation->domain.layout.axis_stride;
 }
 
 /* The frame's arrays as a state that can be hashed. */
@@ -26,15 +27,17 @@ static lar_state state_of(frame *f, const lar_simulation *simulation) {
     double *u = (double *)((unsigned char *)f + head_size());
     return (lar_state){.step = f->step,
                        .node_count = simulation->domain.layout.node_padded,
+                       .stride = stride_of(simulation),
                        .history_count = simulation->state.history_count,
                        .u = u,
-                       .v = u + values_of(simulation),
-                       .history = u + 2 * values_of(simulation)};
+                       .v = u + 3 * stride_of(simulation),
+                       .level = u + 6 * stride_of(simulation),
+                       .history = u + 7 * stride_of(simulation)};
 }
 
 lar_status lar_snapshots_create(const lar_simulation *simulation, lar_snapshots *snapshots,
                                 lar_error *error) {
-    size_t values = 2 * values_of(simulation) + simulation->state.history_count;
+    size_t values = 7 * stride_of(simulation) + simulation->state.history_count;
     size_t bytes = head_size() + values * sizeof(double);
     return lar_triple_buffer_create(&snapshots->frames, bytes, "snapshots", error);
 }
@@ -66,8 +69,9 @@ void lar_snapshots_serve(lar_snapshots *snapshots, const lar_simulation *simulat
     f->tools = tools;
     memcpy(f->tool, tool, (size_t)tools * sizeof *tool);
     lar_state copy = state_of(f, simulation);
-    memcpy(copy.u, state->u, values_of(simulation) * sizeof *copy.u);
-    memcpy(copy.v, state->v, values_of(simulation) * sizeof *copy.v);
+    memcpy(copy.u, state->u, 3 * copy.stride * sizeof *copy.u);
+    memcpy(copy.v, state->v, 3 * copy.stride * sizeof *copy.v);
+    memcpy(copy.level, state->level, copy.stride * sizeof *copy.level);
     if (state->history)
         memcpy(copy.history, state->history, state->history_count * sizeof *copy.history);
     lar_triple_buffer_publish(&snapshots->frames);
@@ -91,9 +95,9 @@ lar_status lar_snapshots_take(lar_snapshots *snapshots, const lar_simulation *si
     snapshot->tools = f->tools;
     memcpy(snapshot->tool, f->tool, (size_t)f->tools * sizeof *f->tool);
     for (lar_gid g = 0; g < domain->model->mesh.node_count; g++) {
-        const double *u = state.u + 4 * (size_t)domain->layout.local[g];
-        const double *v = state.v + (u - state.u);
-        memcpy(snapshot->u[g], u, sizeof snapshot->u[g]);
+        double *u = snapshot->u[g], v[3];
+        lar_state_displacement(&state, domain->layout.local[g], u);
+        lar_state_velocity(&state, domain->layout.local[g], v);
         snapshot->kinetic +=
             0.5 * domain->mass[domain->layout.local[g]] * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
         finite = finite && isfinite(u[0] + u[1] + u[2]);

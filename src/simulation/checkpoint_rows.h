@@ -10,7 +10,7 @@
 /* A node's values in the order of the table, from and to the rows of a file. */
 static inline void lar_checkpoint_get(const double *rows, size_t nodes, size_t node,
                                       double value[LAR_NODE_VALUES]) {
-#define LAR_STATE_GET(array, first, count, before, always)                                         \
+#define LAR_STATE_GET(array, count, before, always)                                                \
     memcpy(value, rows + nodes * (before) + node * (count), (count) * sizeof *value);              \
     value += (count);
     LAR_STATE_ROWS(LAR_STATE_GET)
@@ -19,7 +19,7 @@ static inline void lar_checkpoint_get(const double *rows, size_t nodes, size_t n
 
 static inline void lar_checkpoint_put(double *rows, size_t nodes, size_t node,
                                       const double value[LAR_NODE_VALUES]) {
-#define LAR_STATE_PUT(array, first, count, before, always)                                         \
+#define LAR_STATE_PUT(array, count, before, always)                                                \
     memcpy(rows + nodes * (before) + node * (count), value, (count) * sizeof *value);              \
     value += (count);
     LAR_STATE_ROWS(LAR_STATE_PUT)
@@ -40,7 +40,7 @@ static inline uint64_t lar_checkpoint_hash(uint64_t step, const double *rows, si
 /* What is hashed only where it is above 0 is never less. */
 static inline bool lar_checkpoint_none_negative(const double *rows, size_t nodes) {
     bool good = true;
-#define LAR_STATE_CHECK(array, first, count, before, always)                                       \
+#define LAR_STATE_CHECK(array, count, before, always)                                              \
     for (size_t i = 0; !(always) && i < nodes * (count); i++)                                      \
         good = good && rows[nodes * (before) + i] >= 0;
     LAR_STATE_ROWS(LAR_STATE_CHECK)

@@ -89,7 +89,8 @@ void lar_rest_energies(const lar_domain *domain, const lar_state *state, double 
     *kinetic = *strain = 0;
     for (lar_gid g = 0; g < domain->model->mesh.node_count; g++) {
         int32_t node = domain->layout.local[g];
-        const double *v = state->v + 4 * node;
+        double v[3];
+        lar_state_velocity(state, node, v);
         *kinetic += 0.5 * domain->mass[node] * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
     }
     for (lar_gid e = 0; e < domain->model->mesh.element_count; e++)

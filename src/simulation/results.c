@@ -187,9 +187,8 @@ static lar_status check_finite(const lar_simulation *simulation, lar_error *erro
     const lar_domain *domain = &simulation->domain;
     for (lar_gid g = 0; g < domain->model->mesh.node_count; g++)
         for (int i = 0; i < 3; i++) {
-            lar_lid n = domain->layout.local[g];
-            if (!isfinite(simulation->state.u[4 * n + i]) ||
-                !isfinite(simulation->state.v[4 * n + i]))
+            size_t at = lar_state_at(&simulation->state, domain->layout.local[g], i);
+            if (!isfinite(simulation->state.u[at]) || !isfinite(simulation->state.v[at]))
                 return lar_fail(error, LAR_ERROR_UNSTABLE,
                                 "node %lld has left the range of numbers; this state is not "
                                 "written, the frames before it are good; use a smaller time step, "

@@ -48,8 +48,9 @@ static void mean_displacement(const lar_simulation *simulation, const lar_node_l
                               double mean[3]) {
     memset(mean, 0, 3 * sizeof *mean);
     for (int32_t i = 0; i < nodes->count; i++) {
-        const double *u =
-            simulation->state.u + 4 * (size_t)simulation->domain.layout.local[nodes->node[i]];
+        double u[3];
+        lar_state_displacement(&simulation->state, simulation->domain.layout.local[nodes->node[i]],
+                               u);
         for (int axis = 0; axis < 3; axis++) mean[axis] += u[axis] / nodes->count;
     }
 }

@@ -25,7 +25,8 @@ static void set_initial_displacements(lar_simulation *simulation) {
     for (int32_t i = 0; i < conditions->constraint_count; i++) {
         const lar_constraint *c = &conditions->constraint[i];
         double value = lar_constraint_value(simulation->domain.model, c, 0);
-        if (value != 0) simulation->state.u[c->value] = value; /* never -0: it has other bits */
+        if (value != 0) /* never -0: it has other bits */
+            simulation->state.u[lar_constraint_at(&simulation->state, c)] = value;
     }
 }
 
@@ -40,23 +41,23 @@ static void set_initial_velocities(lar_simulation *simulation) {
     for (int i = 0; i < model->initial_count; i++) {
         const lar_initial_velocity *initial = &model->initial[i];
         for (int32_t k = 0; k < initial->nodes.count; k++)
-            memcpy(state->v + 4 * domain->layout.local[initial->nodes.node[k]], initial->velocity,
-                   sizeof initial->velocity);
+            lar_axes_put(state->v, state->stride, domain->layout.local[initial->nodes.node[k]],
+                         initial->velocity);
     }
     lar_fault ignored = {0};
     lar_step_forces(domain, &simulation->scratch->measure.interactions, state, &ignored);
     lar_gravity_at(model, NULL, 0, gravity);
     for (lar_gid g = 0; g < model->mesh.node_count; g++)
         for (int i = 0; i < 3; i++) {
-            int32_t value = 4 * domain->layout.local[g] + i;
+            size_t value = lar_state_at(state, domain->layout.local[g], i);
             double drift =
                 gravity[i] * domain->time_step / (1 + 0.5 * model->damping * domain->time_step);
-            double push = domain->push[value / 4] * (double)state->force[value];
+            double push = domain->push[domain->layout.local[g]] * (double)state->force[value];
             state->v[value] = (2 * state->v[value] - (drift - push)) / (1 + keep);
         }
-    memset(state->force, 0, 4 * (size_t)domain->layout.node_padded * sizeof *state->force);
+    memset(state->force, 0, 3 * state->stride * sizeof *state->force);
     for (int32_t i = 0; i < domain->surroundings.conditions.constraint_count; i++)
-        state->v[domain->surroundings.conditions.constraint[i].value] = 0;
+        state->v[lar_constraint_at(state, &domain->surroundings.conditions.constraint[i])] = 0;
 }
 
 /* Within one step damping can stop a node, but not turn it around: v' = keep v needs keep > 0. */
@@ -478,7 +479,7 @@ const char *lar_simulation_isa(const lar_simulation *simulation) {
 
 static void copy_nodes(const lar_domain *domain, const double *values, double (*out)[3]) {
     for (lar_gid g = 0; g < domain->model->mesh.node_count; g++)
-        memcpy(out[g], values + 4 * domain->layout.local[g], sizeof out[0]);
+        lar_axes_get(values, domain->layout.axis_stride, domain->layout.local[g], out[g]);
 }
 
 void lar_simulation_displacements(const lar_simulation *simulation, double (*out)[3]) {

@@ -32,7 +32,7 @@ static void copy_state(const lar_state *from, lar_state *to) {
 static void put_state(lar_simulation *simulation, const lar_state *state) {
     copy_state(state, &simulation->state);
     memset(simulation->state.force, 0,
-           4 * (size_t)simulation->state.node_count * sizeof *simulation->state.force);
+           3 * simulation->state.stride * sizeof *simulation->state.force);
     lar_interactions_forget(&simulation->interactions);
 }
 

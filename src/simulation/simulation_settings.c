@@ -44,7 +44,9 @@ static double gravity_account(const lar_simulation *simulation, const lar_settin
     lar_gravity_at(domain->model, settings, 0, gravity);
     for (lar_gid g = 0; g < domain->model->mesh.node_count; g++) {
         lar_lid n = domain->layout.local[g];
-        const double *u = state->u + 4 * n, *v = state->v + 4 * n;
+        double u[3], v[3];
+        lar_state_displacement(state, n, u);
+        lar_state_velocity(state, n, v);
         double mass = lar_domain_weighs(domain, n);
         for (int i = 0; i < 3; i++) sum += mass * gravity[i] * (half * v[i] - u[i]);
     }
@@ -149,9 +151,8 @@ static double element_account(const lar_simulation *simulation, const body_eleme
     if (element->hex8) {
         const lar_gid *node = domain->layout.corner[element->e];
         for (int a = 0; a < 8; a++) {
-            size_t at = 4 * (size_t)domain->layout.local[node[a]];
-            memcpy(u[a], state->u + at, sizeof u[a]);
-            memcpy(v[a], state->v + at, sizeof v[a]);
+            lar_state_displacement(state, domain->layout.local[node[a]], u[a]);
+            lar_state_velocity(state, domain->layout.local[node[a]], v[a]);
         }
         account = lar_hex8_energy(element->hex8, material, (const double(*)[3])u, &hourglass) +
                   lar_guard_energy(domain, state, element->e) + hourglass;

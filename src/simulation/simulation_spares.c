@@ -35,8 +35,8 @@ static void measure_room(const lar_simulation *simulation, room *around) {
     lar_minus(around->upper, around->lower, diagonal);
     around->size = lar_length(diagonal);
     for (lar_gid g = 0; g < mesh->node_count; g++) {
-        const double *u = simulation->state.u + 4 * (size_t)domain->layout.local[g];
-        double now[3];
+        double u[3], now[3];
+        lar_state_displacement(&simulation->state, domain->layout.local[g], u);
         for (int i = 0; i < 3; i++) now[i] = mesh->position[g][i] + u[i];
         stretch(now, around->lower, around->upper);
     }

@@ -172,9 +172,8 @@ static double stored(const lar_domain *domain, const lar_hex8 *hex8, lar_gid e,
     const lar_gid *node = domain->layout.corner[e];
     double u[8][3], v[8][3], F[9], rate[9], P[9] = {0}, sum = 0;
     for (int a = 0; a < 8; a++) {
-        size_t at = 4 * (size_t)domain->layout.local[node[a]];
-        memcpy(u[a], state->u + at, sizeof u[a]);
-        memcpy(v[a], state->v + at, sizeof v[a]);
+        lar_state_displacement(state, domain->layout.local[node[a]], u[a]);
+        lar_state_velocity(state, domain->layout.local[node[a]], v[a]);
     }
     lar_hex8_gradient(hex8, (const double(*)[3])u, (double(*)[3])F);
     lar_hex8_gradient(hex8, (const double(*)[3])v, (double(*)[3])rate);

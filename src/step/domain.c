@@ -125,7 +125,7 @@ static void fill_lane(const lar_domain *domain, const lar_block_run *run, void *
         for (int i = 0; shape == LAR_SHAPE_GENERAL && i < 3; i++)
             whole->shape[m][i][lane] = hex8.shape[m][i];
     if (run->rest) ((lar_lean_block *)memory)->volume[lane] = hex8.volume;
-    for (int a = 0; a < 8; a++) head->node[a][lane] = 4 * domain->layout.local[node[a]];
+    for (int a = 0; a < 8; a++) head->node[a][lane] = domain->layout.local[node[a]];
     base->volume = hex8.volume;
     memcpy(base->stiffness, hex8.stiffness, sizeof base->stiffness);
     base->limit =
@@ -182,6 +182,7 @@ static lar_status list_runs(lar_domain *domain, int32_t max, lar_error *error) {
                                                                .shape = lanes->shape,
                                                                .rows = lanes->rows,
                                                                .turn = lanes->turn,
+                                                               .axis_stride = layout->axis_stride,
                                                                .viscous = lanes->viscous,
                                                                .fibrous = lanes->fibrous};
         }
@@ -200,14 +201,14 @@ static lar_status allocate_blocks(lar_domain *domain, lar_error *error) {
     domain->corner_limit = lar_calloc_aligned(elements, sizeof *domain->corner_limit);
     domain->area_limit = lar_calloc_aligned(elements, sizeof *domain->area_limit);
     domain->base = lar_calloc(elements, sizeof *domain->base);
-    domain->rest = lar_calloc_aligned(4 * (size_t)domain->layout.node_padded, sizeof *domain->rest);
+    domain->rest = lar_calloc_aligned(3 * domain->layout.axis_stride, sizeof *domain->rest);
     if (!domain->blocks || (domain->more_bytes && !domain->more) || !lar_fibres_plan(domain) ||
         !domain->base || !domain->corner_limit || !domain->area_limit || !domain->rest)
         return lar_fail_memory(error, domain->block_bytes, "the elements");
     for (lar_lid n = 0; n < domain->layout.node_padded; n++)
         if (domain->layout.global[n] >= 0)
-            memcpy(domain->rest + 4 * (size_t)n,
-                   domain->model->mesh.position[domain->layout.global[n]], 3 * sizeof(double));
+            lar_axes_put(domain->rest, domain->layout.axis_stride, n,
+                         domain->model->mesh.position[domain->layout.global[n]]);
     return LAR_OK;
 }
 
@@ -245,7 +246,7 @@ static bool fill_block(lar_domain *domain, int32_t r, int32_t b, void *memory, d
         }
         if (run->rest) ((lar_lean_block *)memory)->volume[lane] = LAR_LEAN_NOTHING;
         for (int a = 0; a < 8; a++)
-            ((lar_block_head *)memory)->node[a][lane] = 4 * (domain->layout.node_padded - 1);
+            ((lar_block_head *)memory)->node[a][lane] = domain->layout.node_padded - 1;
     }
     return !run->rest || same_numbers(domain, run, b, lanes, whole);
 }
@@ -590,5 +591,6 @@ void lar_domain_destroy(lar_domain *domain) {
 void lar_domain_corners(const lar_domain *domain, const double *u, lar_gid e, double out[8][3]) {
     const lar_mesh *mesh = &domain->model->mesh;
     for (int a = 0; a < 8; a++)
-        memcpy(out[a], u + 4 * domain->layout.local[mesh->element[e][a]], 3 * sizeof(double));
+        lar_axes_get(u, domain->layout.axis_stride, domain->layout.local[mesh->element[e][a]],
+                     out[a]);
 }

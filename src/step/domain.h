@@ -53,7 +53,7 @@ typedef struct lar_domain {
                                             elements of these materials [1/s^2]; a whole's */
     double *corner_limit;   /* [8 for each block] lar_hex8_corner_limit, in squared force units */
     double *area_limit;     /* [8 for each block] lar_hex8_area_limit; NULL: no element is flat */
-    double *rest;           /* [layout.node_padded][4] where nodes are at rest [m] */
+    double *rest;           /* [3][layout.axis_stride] where nodes are at rest [m] */
     lar_element_rate *rate; /* [elements of the model] */
     bool rate_lent;         /* `rate` belongs to the whole */
     size_t block_bytes;

@@ -68,8 +68,9 @@ static void examine_place(const lar_domain *domain, const lar_state *state, lar_
         for (int i = 0; i < 3; i++) {
             lar_gid node = mesh->element[fault->element][a];
             rest[i] += mesh->position[node][i] / 8;
-            center[i] +=
-                (mesh->position[node][i] + state->u[4 * domain->layout.local[node] + i]) / 8;
+            center[i] += (mesh->position[node][i] +
+                          state->u[lar_state_at(state, domain->layout.local[node], i)]) /
+                         8;
         }
     choose_place(center, rest, fault->place);
 }
@@ -125,14 +126,16 @@ static void examine_speed(const lar_domain *domain, const lar_state *state, lar_
     double highest = -1;
     for (lar_lid n = first; n < end && n < domain->layout.node_count; n++)
         for (int i = 0; i < 3 && domain->layout.global[n] >= 0; i++)
-            if (!(fabs(state->v[4 * n + i]) <= highest)) {
-                highest = fabs(state->v[4 * n + i]);
+            if (!(fabs(state->v[lar_state_at(state, n, i)]) <= highest)) {
+                highest = fabs(state->v[lar_state_at(state, n, i)]);
                 fastest = n;
             }
     if (fastest < 0) return;
     fault->element = domain->layout.global[fastest];
     fault->speed = highest;
-    const double *u = state->u + 4 * fastest, *rest = mesh->position[fault->element];
+    const double *rest = mesh->position[fault->element];
+    double u[3];
+    lar_state_displacement(state, fastest, u);
     double now[3] = {rest[0] + u[0], rest[1] + u[1], rest[2] + u[2]};
     choose_place(now, rest, fault->place);
 }

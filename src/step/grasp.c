@@ -52,7 +52,7 @@ static int32_t go_through(const lar_domain *whole, const lar_state *state, const
     for (int32_t s = 0; s < whole->model->surface.face_count; s++) {
         const lar_tool_contact_face *face = &faces->face[faces->face_of[s]];
         double x[4][3], weight[4], point[3], own[3];
-        lar_tool_contact_corners(face, state->u, x);
+        lar_tool_contact_corners(face, state, x);
         int n = lar_tool_contact_points(face, reach->tool->radius);
         for (int i = 0; i < n * n; i++) {
             lar_tool_contact_weights(i, n, weight);

@@ -59,14 +59,10 @@ void lar_strained_destroy(lar_strained *strained) {
 
 static void corners_of(const lar_domain *domain, const lar_state *state, lar_gid e,
                        double rest[8][3], double now[8][3]) {
-    const lar_gid *node = domain->model->mesh.element[e];
-    for (int a = 0; a < 8; a++) {
-        size_t at = 4 * (size_t)domain->layout.local[node[a]];
-        for (int i = 0; i < 3; i++) {
-            rest[a][i] = domain->rest[at + (size_t)i];
-            now[a][i] = state->u[at + (size_t)i] + rest[a][i];
-        }
-    }
+    lar_mesh_corners(&domain->model->mesh, e, rest);
+    lar_domain_corners(domain, state->u, e, now);
+    for (int a = 0; a < 8; a++)
+        for (int i = 0; i < 3; i++) now[a][i] += rest[a][i];
 }
 
 /* Strained elements of a run that are looked at side by side. */
@@ -174,8 +170,11 @@ static void add(const lar_domain *domain, lar_gid e, const double force[8][3], l
         }
     for (int i = 0; i < 3; i++) whole[7][i] = -sum[i];
     for (int a = 0; a < 8; a++) {
-        int64_t *to = state->force + 4 * domain->layout.local[domain->model->mesh.element[e][a]];
-        for (int i = 0; i < 3; i++) to[i] = (int64_t)((uint64_t)to[i] + (uint64_t)whole[a][i]);
+        lar_lid node = domain->layout.local[domain->model->mesh.element[e][a]];
+        for (int i = 0; i < 3; i++) {
+            int64_t *to = &state->force[lar_state_at(state, node, i)];
+            *to = (int64_t)((uint64_t)*to + (uint64_t)whole[a][i]);
+        }
     }
 }
 
@@ -290,7 +289,7 @@ static void apply_group(const lar_domain *domain, int32_t r, bool lists, straine
     lar_strained *strained = state->strained;
     size_t first = LAR_BLOCK * (size_t)domain->run_first[r];
     int32_t *count = &strained->count[r], *damped = &strained->damped_count[r];
-    const lar_hex8_places places = {.rest = domain->rest, .u = state->u};
+    const lar_hex8_places places = {.stride = state->stride, .rest = domain->rest, .u = state->u};
     lar_hex8_corner_look look;
     unsigned below = domain->kernels->corners(&group->hex8, fill_up(group), &places, SHARES, &look);
     for (int k = 0; k < group->count; k++) {
@@ -333,8 +332,11 @@ static void apply_list(const lar_domain *domain, int32_t r, const int32_t *list,
 static void look_ahead(const lar_domain *domain, const lar_state *state, int32_t r,
                        const strained_group *group, unsigned coming, const double ahead[LAR_BLOCK],
                        double stiffness[LAR_BLOCK]) {
-    const lar_hex8_places places = {
-        .rest = domain->rest, .u = state->u, .v = state->v, .ahead = ahead};
+    const lar_hex8_places places = {.stride = state->stride,
+                                    .rest = domain->rest,
+                                    .u = state->u,
+                                    .v = state->v,
+                                    .ahead = ahead};
     lar_hex8_corner_look look;
     coming &= domain->kernels->corners(&group->hex8, coming, &places, SHARES, &look);
     for (; coming; coming &= coming - 1) {
@@ -372,7 +374,7 @@ typedef struct measured_group {
 static void measure_group(const lar_domain *domain, const lar_hex8_monitor *monitor, int32_t r,
                           measured_group *group, lar_state *state) {
     strained_group *lanes = &group->lanes;
-    const lar_hex8_places places = {.rest = domain->rest, .u = state->u};
+    const lar_hex8_places places = {.stride = state->stride, .rest = domain->rest, .u = state->u};
     size_t first = LAR_BLOCK * (size_t)domain->run_first[r];
     double ahead[LAR_BLOCK] __attribute__((aligned(64))) = {0};
     lar_hex8_motion motion = {{0}, {0}};

@@ -16,7 +16,8 @@ static uint64_t hash_curve(uint64_t hash, const lar_curve *curve) {
 static uint64_t hash_conditions(uint64_t hash, const lar_conditions *c) {
     for (int32_t i = 0; i < c->constraint_count; i++) {
         const lar_constraint *k = &c->constraint[i];
-        hash = lar_hash_word(hash, (uint64_t)(uint32_t)k->value << 32 | (uint32_t)k->curve);
+        hash = lar_hash_word(hash, (uint64_t)(uint32_t)(4 * k->node + k->axis) << 32 |
+                                       (uint32_t)k->curve);
         hash = lar_hash_double(hash, k->by);
     }
     for (int32_t i = 0; i < c->force_count; i++) {
@@ -44,8 +45,7 @@ static uint64_t hash_blocks(uint64_t hash, const lar_domain *domain) {
             for (size_t i = 0; i < sizeof(lar_block_head) / sizeof *word; i++)
                 hash = lar_hash_word(hash, word[i]);
         }
-    if (domain->rest)
-        hash = hash_doubles(hash, domain->rest, 4 * (size_t)domain->layout.node_padded);
+    if (domain->rest) hash = hash_doubles(hash, domain->rest, 3 * domain->layout.axis_stride);
     word = (const void *)domain->more;
     for (size_t i = 0; word && i < domain->more_bytes / sizeof *word; i++)
         hash = lar_hash_word(hash, word[i]);
@@ -226,7 +226,8 @@ uint64_t lar_identity(const lar_domain *whole, const lar_state *start, uint64_t 
     hash = lar_hash_word(hash, hash_tools(list));
     if (list && list->spares > 0) hash = lar_hash_word(hash, (uint64_t)list->spares);
     hash = hash_doubles(hash, whole->push, nodes);
-    hash = hash_doubles(hash, start->u, 4 * nodes);
-    hash = hash_doubles(hash, start->v, 4 * nodes);
+    hash = hash_doubles(hash, start->u, 3 * start->stride);
+    hash = hash_doubles(hash, start->v, 3 * start->stride);
+    hash = hash_doubles(hash, start->level, start->stride);
     return hash_blocks(hash_conditions(hash, &whole->surroundings.conditions), whole);
 }

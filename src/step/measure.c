@@ -64,7 +64,7 @@ static double viscous_work(const lar_domain *domain, const lar_state *state, lar
 lar_status lar_measure_scratch_create(const lar_domain *domain, const lar_tools *tools,
                                       lar_measure_scratch *scratch, lar_error *error) {
     const lar_surroundings *surroundings = &domain->surroundings;
-    size_t values = 4 * (size_t)domain->layout.node_padded;
+    size_t values = 3 * domain->layout.axis_stride;
     lar_interactions *interactions = &scratch->interactions;
     *scratch = (lar_measure_scratch){0};
     lar_status status = lar_interactions_create(surroundings, tools, false, interactions, error);
@@ -114,7 +114,7 @@ static void begin_look(const lar_domain *domain, lar_measure_scratch *scratch,
 }
 
 static void end_look(look *l) {
-    memset(l->state.force, 0, 4 * (size_t)l->domain->layout.node_padded * sizeof *l->state.force);
+    memset(l->state.force, 0, 3 * l->state.stride * sizeof *l->state.force);
 }
 
 /* The supports in effect, and the nodes before planes with them. */
@@ -138,13 +138,14 @@ static double mean_step(const look *l) {
 /* ---- motion -------------------------------------------------------------------------------- */
 
 /* The velocity half a step ahead of an unsupported value, as the update kernel would make it. */
-static double next_velocity(const look *l, int32_t value) {
+static double next_velocity(const look *l, lar_lid node, int axis) {
+    size_t at = lar_state_at(&l->state, node, axis);
     lar_leapfrog leapfrog = lar_step_leapfrog(l->domain, l->interactions, &l->state);
     double step = mean_step(l);
     double half = 0.5 * damping_of(l) * step;
-    double drift = l->gravity[value % 4] * step / (1 + half);
-    return leapfrog.keep * l->state.v[value] + drift -
-           leapfrog.push * l->domain->push[value / 4] * (double)l->state.force[value];
+    double drift = l->gravity[axis] * step / (1 + half);
+    return leapfrog.keep * l->state.v[at] + drift -
+           leapfrog.push * l->domain->push[node] * (double)l->state.force[at];
 }
 
 /* Length of the next step, or of its parts. */
@@ -153,26 +154,27 @@ static double part_of_step(const look *l) {
 }
 
 /* Kinetic energy of one value, and half of the present step's share of damping. */
-static void add_kinetic(const look *l, int32_t value, double ahead, lar_energy *energy) {
-    double mass = l->domain->mass[value / 4], behind = l->state.v[value];
+static void add_kinetic(const look *l, lar_lid node, int axis, double ahead, lar_energy *energy) {
+    double mass = l->domain->mass[node], behind = l->state.v[lar_state_at(&l->state, node, axis)];
     energy->kinetic += 0.5 * mass * behind * ahead;
     energy->damping += 0.25 * damping_of(l) * mean_step(l) * mass * behind * (behind + ahead);
 }
 
 /* What a support exerts on a value: all that the rest of the equation of motion leaves open. */
 static double support_force(const look *l, const lar_constraint *constraint, double ahead) {
-    int32_t value = constraint->value;
-    double behind = l->state.v[value];
+    size_t at = lar_constraint_at(&l->state, constraint);
+    double behind = l->state.v[at];
     double inertia = (ahead - behind) / mean_step(l) + 0.5 * damping_of(l) * (ahead + behind);
-    return l->domain->mass[value / 4] * (inertia - l->gravity[value % 4]) +
-           (double)l->state.force[value] / l->domain->scale;
+    return l->domain->mass[constraint->node] * (inertia - l->gravity[constraint->axis]) +
+           (double)l->state.force[at] / l->domain->scale;
 }
 
 static double gravity_potential(const look *l) {
     double work = 0;
     for (int32_t n = 0; n < l->domain->layout.node_count; n++)
         for (int i = 0; i < 3; i++)
-            work += lar_domain_weighs(l->domain, n) * l->gravity[i] * l->state.u[4 * n + i];
+            work += lar_domain_weighs(l->domain, n) * l->gravity[i] *
+                    l->state.u[lar_state_at(&l->state, n, i)];
     return work;
 }
 
@@ -188,17 +190,17 @@ static double supported_velocity(const look *l, const lar_constraint *constraint
  * them. Returns the entry behind its last. */
 static int32_t stop_at_planes(const look *l, int32_t entry, double free[3], double ahead[3]) {
     const lar_planes *planes = planes_of(l);
-    int32_t value = planes->node[entry].value;
+    lar_lid node = planes->node[entry].node;
     lar_condition_context context = l->context;
     context.time_step = part_of_step(l);
     const uint8_t *marks = supports_of(l)->mark;
-    unsigned mark = marks ? marks[l->domain->layout.global[value / 4]] / LAR_SUPPORT_SET : 0;
+    unsigned mark = marks ? marks[l->domain->layout.global[node]] / LAR_SUPPORT_SET : 0;
     for (int i = 0; i < 3; i++) { /* what supports hold goes on as it does, or stops */
         const lar_plane_way *way = &planes->way[planes->node[entry].way];
         bool held = way->slide[i] == 0 && way->normal[i] != 0;
-        free[i] = !held           ? next_velocity(l, value + i)
+        free[i] = !held           ? next_velocity(l, node, i)
                   : mark >> i & 1 ? 0
-                                  : l->state.v[value + i];
+                                  : l->state.v[lar_state_at(&l->state, node, i)];
         ahead[i] = free[i];
     }
     return lar_planes_ahead(planes, &context, &l->state, entry, ahead);
@@ -210,14 +212,15 @@ static void add_stops(const look *l, lar_energy *energy) {
     const lar_planes *planes = planes_of(l);
     double half = 0.5 * damping_of(l) * mean_step(l);
     for (int32_t entry = 0; entry < planes->count;) {
-        int32_t value = planes->node[entry].value;
-        double free[3], ahead[3], mass = l->domain->mass[value / 4];
+        lar_lid node = planes->node[entry].node;
+        double free[3], ahead[3], behind[3], mass = l->domain->mass[node];
+        lar_state_velocity(&l->state, node, behind);
         entry = stop_at_planes(l, entry, free, ahead);
         for (int i = 0; i < 3; i++) {
-            double change = ahead[i] - free[i], behind = l->state.v[value + i];
-            energy->kinetic += 0.5 * mass * behind * change;
-            energy->damping += 0.5 * half * mass * behind * change;
-            energy->contact -= 0.5 * mass * (1 + half) * change * behind;
+            double change = ahead[i] - free[i];
+            energy->kinetic += 0.5 * mass * behind[i] * change;
+            energy->damping += 0.5 * half * mass * behind[i] * change;
+            energy->contact -= 0.5 * mass * (1 + half) * change * behind[i];
         }
     }
 }
@@ -228,18 +231,18 @@ static void add_motion(const look *l, lar_energy *energy) {
     const lar_condition_notes *supports = supports_of(l);
     for (lar_gid g = 0; g < domain->model->mesh.node_count; g++)
         for (int i = 0; i < 3; i++) {
-            int32_t value = 4 * domain->layout.local[g] + i;
+            lar_lid node = domain->layout.local[g];
             if (supports->held[g] >> i & 1) continue;
-            add_kinetic(l, value, next_velocity(l, value), energy);
+            add_kinetic(l, node, i, next_velocity(l, node, i), energy);
         }
     add_stops(l, energy);
     for (int32_t i = 0; i < supports->constraint_count; i++) {
         const lar_constraint *c = &supports->constraint[i];
         double ahead = supported_velocity(l, c);
-        add_kinetic(l, c->value, ahead, energy);
+        add_kinetic(l, c->node, c->axis, ahead, energy);
         if (c->curve != -1)
-            energy->external +=
-                0.5 * mean_step(l) * l->state.v[c->value] * support_force(l, c, ahead);
+            energy->external += 0.5 * mean_step(l) * l->state.v[lar_constraint_at(&l->state, c)] *
+                                support_force(l, c, ahead);
     }
 }
 
@@ -337,8 +340,8 @@ lar_status lar_measure_reaction(const lar_domain *domain, lar_measure_scratch *s
     memset(sum, 0, 3 * sizeof *sum);
     for (int32_t i = 0; i < supports->constraint_count; i++) {
         const lar_constraint *c = &supports->constraint[i];
-        if (!wanted[c->value / 4]) continue;
-        sum[c->value % 4] += support_force(&l, c, supported_velocity(&l, c));
+        if (!wanted[c->node]) continue;
+        sum[c->axis] += support_force(&l, c, supported_velocity(&l, c));
     }
     end_look(&l);
     free(wanted);
@@ -360,8 +363,9 @@ static void take_sums(const lar_domain *domain, const int64_t *sum, double sign,
                       double (*force)[3]) {
     for (lar_gid g = 0; g < domain->model->mesh.node_count; g++)
         for (int i = 0; i < 3; i++) /* never -0 */
-            force[g][i] =
-                0.0 + sign * ((double)sum[4 * domain->layout.local[g] + i] / domain->scale);
+            force[g][i] = 0.0 + sign * ((double)sum[(size_t)domain->layout.local[g] +
+                                                    (size_t)i * domain->layout.axis_stride] /
+                                        domain->scale);
 }
 
 static void take_weights(const look *l, double (*force)[3]) {
@@ -376,7 +380,7 @@ static void take_planes(const look *l, double (*force)[3]) {
     const lar_planes *planes = planes_of(l);
     double h = mean_step(l), half = 0.5 * damping_of(l) * h;
     for (int32_t entry = 0; entry < planes->count;) {
-        lar_lid n = planes->node[entry].value / 4;
+        lar_lid n = planes->node[entry].node;
         lar_gid g = domain->layout.global[n];
         double free[3], ahead[3];
         entry = stop_at_planes(l, entry, free, ahead);
@@ -390,7 +394,7 @@ static void take_supports(const look *l, double (*force)[3]) {
     const lar_condition_notes *supports = supports_of(l);
     for (int32_t i = 0; i < supports->constraint_count; i++) {
         const lar_constraint *c = &supports->constraint[i];
-        force[l->domain->layout.global[c->value / 4]][c->value % 4] =
+        force[l->domain->layout.global[c->node]][c->axis] =
             support_force(l, c, supported_velocity(l, c));
     }
 }
@@ -400,21 +404,21 @@ static void take_damping(const look *l, double (*force)[3]) {
     const lar_planes *planes = planes_of(l);
     const lar_condition_notes *supports = supports_of(l);
     for (lar_gid g = 0; g < domain->model->mesh.node_count; g++) /* v+ first */
-        for (int i = 0; i < 3; i++) force[g][i] = next_velocity(l, 4 * domain->layout.local[g] + i);
+        for (int i = 0; i < 3; i++) force[g][i] = next_velocity(l, domain->layout.local[g], i);
     for (int32_t entry = 0; entry < planes->count;) {
         double free[3];
-        lar_gid g = domain->layout.global[planes->node[entry].value / 4];
+        lar_gid g = domain->layout.global[planes->node[entry].node];
         entry = stop_at_planes(l, entry, free, force[g]);
     }
     for (int32_t i = 0; i < supports->constraint_count; i++) {
         const lar_constraint *c = &supports->constraint[i];
-        force[domain->layout.global[c->value / 4]][c->value % 4] = supported_velocity(l, c);
+        force[domain->layout.global[c->node]][c->axis] = supported_velocity(l, c);
     }
     for (lar_gid g = 0; g < domain->model->mesh.node_count; g++) {
         lar_lid n = domain->layout.local[g];
         for (int i = 0; i < 3; i++)
-            force[g][i] =
-                0.0 - 0.5 * damping_of(l) * domain->mass[n] * (force[g][i] + l->state.v[4 * n + i]);
+            force[g][i] = 0.0 - 0.5 * damping_of(l) * domain->mass[n] *
+                                    (force[g][i] + l->state.v[lar_state_at(&l->state, n, i)]);
     }
 }
 
@@ -431,8 +435,9 @@ static void take_part(const lar_domain *domain, lar_measure_scratch *scratch,
 static lar_status take_tool(const lar_domain *domain, lar_measure_scratch *scratch,
                             const lar_state *state, int32_t tool, double (*force)[3],
                             lar_error *error) {
-    size_t values = 4 * (size_t)domain->layout.node_padded;
-    lar_touch_list list = {.tool = tool, .on_nodes = lar_calloc(values, sizeof *list.on_nodes)};
+    size_t stride = domain->layout.axis_stride, values = 3 * stride;
+    lar_touch_list list = {
+        .tool = tool, .on_nodes = lar_calloc(values, sizeof *list.on_nodes), .stride = stride};
     if (!list.on_nodes)
         return lar_fail_memory(error, values * sizeof *list.on_nodes, "forces on nodes");
     lar_measure_touches(domain, scratch, state, &list);

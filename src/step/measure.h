@@ -9,7 +9,7 @@
  * who looks at a state changes nothing of it, nor of what its steps know. */
 typedef struct lar_measure_scratch {
     lar_interactions interactions;
-    int64_t *force; /* [nodes of the state][4] force units, zero between two looks */
+    int64_t *force; /* [3][stride of the state] force units, zero between two looks */
 } lar_measure_scratch;
 
 /* `tools` may be NULL. What cannot be made is cleared by lar_measure_scratch_destroy. */

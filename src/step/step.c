@@ -113,7 +113,7 @@ static void recover_slowly(const lar_domain *domain, lar_gid e, lar_state *state
     }
     for (int a = 0; a < 8; a++)
         for (int k = 0; k < 3; k++)
-            state->force[4 * domain->layout.local[model->mesh.element[e][a]] + k] +=
+            state->force[lar_state_at(state, domain->layout.local[model->mesh.element[e][a]], k)] +=
                 llrint(f[a][k] * domain->scale);
 }
 
@@ -246,8 +246,8 @@ static void park_spares(const lar_domain *domain, const lar_condition_context *c
     for (int32_t i = 0; i < domain->spare_count; i++) {
         lar_lid n = domain->spare[i];
         if (n < context->first || n >= context->end) continue;
-        memset(state->u + 4 * n, 0, 4 * sizeof *state->u);
-        memset(state->v + 4 * n, 0, 4 * sizeof *state->v);
+        lar_axes_put(state->u, state->stride, n, (const double[3]){0});
+        lar_axes_put(state->v, state->stride, n, (const double[3]){0});
     }
 }
 
@@ -280,8 +280,9 @@ static void move_nodes(const lar_domain *domain, const lar_interactions *interac
     if (state->step % park_interval == 0) park_spares(domain, context, state);
     const double *weight = damping > 0 ? domain->weight : NULL;
     state->fastest = 0;
-    if (!domain->kernels->update(&leapfrog, context->first, context->end, state->u, state->v,
-                                 state->force, domain->push, weight, &damped, &state->fastest) &&
+    if (!domain->kernels->update(&leapfrog, context->first, context->end, state->stride, state->u,
+                                 state->v, state->force, domain->push, weight, &damped,
+                                 &state->fastest) &&
         !fault->kind)
         *fault = (lar_fault){
             .kind = LAR_FAULT_SPEED, .element = -1, .step = state->step, .part = state->part};
@@ -324,7 +325,7 @@ static void add_body_contact(lar_body_contact *contact, const lar_condition_cont
 static inline void hold_up_node(const lar_domain *domain, lar_lid n, int axis, double pull,
                                 lar_state *state) {
     double units = domain->added[n] * pull;
-    int64_t *force = state->force + 4 * (int64_t)n + axis;
+    int64_t *force = &state->force[lar_state_at(state, n, axis)];
     if (units != 0 && fabs(units) < 0x1p56)
         *force = (int64_t)((uint64_t)*force + (uint64_t)llrint(units));
 }

@@ -209,26 +209,47 @@ TEST_UNUSED static void finish(lar_simulation *simulation, lar_model *model) {
     lar_model_destroy(model);
 }
 
-/* Displacement of a global node. */
+/* Three values of a local node, good until sixteen others have been asked for. */
+TEST_UNUSED static double *three_of(const double *axes, size_t stride, lar_lid n) {
+    static _Thread_local double kept[16][3];
+    static _Thread_local unsigned next;
+    double *three = kept[next++ % 16];
+    lar_axes_get(axes, stride, n, three);
+    return three;
+}
+
+/* Displacement and velocity of a global node, as they are now: likewise. */
 TEST_UNUSED static const double *node_u(const lar_simulation *simulation, int32_t node) {
-    return simulation->state.u + 4 * simulation->domain.layout.local[node];
+    const lar_state *state = &simulation->state;
+    return three_of(state->u, state->stride, simulation->domain.layout.local[node]);
 }
 
 TEST_UNUSED static const double *node_v(const lar_simulation *simulation, int32_t node) {
-    return simulation->state.v + 4 * simulation->domain.layout.local[node];
+    const lar_state *state = &simulation->state;
+    return three_of(state->v, state->stride, simulation->domain.layout.local[node]);
 }
 
-/* Loads and internal forces at the present state, [local nodes][4] in newtons: internal minus
- * external. The caller frees. */
+/* One axis of a global node in u, v or force of the whole state. */
+TEST_UNUSED static size_t node_at(const lar_simulation *simulation, int32_t node, int axis) {
+    return lar_state_at(&simulation->state, simulation->domain.layout.local[node], axis);
+}
+
+TEST_UNUSED static void clear_forces(lar_simulation *simulation) {
+    lar_state *state = &simulation->state;
+    memset(state->force, 0, 3 * state->stride * sizeof *state->force);
+}
+
+/* Loads and internal forces at the present state, [3][stride of the state] in newtons: internal
+ * minus external. The caller frees. */
 TEST_UNUSED static double *residual_forces(lar_simulation *simulation) {
     lar_state *state = &simulation->state;
-    size_t values = 4 * (size_t)simulation->domain.layout.node_padded;
+    size_t values = 3 * state->stride;
     double *force = lar_calloc(values, sizeof *force);
     lar_fault fault = {0};
     lar_step_forces(&simulation->domain, &simulation->scratch->measure.interactions, state, &fault);
     for (size_t i = 0; i < values; i++)
         force[i] = (double)state->force[i] / simulation->domain.scale;
-    memset(state->force, 0, values * sizeof *state->force);
+    clear_forces(simulation);
     return force;
 }
 

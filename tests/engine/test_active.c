@@ -245,7 +245,7 @@ static void a_block_contracts_as_far_as_it_should(void **unused) {
             t -= 0.5 * (P[1][1] + below) / (P[1][1] - below) * 2 * h;
         }
         lar_lid end = simulation->domain.layout.local[brick_node(&b, 2, 2, 2)];
-        double now = 1 + lar_simulation_state(simulation)->u[4 * end] / 0.02;
+        double now = 1 + lar_simulation_state(simulation)->u[end] / 0.02;
         print_message("activation %g: %.6f of its length, %.6f by the formula\n", share[how], now,
                       L);
         assert_below(fabs(now - L), 1e-5);

@@ -20,7 +20,8 @@ static void run_to(lar_simulation *simulation, double time) {
 }
 
 static const double *moved(const lar_simulation *simulation, int32_t node) {
-    return lar_simulation_state(simulation)->u + 4 * simulation->domain.layout.local[node];
+    const lar_state *state = lar_simulation_state(simulation);
+    return three_of(state->u, state->stride, simulation->domain.layout.local[node]);
 }
 
 /* Law and active stress along and across are in balance: Newton, one after the other. */

@@ -84,11 +84,9 @@ static void forces_come_in_pairs(void **unused) {
     lar_model *model = two_bricks(&lower_brick, &shifted, 0.001, false);
     lar_simulation *s = start(model);
     lar_domain *domain = &s->domain;
-    const lar_layout *layout = &domain->layout;
     int32_t first =
         (lower_brick.cells[0] + 1) * (lower_brick.cells[1] + 1) * (lower_brick.cells[2] + 1);
-    for (int32_t n = first; n < model->mesh.node_count; n++)
-        s->state.u[4 * layout->local[n] + 2] = -0.002;
+    for (int32_t n = first; n < model->mesh.node_count; n++) s->state.u[node_at(s, n, 2)] = -0.002;
     lar_condition_context context = lar_domain_context(domain);
     lar_body_contact_forget(&s->interactions.body_contact);
     lar_body_contact_apply(&s->interactions.body_contact, &context, &s->state);
@@ -96,9 +94,10 @@ static void forces_come_in_pairs(void **unused) {
     int64_t sum[3] = {0};
     double moment[3] = {0}, size = 0;
     for (int32_t n = 0; n < model->mesh.node_count; n++) {
-        int64_t *force = s->state.force + 4 * layout->local[n];
+        int64_t force[3];
         double x[3];
         for (int i = 0; i < 3; i++) {
+            force[i] = s->state.force[node_at(s, n, i)];
             x[i] = model->mesh.position[n][i] + node_u(s, n)[i];
             sum[i] += force[i];
             size += fabs(x[i] * (double)force[i]);
@@ -107,8 +106,8 @@ static void forces_come_in_pairs(void **unused) {
             int j = (i + 1) % 3, k = (i + 2) % 3;
             moment[i] += x[j] * (double)force[k] - x[k] * (double)force[j];
         }
-        memset(force, 0, 3 * sizeof *force);
     }
+    clear_forces(s);
     for (int i = 0; i < 3; i++) {
         assert_true(sum[i] == 0);
         assert_below(fabs(moment[i]), 1e-12 * size);
@@ -430,8 +429,7 @@ static void looking_is_not_felt(void **unused) {
     assert_int_equal(one.searches, other.searches);
     assert_int_equal(one.tested, other.tested);
     assert_int_equal(one.touching, other.touching);
-    for (int i = 0; i < 4 * asked->state.node_count; i++)
-        assert_int_equal(asked->state.force[i], 0);
+    for (size_t i = 0; i < 3 * asked->state.stride; i++) assert_int_equal(asked->state.force[i], 0);
     lar_simulation_destroy(asked);
     finish(plain, model);
 }
@@ -439,21 +437,25 @@ static void looking_is_not_felt(void **unused) {
 /* A node that is taken elsewhere by the rows of the table leaves nothing behind. */
 static void rows_hold_all_of_a_node(void **unused) {
     (void)unused;
-    enum { NODES = 2 };
+    enum { NODES = LAR_NODES_TOGETHER };
     lar_state from, to;
     double value[LAR_NODE_VALUES];
     assert_int_equal(lar_state_create(&from, NODES, 0, NULL), LAR_OK);
     assert_int_equal(lar_state_create(&to, NODES, 0, NULL), LAR_OK);
-    for (int i = 0; i < 4 * NODES; i++) {
-        from.u[i] = 1 + i;
-        from.v[i] = i % 4 < 3 ? 0.5 + i : 0;
+    for (int32_t n = 0; n < NODES; n++) {
+        from.level[n] = n == NODES - 1 ? 8 : 0.25 * n;
+        for (int i = 0; i < 3; i++) {
+            from.u[lar_state_at(&from, n, i)] = 1 + 3 * n + i;
+            from.v[lar_state_at(&from, n, i)] = 0.5 + 3 * n + i;
+        }
     }
     for (int32_t n = 0; n < NODES; n++) {
         lar_state_read(&from, n, value);
         lar_state_write(&to, n, value);
     }
-    assert_memory_equal(from.u, to.u, 4 * NODES * sizeof *to.u);
-    assert_memory_equal(from.v, to.v, 4 * NODES * sizeof *to.v);
+    assert_memory_equal(from.u, to.u, 3 * to.stride * sizeof *to.u);
+    assert_memory_equal(from.v, to.v, 3 * to.stride * sizeof *to.v);
+    assert_memory_equal(from.level, to.level, to.stride * sizeof *to.level);
     /* The contact level is in the hash where there is one, and only there. */
     uint64_t with = lar_state_hash_values(0, value), without;
     value[LAR_NODE_VALUES - 1] = 0;

@@ -32,7 +32,7 @@ static lar_model *folding_bar(double shear, int layers) {
 }
 
 static double offset_of(const lar_simulation *s, int32_t node) {
-    return lar_simulation_state(s)->u[4 * s->domain.layout.local[node] + 3];
+    return lar_simulation_state(s)->level[s->domain.layout.local[node]];
 }
 
 /* Nodes that have come in without coming through a face. */
@@ -129,24 +129,23 @@ static double put(lar_simulation *s, int32_t node, int32_t face, double depth, d
     const lar_body_contact *contact = &s->interactions.body_contact;
     static const double even[4] = {0.25, 0.25, 0.25, 0.25};
     double corner[4][3], middle[3], normal[3], length = 0, force = 0;
-    int32_t value = 4 * domain->layout.local[node];
     for (int a = 0; a < 4; a++) place_of(s, model->surface.corner[face][a], corner[a]);
     lar_face_mean((const double(*)[3])corner, even, middle);
     lar_face_normal((const double(*)[3])corner, normal);
     for (int i = 0; i < 3; i++) length += normal[i] * normal[i];
     for (int i = 0; i < 3; i++) {
         double way = normal[i] / sqrt(length);
-        s->state.u[value + i] = middle[i] - depth * way - model->mesh.position[node][i];
-        s->state.v[value + i] = -sinks * way / domain->time_step;
+        s->state.u[node_at(s, node, i)] = middle[i] - depth * way - model->mesh.position[node][i];
+        s->state.v[node_at(s, node, i)] = -sinks * way / domain->time_step;
     }
     lar_condition_context context = lar_domain_context(domain);
     lar_body_contact_forget(&s->interactions.body_contact);
     lar_body_contact_apply(&s->interactions.body_contact, &context, &s->state);
     for (int32_t p = 0; p < contact->part_count; p++)
-        for (int i = 0; i < 3 && contact->part[p].value[0] == value; i++)
+        for (int i = 0; i < 3 && contact->part[p].node[0] == domain->layout.local[node]; i++)
             force += contact->part[p].force[0][i] * normal[i] / sqrt(length);
     lar_body_contact_moved(&s->interactions.body_contact, &s->state, 0);
-    memset(s->state.force, 0, 4 * (size_t)s->state.node_count * sizeof *s->state.force);
+    clear_forces(s);
     return force;
 }
 
@@ -285,8 +284,7 @@ static void check_copies(const lar_simulation *s) {
         const lar_processor *p = &s->computer->processor[i];
         for (int32_t n = 0; n < s->domain.model->mesh.node_count; n++) {
             lar_lid here = p->domain.layout.local[n], there = s->domain.layout.local[n];
-            if (here >= 0)
-                assert_true(p->worker[0].state.u[4 * here + 3] == state->u[4 * there + 3]);
+            if (here >= 0) assert_true(p->worker[0].state.level[here] == state->level[there]);
         }
     }
 }

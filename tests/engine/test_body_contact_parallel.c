@@ -173,7 +173,7 @@ static void hurl(lar_simulation *s) {
         lar_processor *p = &s->computer->processor[i];
         for (int32_t n = first; n < s->domain.model->mesh.node_count; n++) {
             lar_lid local = p->domain.layout.local[n];
-            if (local >= 0) p->worker[0].state.v[4 * local + 2] = 60;
+            if (local >= 0) p->worker[0].state.v[lar_state_at(&p->worker[0].state, local, 2)] = 60;
         }
     }
 }

@@ -232,12 +232,13 @@ static void a_closed_pressure_is_balanced(void **unused) {
     lar_simulation *simulation = start(model);
     lar_state *state = &simulation->state;
     for (int32_t n = 0; n < simulation->domain.layout.node_count; n++)
-        for (int i = 0; i < 3; i++) state->u[4 * n + i] = 0.002 * noise((uint32_t)(4 * n + i));
+        for (int i = 0; i < 3; i++)
+            state->u[lar_state_at(state, n, i)] = 0.002 * noise((uint32_t)(4 * n + i));
     double *force = residual_forces(simulation);
     double sum[3] = {0}, moment[3] = {0}, size = 0;
     for (int32_t n = 0; n < model->mesh.node_count; n++) {
         const double *X = model->mesh.position[n], *u = node_u(simulation, n);
-        const double *f = force + 4 * simulation->domain.layout.local[n];
+        const double *f = three_of(force, state->stride, simulation->domain.layout.local[n]);
         for (int i = 0; i < 3; i++) {
             int j = (i + 1) % 3, k = (i + 2) % 3;
             sum[i] += f[i];

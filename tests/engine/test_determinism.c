@@ -184,7 +184,7 @@ static void the_hash_sees_one_bit(void **unused) {
     lar_simulation *simulation = start(model);
     advance(simulation, 10);
     uint64_t hash = lar_simulation_hash(simulation);
-    double *u = &simulation->state.u[4 * simulation->domain.layout.local[17] + 1], was = *u;
+    double *u = &simulation->state.u[node_at(simulation, 17, 1)], was = *u;
     *u = nextafter(was, 1);
     assert_true(lar_simulation_hash(simulation) != hash);
     *u = was;

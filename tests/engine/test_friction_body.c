@@ -42,7 +42,7 @@ static void a_block_stops_where_it_must(void **unused) {
         double before, way, v, a = weight * frictions[i];
         mean_slide(s, &before, &v);
         for (int32_t n = first_of(model); n < model->mesh.node_count; n++)
-            s->state.v[4 * s->domain.layout.local[n]] += speed;
+            s->state.v[node_at(s, n, 0)] += speed;
         while (lar_simulation_time(s) < 0.6) advance(s, 100);
         mean_slide(s, &way, &v);
         double wanted = speed / c - a / c / c * log(1 + c * speed / a);

@@ -221,8 +221,7 @@ static void a_deck_has_the_closed_form(void **unused) {
     lar_simulation *simulation = start(model);
     while (lar_simulation_time(simulation) < 60) advance(simulation, 100);
     lar_measure_stress(&simulation->domain, lar_simulation_state(simulation), 0, cauchy);
-    const double *u = lar_simulation_state(simulation)->u;
-    double side = 1 + u[4 * simulation->domain.layout.local[6] + 1];
+    double side = 1 + lar_simulation_state(simulation)->u[node_at(simulation, 6, 1)];
     print_message("deck: %.6g Pa and %.6f wide, %.6g Pa and %.6f by the formulas\n", cauchy[0],
                   side, s[0][0], F[1][1]);
     assert_below(fabs(cauchy[0] / s[0][0] - 1), 1e-3);

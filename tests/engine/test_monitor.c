@@ -9,7 +9,7 @@ static void assert_says(const lar_error *error, const char *words) {
 
 static void assert_finite(const lar_simulation *simulation) {
     const lar_state *state = &simulation->state;
-    for (int32_t i = 0; i < 4 * state->node_count; i++)
+    for (size_t i = 0; i < 3 * state->stride; i++)
         if (!isfinite(state->u[i]) || !isfinite(state->v[i]))
             fail_msg("value %d is u %g, v %g", (int)i, state->u[i], state->v[i]);
 }

@@ -235,7 +235,7 @@ static void a_wrong_program_is_found(void **unused) {
         lar_simulation *simulation = start_with(model, options);
         lar_processor *p = &simulation->computer->processor[1];
         if (fault == 0) /* a vector goes to the wrong node */
-            p->value[0] = p->value[p->packet[0].added - 1];
+            p->node[0] = p->node[p->packet[0].added - 1];
         else if (fault == 1) /* a run of elements is left out */
             p->batch[0].run_count--;
         else /* the last vector of a packet is forgotten */

@@ -519,7 +519,8 @@ static void a_lost_folder_is_reported_and_may_come_back(void **state) {
 static void a_state_without_numbers_is_not_written(void **state) {
     fixture *f = *state;
     open_results(f);
-    f->simulation->state.u[4 * f->simulation->domain.layout.local[7] + 1] = NAN;
+    f->simulation->state
+        .u[lar_state_at(&f->simulation->state, f->simulation->domain.layout.local[7], 1)] = NAN;
     assert_int_equal(lar_results_add(f->results, f->simulation, &f->error), LAR_ERROR_UNSTABLE);
     assert_non_null(strstr(f->error.message, "node 8 "));
     assert_int_equal(access(FOLDER "/organ_000000.vtu", F_OK), -1);

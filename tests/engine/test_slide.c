@@ -82,8 +82,7 @@ static void set_going(lar_simulation *s, lar_model *model, int32_t first, double
     for (int i = 0; i < 3; i++) domain->leapfrog.drift[i] = model->gravity[i] * dt;
     for (int32_t n = 0; n < domain->layout.node_count; n++)
         if (domain->mass[n] > 0) domain->push[n] = dt / (domain->mass[n] * domain->scale);
-    for (int32_t n = first; n < model->mesh.node_count; n++)
-        s->state.v[4 * domain->layout.local[n]] += speed;
+    for (int32_t n = first; n < model->mesh.node_count; n++) s->state.v[node_at(s, n, 0)] += speed;
     s->state.fastest = speed;
     lar_body_contact_forget(&s->interactions.body_contact);
 }

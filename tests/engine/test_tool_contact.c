@@ -135,12 +135,13 @@ static void what_tools_feel_is_what_the_body_feels(void **unused) {
     lar_condition_context context = lar_domain_context(domain);
     lar_tool_contact *contact = &simulation->interactions.tool_contact;
     for (int tool = 0; tool < 3; tool++) memset(&contact->sum[tool], 0, sizeof contact->sum[tool]);
-    memset(simulation->state.force, 0, 32 * (size_t)domain->layout.node_padded);
+    clear_forces(simulation);
     lar_tool_contact_apply(contact, &context, &simulation->state);
     int64_t sum[3] = {0};
     double moment[3] = {0}, size = 0;
     for (int32_t n = 0; n < model->mesh.node_count; n++) {
-        const int64_t *f = simulation->state.force + 4 * domain->layout.local[n];
+        int64_t f[3];
+        for (int i = 0; i < 3; i++) f[i] = simulation->state.force[node_at(simulation, n, i)];
         const double *u = node_u(simulation, n), *rest = model->mesh.position[n];
         for (int i = 0; i < 3; i++) {
             int j = (i + 1) % 3, k = (i + 2) % 3;
@@ -173,7 +174,7 @@ static void what_tools_feel_is_what_the_body_feels(void **unused) {
         assert_int_equal(sum[i], 0);
         assert_below(fabs(moment[i]) / size, 1e-12);
     }
-    memset(simulation->state.force, 0, 32 * (size_t)domain->layout.node_padded);
+    clear_forces(simulation);
     finish(simulation, model);
 }
 

@@ -13,11 +13,11 @@ typedef struct lone_face {
     lar_tool_contact_face face;
     lar_tool_body body;
     lar_point_weights weights;
-    double mass[4], v[16];
+    double mass[4];
 } lone_face;
 
 static void make(const double corner[4][3], lone_face *f) {
-    *f = (lone_face){.face = {.value = {0, 4, 8, 12}, .edge = 0.02}, .body = {.count = 1}};
+    *f = (lone_face){.face = {.node = {0, 1, 2, 3}, .edge = 0.02}, .body = {.count = 1}};
     for (int a = 0; a < 4; a++) {
         f->face.share[a] = 1;
         f->mass[a] = 1e-3;
@@ -37,7 +37,7 @@ static double pushed(lone_face *f, const double tip[3], const double end[3],
     memcpy(f->body.now[0].end[1], end, sizeof f->body.now[0].end[1]);
     f->body.next[0] = f->body.now[0];
     memcpy(patch.x, f->face.rest, sizeof patch.x);
-    lar_tool_contact_push_face(&patch, &law, f->v, f->mass, &f->weights);
+    lar_tool_contact_push_face(&patch, &law, f->mass, &f->weights);
     double sum = 0;
     for (int a = 0; a < 4; a++)
         for (int i = 0; i < 3; i++) sum += patch.force[a][i] * direction[i];

@@ -1,6 +1,7 @@
 /* The guard of corners: a barrier with the forces of its energy, that is nothing where corners are
  * sound; and the kernels that look for corners to be guarded, on every instruction set. */
 #include "mechanics_test.h"
+#include "nodes_test.h"
 
 #include "base/vector.h"
 #include "mechanics/hex8_guard.h"
@@ -160,7 +161,7 @@ static void fill(uint64_t *seed, bool row, lar_hex8_block *block, block_nodes *n
     memset(nodes, 0, sizeof *nodes);
     for (int n = 0; n < LAR_BLOCK; n++)
         for (int a = 0; a < 8; a++) {
-            int lane = row ? LAR_ROW_LANES[n] : n, right = lar_node_sign[a][0] > 0;
+            int right = lar_node_sign[a][0] > 0;
             int node = row ? 16 * line_of[a] + n + right : 8 * n + a;
             for (int i = 0; i < 3; i++) {
                 nodes->rest[node][i] = 0.5 * size * lar_node_sign[a][i] +
@@ -169,7 +170,7 @@ static void fill(uint64_t *seed, bool row, lar_hex8_block *block, block_nodes *n
                 nodes->u[node][i] = 0.45 * size * random_value(seed);
                 nodes->v[node][i] = random_value(seed);
             }
-            block->head.node[a][lane] = 4 * node;
+            block->head.node[a][n] = node;
         }
 }
 
@@ -180,7 +181,7 @@ static double min_of(const lar_hex8_block *block, const block_nodes *nodes, int 
     lar_guard guard;
     for (int a = 0; a < 8; a++)
         for (int i = 0; i < 3; i++) {
-            int node = block->head.node[a][lane] / 4;
+            int node = block->head.node[a][lane];
             rest[a][i] = nodes->rest[node][i];
             now[a][i] = rest[a][i] + nodes->u[node][i];
         }
@@ -198,7 +199,7 @@ static void corners_are(const lar_hex8_group *group, const block_nodes *nodes, u
         unsigned below = 0;
         for (int a = 0; a < 8; a++)
             for (int i = 0; i < 3; i++) {
-                int node = group->node[a][lane] / 4;
+                int node = group->node[a][lane];
                 rest[a][i] = nodes->rest[node][i];
                 now[a][i] = rest[a][i] + nodes->u[node][i];
                 if (ahead) now[a][i] += ahead[lane] * nodes->v[node][i];
@@ -218,9 +219,9 @@ static void motion_is(const lar_hex8_group *group, const block_nodes *nodes, uns
                       const lar_hex8_motion *motion) {
     for (int lane = 0; lane < LAR_BLOCK; lane++) {
         double now[8][3], most = 0;
-        const double *first = nodes->v[group->node[0][lane] / 4];
+        const double *first = nodes->v[group->node[0][lane]];
         for (int a = 0; a < 8; a++) {
-            int node = group->node[a][lane] / 4;
+            int node = group->node[a][lane];
             double away[3];
             for (int i = 0; i < 3; i++) now[a][i] = nodes->rest[node][i] + nodes->u[node][i];
             lar_minus(nodes->v[node], first, away);
@@ -240,11 +241,15 @@ static void kernels_see_the_same_corners(void **state) {
     static block_nodes nodes;
     static double ahead[LAR_BLOCK] __attribute__((aligned(64)));
     for (int lane = 0; lane < LAR_BLOCK; lane++) ahead[lane] = 0.02 * size * lane;
+    static double rest[3 * TEST_STRIDE], u[3 * TEST_STRIDE], v[3 * TEST_STRIDE];
     lar_hex8_group group;
     uint64_t seed = 13;
     int seen[3] = {0};
     for (int k = 0; k < 400; k++) {
         fill(&seed, k % 2, &block, &nodes);
+        test_axes((const double(*)[4])nodes.rest, NODES, rest);
+        test_axes((const double(*)[4])nodes.u, NODES, u);
+        test_axes((const double(*)[4])nodes.v, NODES, v);
         unsigned expected = 0;
         memcpy(group.node, block.head.node, sizeof group.node);
         for (int lane = 0; lane < LAR_BLOCK; lane++) {
@@ -259,13 +264,13 @@ static void kernels_see_the_same_corners(void **state) {
             lar_hex8_corner_look look;
             if (lar_kernels_find(wanted[i], &kernels, NULL) != LAR_OK) continue;
             unsigned lanes = 0xffu >> k % 8 << k % 3 & 0xff, both = lanes | lanes << LAR_BLOCK;
-            const lar_hex8_places now = {.rest = &nodes.rest[0][0], .u = &nodes.u[0][0]};
+            const lar_hex8_places now = {.stride = TEST_STRIDE, .rest = rest, .u = u};
             assert_int_equal(kernels->corners(&group, lanes, &now, share, &look), expected & both);
             corners_are(&group, &nodes, lanes, NULL, look.at);
-            kernels->motion(&group, lanes, &now, &nodes.v[0][0], &motion);
+            kernels->motion(&group, lanes, &now, v, &motion);
             motion_is(&group, &nodes, lanes, &motion);
             lar_hex8_places then = now;
-            then.v = &nodes.v[0][0];
+            then.v = v;
             then.ahead = ahead;
             kernels->corners(&group, lanes, &then, share, &look);
             corners_are(&group, &nodes, lanes, ahead, look.at);
@@ -290,7 +295,7 @@ static void fill_deformed(uint64_t *seed, const lar_material *material, lar_hex8
         affine((rows)F[n], still, 8, (rows)corner, u);
         for (int a = 0; a < 8; a++) {
             memcpy(nodes->u[8 * n + a], u[a], sizeof u[a]);
-            block->head.node[a][n] = 4 * (8 * n + a);
+            block->head.node[a][n] = 8 * n + a;
         }
         for (int k = 0; k < LAR_LAW_PARAMETERS; k++)
             *lar_block_parameter(&block->head, more, k, n) =
@@ -331,7 +336,8 @@ static void what_stiffens_is_listed(void **state) {
                                            .blocks = &block,
                                            .more = lar_law_has_more((lar_law)law) ? &more : NULL};
                 if (lar_kernels_find(wanted[i], &kernels, NULL) != LAR_OK) continue;
-                kernels->recover(&run, &nodes.u[0][0], &force[0][0], &limits, &monitor);
+                test_recover(kernels, &run, NODES, (const double(*)[4])nodes.u, force, &limits,
+                             &monitor);
                 unsigned found = 0;
                 for (int k = 0; k < monitor.count; k++) found |= 1U << lane[k];
                 for (int n = 0; n < LAR_BLOCK; n++) {

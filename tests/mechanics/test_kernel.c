@@ -1,6 +1,7 @@
 /* The element kernels of every instruction set this processor has: against the plain element of
  * hex8.h, and against each other bit by bit. */
 #include "mechanics_test.h"
+#include "nodes_test.h"
 
 #include "mechanics/hex8_block.h"
 
@@ -59,7 +60,7 @@ static void fill_lane(load *l, int n) {
         *lar_block_parameter(&block->head, &l->more[n / LAR_BLOCK], k, lane) =
             l->material[n].parameter[k] *
             (lar_law_scales(l->material[n].law, k) ? l->scale * element->volume : 1);
-    for (int a = 0; a < 8; a++) block->head.node[a][lane] = 4 * l->node[n][a];
+    for (int a = 0; a < 8; a++) block->head.node[a][lane] = l->node[n][a];
 }
 
 static void lane_displacements(const load *l, int n, double u[8][3]) {
@@ -101,8 +102,8 @@ static void empty_lane(load *l, int n) {
 
 /* Loose blocks of general elements. */
 static int64_t call(int k, lar_law law, const lar_hex8_block *blocks, const lar_block_more *more,
-                    int count, const double *u, int64_t *force, const lar_hex8_limits *limits,
-                    bool monitor) {
+                    int count, const double (*u)[4], int64_t (*force)[4],
+                    const lar_hex8_limits *limits, bool monitor) {
     lar_block_run run = {.law = law,
                          .shape = LAR_SHAPE_GENERAL,
                          .rows = LAR_ROWS_NONE,
@@ -116,7 +117,8 @@ static int64_t call(int k, lar_law law, const lar_hex8_block *blocks, const lar_
     for (int i = 0; i < MAX * LAR_BLOCK; i++) limit[i] = INFINITY;
     static float strain[MAX * LAR_BLOCK][LAR_STRAIN_NUMBERS];
     lar_hex8_monitor listed = {.limit = limit, .lane = lane, .strain = strain};
-    int64_t found = kernels[k]->recover(&run, u, force, limits, monitor ? &listed : NULL);
+    int64_t found =
+        test_recover(kernels[k], &run, ROOM, u, force, limits, monitor ? &listed : NULL);
     /* The first lane of those of the block that is named. */
     return found < 0 ? -1 : (found >> 8) * LAR_BLOCK + __builtin_ctz((unsigned)(found & 0xff));
 }
@@ -125,7 +127,8 @@ static int64_t recover(const load *l, int k, bool monitor, const lar_hex8_limits
                        forces *f) {
     lar_law law = l->material[0].law;
     memset(f, 0, sizeof *f);
-    return call(k, law, l->block, l->more, BLOCKS, &l->u[0][0], &f->at[0][0], limits, monitor);
+    return call(k, law, l->block, l->more, BLOCKS, (const double(*)[4])l->u, f->at, limits,
+                monitor);
 }
 
 /* Each element within the rounding of its seven modal forces (half a unit each); the scale is
@@ -226,8 +229,8 @@ static void integers_balance(void **state) {
             make_load(&l, &seed, law, 0x1p38);
             recover(&l, k, false, &no_limits, &once);
             f = once;
-            call(k, (lar_law)law, l.block, l.more, BLOCKS, &l.u[0][0], &f.at[0][0], &no_limits,
-                 false);
+            call(k, (lar_law)law, l.block, l.more, BLOCKS, (const double(*)[4])l.u, f.at,
+                 &no_limits, false);
             int64_t sum[4] = {0}, max = 0;
             for (int p = 0; p < ROOM; p++)
                 for (int i = 0; i < 4; i++) {
@@ -252,11 +255,11 @@ static void any_count_of_blocks(void **state) {
             for (int count = 0; count <= BLOCKS; count++) {
                 memset(&together, 0, sizeof together);
                 memset(&single, 0, sizeof single);
-                assert_true(call(k, (lar_law)law, l.block, l.more, count, &l.u[0][0],
-                                 &together.at[0][0], &no_limits, false) == -1);
+                assert_true(call(k, (lar_law)law, l.block, l.more, count, (const double(*)[4])l.u,
+                                 together.at, &no_limits, false) == -1);
                 for (int b = 0; b < count; b++)
-                    call(k, (lar_law)law, &l.block[b], &l.more[b], 1, &l.u[0][0], &single.at[0][0],
-                         &no_limits, false);
+                    call(k, (lar_law)law, &l.block[b], &l.more[b], 1, (const double(*)[4])l.u,
+                         single.at, &no_limits, false);
                 assert_memory_equal(&together, &single, sizeof single);
             }
     }
@@ -412,18 +415,18 @@ static void rounds_to_nearest_even(void **state) {
     empty_lane(&l, 0);
     for (int lane = 0; lane < LAR_BLOCK; lane++) l.block[0].head.stiffness[3][lane] = 1;
     for (int a = 0; a < 8; a++)
-        for (int lane = 0; lane < LAR_BLOCK; lane++) l.block[0].head.node[a][lane] = 4 * SPARE;
+        for (int lane = 0; lane < LAR_BLOCK; lane++) l.block[0].head.node[a][lane] = SPARE;
     for (int round = 0; round < 500 * LAR_BLOCK; round++) {
         int lane = round % LAR_BLOCK, pick = round / LAR_BLOCK / 2;
         double x = pick < SPECIAL ? special[pick] : exp2(30 + 31.9 * random_value(&seed));
         if (round / LAR_BLOCK % 2) x = -x;
         lar_hex8_block block = l.block[0];
-        for (int a = 0; a < 8; a++) block.head.node[a][lane] = 4 * a;
+        for (int a = 0; a < 8; a++) block.head.node[a][lane] = a;
         l.u[0][0] = x;
         l.u[0][2] = -x;
         for (int k = 0; k < kernel_count; k++) {
             memset(&f, 0, sizeof f);
-            call(k, (lar_law)0, &block, NULL, 1, &l.u[0][0], &f.at[0][0], &no_limits, false);
+            call(k, (lar_law)0, &block, NULL, 1, (const double(*)[4])l.u, f.at, &no_limits, false);
             for (int a = 0; a < 8; a++) {
                 int sign = -lar_node_sign[a][0] * lar_node_sign[a][1] * lar_node_sign[a][2];
                 assert_true(f.at[a][0] == sign * llrint(x));

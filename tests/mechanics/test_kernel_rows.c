@@ -1,6 +1,7 @@
 /* Rows and boxes against loose general blocks: the same int64 forces, to the bit, on every
  * instruction set of this processor. */
 #include "mechanics_test.h"
+#include "nodes_test.h"
 
 #include "base/simd.h"
 #include "mechanics/hex8_block.h"
@@ -72,7 +73,7 @@ static void fill_lane(body *b, int n, const int node[8]) {
     for (int k = 0; k < LAR_LAW_PARAMETERS; k++)
         *lar_block_parameter(&general->head, &b->more[n / LAR_BLOCK], k, lane) =
             material.parameter[k] * (lar_law_scales(material.law, k) ? scale * element.volume : 1);
-    for (int a = 0; a < 8; a++) general->head.node[a][lane] = 4 * node[a];
+    for (int a = 0; a < 8; a++) general->head.node[a][lane] = node[a];
     box->head = general->head;
 }
 
@@ -122,12 +123,12 @@ static void make_body(body *b, uint64_t *seed, int turn, lar_law law, lar_block_
                 for (int k = 0; k < 4; k++) before[k] = line[k] - length;
                 for (int a = 0; a < 8; a++) node[a] = row_node(before, p, a);
                 int n = first - length + p;
-                fill_lane(b, n - n % 8 + LAR_ROW_LANES[n % 8], node);
+                fill_lane(b, n, node);
             }
         for (int p = 0; p < length; p++) {
             int node[8], n = first + p;
             for (int a = 0; a < 8; a++) node[a] = row_node(line, p, a);
-            fill_lane(b, n - n % 8 + LAR_ROW_LANES[n % 8], node);
+            fill_lane(b, n, node);
         }
         assert_true(next < SPARE);
     }
@@ -135,14 +136,14 @@ static void make_body(body *b, uint64_t *seed, int turn, lar_law law, lar_block_
 }
 
 /* The first lane of those that the kernel names, or -1. */
-static int64_t recover_run(int k, const lar_block_run *run, const double *u, int64_t *force,
-                           const lar_hex8_limits *limits, bool monitor) {
+static int64_t recover_run(int k, const lar_block_run *run, const double (*u)[4],
+                           int64_t (*force)[4], const lar_hex8_limits *limits, bool monitor) {
     static int32_t lane[MAX * LAR_BLOCK];
     static double limit[MAX * LAR_BLOCK] __attribute__((aligned(64)));
     for (int i = 0; i < MAX * LAR_BLOCK; i++) limit[i] = INFINITY;
     static float strain[MAX * LAR_BLOCK][LAR_STRAIN_NUMBERS];
     lar_hex8_monitor listed = {.limit = limit, .lane = lane, .strain = strain};
-    int64_t found = kernels[k]->recover(run, u, force, limits, monitor ? &listed : NULL);
+    int64_t found = test_recover(kernels[k], run, ROOM, u, force, limits, monitor ? &listed : NULL);
     return found < 0 ? -1 : (found >> 8) * LAR_BLOCK + __builtin_ctz((unsigned)(found & 0xff));
 }
 
@@ -156,7 +157,7 @@ static int64_t recover(const body *b, int k, bool boxes, lar_block_rows joined, 
                          .blocks = boxes ? (const void *)b->box : b->general,
                          .more = lar_law_has_more(b->law) ? b->more : NULL};
     memset(f, 0, sizeof *f);
-    return recover_run(k, &run, &b->u[0][0], &f->at[0][0], limits, monitor);
+    return recover_run(k, &run, (const double(*)[4])b->u, f->at, limits, monitor);
 }
 
 static const lar_hex8_limits no_limits = {-INFINITY, INFINITY, INFINITY};
@@ -201,7 +202,7 @@ static void every_kind_gives_the_same_bits(void **state) {
 static int64_t beyond(body *b, int k, bool boxes, int n, const double u[3], bool monitor,
                       const lar_hex8_limits *limits) {
     static forces f, loose;
-    double *at = b->u[b->general[n / 8].head.node[6][n % 8] / 4];
+    double *at = b->u[b->general[n / 8].head.node[6][n % 8]];
     memcpy(at, u, 3 * sizeof *u);
     int64_t lane = recover(b, k, boxes, b->rows, MAX, limits, monitor, &f);
     assert_true(lane == recover(b, 0, false, LAR_ROWS_NONE, MAX, limits, monitor, &loose));
@@ -260,7 +261,7 @@ static void no_other_node_is_touched(void **state) {
             make_body(&b, &seed, joined % 2, LAR_LAW_neo_hookean, (lar_block_rows)joined);
             memset(used, 0, sizeof used);
             for (int n = 0; n < LANES; n++)
-                for (int a = 0; a < 8; a++) used[b.general[n / 8].head.node[a][n % 8] / 4] = true;
+                for (int a = 0; a < 8; a++) used[b.general[n / 8].head.node[a][n % 8]] = true;
             for (int p = 0; p < ROOM; p++)
                 for (int i = 0; i < 4; i++) f.at[p][i] = (int64_t)random_bits(&seed) >> 8;
             before = f;
@@ -270,7 +271,7 @@ static void no_other_node_is_touched(void **state) {
                                  .turn = b.turn,
                                  .count = MAX,
                                  .blocks = b.box};
-            recover_run(k, &run, &b.u[0][0], &f.at[0][0], &no_limits, true);
+            recover_run(k, &run, (const double(*)[4])b.u, f.at, &no_limits, true);
             int spared = 0;
             for (int p = 0; p < ROOM; p++) {
                 assert_true(f.at[p][3] == before.at[p][3]);

@@ -18,8 +18,11 @@
 #include "mechanics/hex8_block.h"
 
 enum { LONG = 8, EDGE = 4, ELEMENTS = LONG * EDGE * EDGE, STEPS = 100 };
-enum { NODES = (LONG + 1) * (EDGE + 1) * (EDGE + 1) + 1, BLOCKS = ELEMENTS / LAR_BLOCK };
-_Static_assert(NODES % 2 == 0 && (int)LONG == (int)LAR_BLOCK, "whole pairs and rows");
+enum {
+    NODES = ((LONG + 1) * (EDGE + 1) * (EDGE + 1) / LAR_NODES_TOGETHER + 1) * LAR_NODES_TOGETHER
+};
+enum { BLOCKS = ELEMENTS / LAR_BLOCK };
+_Static_assert((int)LONG == (int)LAR_BLOCK, "whole rows");
 
 static const double SIDE = 0.01, DENSITY = 1000.0, DT = 5e-5, SCALE = 0x1p40;
 
@@ -44,10 +47,10 @@ typedef struct world {
     lar_fibre_block fibres[BLOCKS];
     lar_fibre_block second[BLOCKS];
     double position[NODES][3];
-    double u[NODES][4] __attribute__((aligned(64)));
-    double v[NODES][4] __attribute__((aligned(64)));
-    int64_t force[NODES][4] __attribute__((aligned(64)));
-    double mass[NODES], push[NODES];
+    double u[3][NODES] __attribute__((aligned(64)));
+    double v[3][NODES] __attribute__((aligned(64)));
+    int64_t force[3][NODES] __attribute__((aligned(64)));
+    double mass[NODES] __attribute__((aligned(64))), push[NODES] __attribute__((aligned(64)));
 } world;
 
 static uint32_t chance_state;
@@ -72,7 +75,7 @@ static void place_nodes(world *w, int turn) {
                     int axis = turn < 0 ? m : (m + turn) % 3;
                     double crooked = turn < 0 ? 0.15 * chance() : 0;
                     w->position[n][axis] = SIDE * (at[m] + crooked);
-                    w->v[n][axis] = 0.5 * chance();
+                    w->v[axis][n] = 0.5 * chance();
                 }
             }
 }
@@ -82,12 +85,12 @@ static void pack_element(world *w, int e, int turn, const lar_material *material
     const int at[3] = {e % LONG, e / LONG % EDGE, e / LONG / EDGE};
     lar_hex8_block *block = &w->general[e / LAR_BLOCK];
     lar_box_block *box = &w->box[e / LAR_BLOCK];
-    int lane = LAR_ROW_LANES[e % LAR_BLOCK];
+    int lane = e % LAR_BLOCK;
     double corner[8][3];
     for (int a = 0; a < 8; a++) {
         int n = node_at(at[0] + (a % 4 == 1 || a % 4 == 2), at[1] + (a % 4 > 1), at[2] + (a > 3));
         memcpy(corner[a], w->position[n], sizeof corner[a]);
-        block->head.node[a][lane] = 4 * n;
+        block->head.node[a][lane] = n;
         w->mass[n] += DENSITY * SIDE * SIDE * SIDE / 8;
     }
     lar_hex8 hex8;
@@ -149,6 +152,7 @@ static bool shake(const lar_kernels *kernels, lar_law law, const lar_fibre *fibr
                                .turn = boxes ? as->turn : 0,
                                .streamed = as->turn == 1,
                                .count = BLOCKS,
+                               .axis_stride = NODES,
                                .blocks = boxes ? (const void *)w->box : w->general,
                                .more = lar_law_has_more(law) ? w->more : NULL,
                                .fibrous = lar_fibre_kind(fibre),
@@ -167,9 +171,9 @@ static bool shake(const lar_kernels *kernels, lar_law law, const lar_fibre *fibr
                              ? kernels->recover_more(&run, NULL, NULL, &w->u[0][0], &w->force[0][0],
                                                      &limits, looks)
                              : kernels->recover(&run, &w->u[0][0], &w->force[0][0], &limits, looks);
-        good = beyond < 0 &&
-               kernels->update(&leapfrog, 0, NODES, &w->u[0][0], &w->v[0][0], &w->force[0][0],
-                               w->push, step % 10 ? NULL : w->mass, &damped, &fastest);
+        good = beyond < 0 && kernels->update(&leapfrog, 0, NODES, NODES, &w->u[0][0], &w->v[0][0],
+                                             &w->force[0][0], w->push, step % 10 ? NULL : w->mass,
+                                             &damped, &fastest);
     }
     *hash = digest(0xcbf29ce484222325u, w->u, sizeof w->u);
     *hash = digest(*hash, w->v, sizeof w->v);

@@ -131,7 +131,8 @@ static void tear(const bench *b) {
         node = n;
     }
     DONE(lar_simulation_gather(simulation, &failure));
-    simulation->state.u[4 * (size_t)simulation->domain.layout.local[node] + 2] -= 1;
+    simulation->state
+        .u[lar_state_at(&simulation->state, simulation->domain.layout.local[node], 2)] -= 1;
     DONE(lar_simulation_take_up(simulation, &failure));
 }
 

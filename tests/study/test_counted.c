@@ -27,7 +27,7 @@ static double next_random(uint64_t *state) {
 typedef struct block {
     lar_material material;
     double corner[8][8][3];
-    double u[NODES][4];
+    double u[3][NODES];
     lar_counted_block numbers;
     lar_hex8_block general;
     lar_box_block boxes;
@@ -45,7 +45,7 @@ static void make_block(int law, bool box, uint64_t seed, block *b) {
             for (int i = 0; i < 3; i++) {
                 double off = box ? 0 : 0.2 * next_random(&seed);
                 b->corner[lane][a][i] = 0.004 * (lar_node_sign[a][i] + off);
-                b->u[8 * lane + a][i] = 0.0005 * next_random(&seed);
+                b->u[i][8 * lane + a] = 0.0005 * next_random(&seed);
             }
         lar_hex8_prepare((const double(*)[3])b->corner[lane], &b->material, &e);
         lar_block_head *const head[2] = {&b->general.head, &b->boxes.head};
@@ -55,7 +55,7 @@ static void make_block(int law, bool box, uint64_t seed, block *b) {
                     b->material.parameter[k] *
                     (lar_law_scales(b->material.law, k) ? e.volume * 0x1p40 : 1);
             for (int m = 0; m < 4; m++) head[h]->stiffness[m][lane] = e.stiffness[m] * 0x1p40;
-            for (int a = 0; a < 8; a++) head[h]->node[a][lane] = 4 * (8 * lane + a);
+            for (int a = 0; a < 8; a++) head[h]->node[a][lane] = 8 * lane + a;
         }
         for (int j = 0; j < 3; j++) {
             for (int m = 0; m < 6; m++) b->general.gradient[m][j][lane] = e.gradient[m][j];
@@ -82,15 +82,16 @@ static void recovering_has_the_same_bits(void **state) {
         for (int box = 0; box < 2; box++)
             for (uint64_t seed = 1; seed < 20; seed++) {
                 block b;
-                int64_t force[NODES][4], expected[NODES][4];
+                int64_t force[3][NODES], expected[3][NODES];
                 lar_operations counts = {0};
                 make_block(law, box, seed, &b);
                 for (int n = 0; n < NODES; n++)
-                    for (int i = 0; i < 4; i++) force[n][i] = expected[n][i] = i < 3 ? n - 30 : 0;
+                    for (int i = 0; i < 3; i++) force[i][n] = expected[i][n] = n - 30;
                 const lar_block_run run = {.law = (lar_law)law,
                                            .shape = box ? LAR_SHAPE_BOX : LAR_SHAPE_GENERAL,
                                            .rows = LAR_ROWS_NONE,
                                            .count = 1,
+                                           .axis_stride = NODES,
                                            .blocks = box ? (void *)&b.boxes : (void *)&b.general,
                                            .more = lar_law_has_more((lar_law)law) ? &b.more : NULL};
                 assert_int_equal(plain->recover(&run, &b.u[0][0], &expected[0][0], &limits, false),
@@ -112,22 +113,22 @@ static void moving_has_the_same_bits(void **state) {
     enum { MOVED = 8 };
     const lar_kernels *plain;
     uint64_t seed = 7;
-    double u[2][MOVED][4] __attribute__((aligned(64))), v[2][MOVED][4] __attribute__((aligned(64)));
+    double u[2][3][MOVED] __attribute__((aligned(64))), v[2][3][MOVED] __attribute__((aligned(64)));
     double push[MOVED] __attribute__((aligned(64))), damped = 0, fastest = 0;
-    int64_t force[2][MOVED][4] __attribute__((aligned(64)));
+    int64_t force[2][3][MOVED] __attribute__((aligned(64)));
     lar_operations counts = {0};
     const lar_leapfrog motion = {.keep = 0.999, .dt = 1e-4, .speed = INFINITY, .push = 1};
     assert_int_equal(lar_kernels_find(LAR_ISA_C, &plain, NULL), LAR_OK);
     for (int n = 0; n < MOVED; n++) {
         push[n] = 1e-12 * (2 + next_random(&seed));
-        for (int i = 0; i < 4; i++) {
-            u[0][n][i] = u[1][n][i] = next_random(&seed);
-            v[0][n][i] = v[1][n][i] = next_random(&seed);
-            force[0][n][i] = force[1][n][i] = (int64_t)(1e15 * next_random(&seed));
+        for (int i = 0; i < 3; i++) {
+            u[0][i][n] = u[1][i][n] = next_random(&seed);
+            v[0][i][n] = v[1][i][n] = next_random(&seed);
+            force[0][i][n] = force[1][i][n] = (int64_t)(1e15 * next_random(&seed));
         }
     }
-    assert_true(plain->update(&motion, 0, MOVED, &u[0][0][0], &v[0][0][0], &force[0][0][0], push,
-                              NULL, &damped, &fastest));
+    assert_true(plain->update(&motion, 0, MOVED, MOVED, &u[0][0][0], &v[0][0][0], &force[0][0][0],
+                              push, NULL, &damped, &fastest));
     lar_counted_update(motion.keep, motion.dt, &u[1][0][0], &v[1][0][0], &force[1][0][0], push,
                        &counts);
     assert_memory_equal(u[0], u[1], sizeof u[0]);
@@ -153,7 +154,7 @@ static void slow_kinds_have_the_same_bits(void **state) {
                 double u[8][3], force[8][3], expected[8][3];
                 lar_operations counts = {0};
                 make_block(law, false, 3, &b);
-                for (int a = 0; a < 8; a++) memcpy(u[a], b.u[8 * lane + a], sizeof u[a]);
+                for (int k = 0; k < 24; k++) u[k / 3][k % 3] = b.u[k % 3][8 * lane + k / 3];
                 const double(*corner)[3] = (const double(*)[3])b.corner[lane];
                 double J = plain[kind](corner, &b.material, (const double(*)[3])u, expected);
                 double counted = counting[kind](law, b.material.parameter, corner,
@@ -199,9 +200,9 @@ static void counts_are_the_documented_ones(void **state) {
         assert_int_equal(lar_operations_all(&o), documented[k]);
     }
     lar_operations node = lar_operations_of_node();
-    assert_int_equal(lar_operations_all(&node), 24);
-    assert_int_equal(node.bytes_loaded, 4 * 3 * 8);
-    assert_int_equal(node.bytes_stored, 4 * 3 * 8);
+    assert_int_equal(lar_operations_all(&node), 18);
+    assert_int_equal(node.bytes_loaded, 3 * 3 * 8 + 8);
+    assert_int_equal(node.bytes_stored, 3 * 3 * 8);
 }
 
 static void bytes_are_those_of_the_blocks(void **state) {
@@ -209,7 +210,7 @@ static void bytes_are_those_of_the_blocks(void **state) {
     assert_int_equal(lar_bytes_of_element(LAR_KERNEL_HEX8, LAR_LAW_neo_hookean).read, 328);
     assert_int_equal(lar_bytes_of_element(LAR_KERNEL_HEX8_BOX, LAR_LAW_neo_hookean).read, 112);
     lar_step_bytes node = lar_bytes_of_node();
-    assert_int_equal(node.read + node.written, 3 * 2 * 32 + 8);
+    assert_int_equal(node.read + node.written, 3 * 2 * 24 + 8);
 }
 
 int main(void) {

@@ -81,7 +81,7 @@ static void single_state_is_float(void **state) {
     assert_int_equal(lar_single_adopt(&simulation->domain, true, &adopted, &error), LAR_OK);
     lar_precision_start(LAR_CASE_TURN, simulation);
     assert_int_equal(lar_simulation_advance(simulation, 50, &error), LAR_OK);
-    for (int32_t k = 0; k < 4 * simulation->state.node_count; k++) {
+    for (size_t k = 0; k < 3 * simulation->state.stride; k++) {
         assert_true(simulation->state.u[k] == (float)simulation->state.u[k]);
         assert_true(simulation->state.v[k] == (float)simulation->state.v[k]);
     }

@@ -242,14 +242,15 @@ void run_to_rest(lar_simulation *simulation, double share, double longest) {
 }
 
 double displacement(const lar_simulation *simulation, int32_t node, int axis) {
-    return simulation->state.u[4 * simulation->domain.layout.local[node] + axis];
+    return simulation->state
+        .u[lar_state_at(&simulation->state, simulation->domain.layout.local[node], axis)];
 }
 
 void set_displacements(lar_simulation *simulation, double (*u)[3]) {
     lar_state *state = &simulation->state;
     for (int32_t g = 0; g < simulation->domain.model->mesh.node_count; g++)
         for (int i = 0; i < 3; i++) {
-            int32_t value = 4 * simulation->domain.layout.local[g] + i;
+            size_t value = lar_state_at(state, simulation->domain.layout.local[g], i);
             state->u[value] = u[g][i];
             state->v[value] = 0;
         }

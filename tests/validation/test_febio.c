@@ -46,7 +46,8 @@ static double free_norm(const lar_simulation *simulation) {
         for (int i = 0; i < 3; i++)
             square += displacement(simulation, g, i) * displacement(simulation, g, i);
     for (int32_t i = 0; i < domain->surroundings.conditions.constraint_count; i++) {
-        double u = simulation->state.u[domain->surroundings.conditions.constraint[i].value];
+        double u = simulation->state.u[lar_constraint_at(
+            &simulation->state, &domain->surroundings.conditions.constraint[i])];
         square -= u * u;
     }
     return sqrt(square);

@@ -183,13 +183,14 @@ bool lar_heavier_good(const lar_domain *whole, const lar_heavy_list *list) {
  * changes by as much as is returned [J], where this domain accounts for the node. */
 static double weigh(lar_domain *domain, lar_lid n, double mass, const lar_state *state) {
     const lar_burden *burden = domain->burden;
-    const double *v = state ? state->v + 4 * (size_t)n : NULL;
+    double v[3] = {0};
+    if (state) lar_state_velocity(state, n, v);
     double change = domain->weight[n] > 0 ? mass - domain->mass[n] : 0;
     domain->mass[n] = mass;
     if (domain->weight[n] > 0) domain->weight[n] = mass;
     domain->added[n] = (burden->added ? burden->added[n] : 0) + (mass - burden->mass[n]);
     domain->push[n] = lar_domain_push_of(domain, mass);
-    return v ? 0.5 * change * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) : 0;
+    return 0.5 * change * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 }
 
 /* Adds up what a node of several heavier elements has more, in the order of the elements, which is

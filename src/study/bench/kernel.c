@@ -142,8 +142,9 @@ static void set_in_motion(lar_simulation *simulation) {
         lar_lid n = domain->layout.local[g];
         for (int i = 0; i < 3; i++) {
             double phase = acos(-1) * place[(i + 1) % 3] / (end[(i + 1) % 3] + SIDE);
-            simulation->state.u[4 * n + i] = 0.01 * SIDE * cos(phase);
-            simulation->state.v[4 * n + i] = 0.1 * SIDE * sin(phase);
+            size_t at = lar_state_at(&simulation->state, n, i);
+            simulation->state.u[at] = 0.01 * SIDE * cos(phase);
+            simulation->state.v[at] = 0.1 * SIDE * sin(phase);
         }
     }
 }

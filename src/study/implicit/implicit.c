@@ -98,7 +98,7 @@ static void prepare_elements(lar_implicit *m) {
 }
 
 static int32_t row_of(const lar_constraint *constraint) {
-    return 3 * (constraint->value / 4) + constraint->value % 4;
+    return 3 * constraint->node + constraint->axis;
 }
 
 static void set_targets(lar_implicit *m, double time) {
@@ -143,16 +143,16 @@ static lar_status external(lar_implicit *m, const double *u, double time, double
     lar_condition_context context = {.model = m->model, .scale = m->scale};
     double gravity[3];
     lar_gravity_at(m->model, NULL, time, gravity);
-    memset(m->state.force, 0, 4 * (size_t)m->state.node_count * sizeof *m->state.force);
-    for (int32_t r = 0; r < m->rows; r++) m->state.u[4 * (r / 3) + r % 3] = u[r];
+    memset(m->state.force, 0, 3 * m->state.stride * sizeof *m->state.force);
+    for (int32_t r = 0; r < m->rows; r++) m->state.u[lar_state_at(&m->state, r / 3, r % 3)] = u[r];
     int32_t beyond = lar_conditions_load(&m->conditions, &context, time, &m->notes, &m->state);
     if (beyond >= 0)
         return lar_fail(error, LAR_ERROR_UNSTABLE,
                         "the load on node %lld is too large at %g s; check its unit",
                         (long long)m->model->mesh.node_id[beyond], time);
     for (int32_t r = 0; r < m->rows; r++)
-        out[r] =
-            m->mass[r] * gravity[r % 3] - (double)m->state.force[4 * (r / 3) + r % 3] / m->scale;
+        out[r] = m->mass[r] * gravity[r % 3] -
+                 (double)m->state.force[lar_state_at(&m->state, r / 3, r % 3)] / m->scale;
     return LAR_OK;
 }
 
@@ -367,7 +367,7 @@ lar_status lar_implicit_create(const lar_model *model, const lar_implicit_option
     if (!status) status = lar_conditions_create(model, m->local, NULL, &m->conditions, error);
     if (!status) status = lar_condition_notes_create(&m->conditions, &m->notes, error);
     if (!status)
-        status = lar_state_create(&m->state, (model->mesh.node_count + 1) / 2 * 2, 0, error);
+        status = lar_state_create(&m->state, lar_whole_lanes(model->mesh.node_count), 0, error);
     if (!status) {
         prepare_elements(m);
         start_motion(m);

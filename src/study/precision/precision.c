@@ -59,9 +59,9 @@ static void compare(const lar_simulation *a, const lar_simulation *b, double off
     *size = *difference = 0;
     for (lar_lid n = 0; n < domain->layout.node_padded; n++)
         for (int i = 0; i < 3 && domain->layout.global[n] >= 0; i++) {
-            double u = a->state.u[4 * n + i];
+            double u = a->state.u[lar_state_at(&a->state, n, i)];
             *size = fmax(*size, fabs(u - offset));
-            *difference = fmax(*difference, fabs(u - b->state.u[4 * n + i]));
+            *difference = fmax(*difference, fabs(u - b->state.u[lar_state_at(&b->state, n, i)]));
         }
 }
 
@@ -69,7 +69,7 @@ static double fastest(const lar_simulation *s) {
     double max = 0;
     for (lar_lid n = 0; n < s->domain.layout.node_padded; n++)
         for (int i = 0; i < 3 && s->domain.layout.global[n] >= 0; i++)
-            max = fmax(max, fabs(s->state.v[4 * n + i]));
+            max = fmax(max, fabs(s->state.v[lar_state_at(&s->state, n, i)]));
     return max;
 }
 

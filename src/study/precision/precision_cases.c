@@ -90,8 +90,10 @@ void lar_precision_start(lar_precision_case what, lar_simulation *simulation) {
     const double away = lar_precision_offset(what);
     for (lar_gid g = 0; g < mesh->node_count; g++) {
         const double *place = mesh->position[g];
-        double *u = simulation->state.u + 4 * domain->layout.local[g];
-        double *v = simulation->state.v + 4 * domain->layout.local[g];
+        lar_state *state = &simulation->state;
+        double u[3], v[3];
+        lar_state_displacement(state, domain->layout.local[g], u);
+        lar_state_velocity(state, domain->layout.local[g], v);
         if (away > 0)
             for (int i = 0; i < 3; i++) u[i] = away;
         if (what == LAR_CASE_VIBRATION) {
@@ -103,5 +105,7 @@ void lar_precision_start(lar_precision_case what, lar_simulation *simulation) {
             v[1] = DRIFT + TURN * (place[0] - 0.5 * end[0]);
             v[2] = DRIFT;
         }
+        lar_axes_put(state->u, state->stride, domain->layout.local[g], u);
+        lar_axes_put(state->v, state->stride, domain->layout.local[g], v);
     }
 }

@@ -102,6 +102,7 @@ static void recover_single(const lar_single_kernels *kernels, const lar_block_ru
                                  .rows = (int)run->rows,
                                  .turn = run->turn,
                                  .count = (run->count + 1) / 2,
+                                 .axis_stride = run->axis_stride,
                                  .blocks = run->blocks,
                                  .more = (const lar_single_more *)(const void *)run->more};
     kernels->recover(&made, u, force);
@@ -123,22 +124,23 @@ DEFINE_RECOVER(avx5121)
 
 /* lar_node_update where the state is float: every number is rounded to one, and the doubles of the
  * arrays only carry them. */
-static bool update_single(const lar_leapfrog *leapfrog, int32_t first, int32_t end, double *u,
-                          double *v, int64_t *force, const double *push, const double *mass,
-                          double *damped, double *fastest) {
+static bool update_single(const lar_leapfrog *leapfrog, int32_t first, int32_t end, size_t stride,
+                          double *u, double *v, int64_t *force, const double *push,
+                          const double *mass, double *damped, double *fastest) {
     const float keep = (float)leapfrog->keep, dt = (float)leapfrog->dt;
     float max = 0;
     bool fits = true;
-    for (int64_t k = 4 * (int64_t)first; k < 4 * (int64_t)end; k++) {
-        const float before = (float)v[k], drift = (float)leapfrog->drift[k % 4];
-        const float after = fmaf(-(float)force[k], (float)push[k / 4], fmaf(keep, before, drift));
+    for (int64_t value = 3 * (int64_t)first; value < 3 * (int64_t)end; value++) {
+        const size_t n = (size_t)(value / 3), k = n + (size_t)(value % 3) * stride;
+        const float before = (float)v[k], drift = (float)leapfrog->drift[value % 3];
+        const float after = fmaf(-(float)force[k], (float)push[n], fmaf(keep, before, drift));
         v[k] = after;
         u[k] = fmaf(dt, after, (float)u[k]);
         force[k] = 0;
         fits = fits && fabsf(after) < leapfrog->speed;
         max = fmaxf(max, fabsf(after));
         const double twice = (double)before + after;
-        if (mass) *damped += mass[k / 4] * twice * twice;
+        if (mass) *damped += mass[n] * twice * twice;
     }
     if (max > *fastest) *fastest = max;
     return fits;

@@ -13,6 +13,7 @@
 #define LAR_STUDY_PRECISION_SINGLE_H
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 enum { LAR_SINGLE_BLOCK = 16 };
@@ -43,6 +44,7 @@ typedef struct lar_single_more {
 typedef struct lar_single_run {
     int law, shape, rows, turn;
     int32_t count;
+    size_t axis_stride;
     const void *blocks;
     const lar_single_more *more; /* NULL when the law has no more parameters */
 } lar_single_run;
@@ -50,7 +52,7 @@ typedef struct lar_single_run {
 typedef struct lar_single_kernels {
     const char *name; /* as in LARIAT_ISA */
     int lanes;
-    /* Adds the forces for `u` to `force`, both [nodes][4] and aligned to 64 bytes; `u` is rounded
+    /* Adds the forces for `u` to `force`, both [3][axis_stride]; `u` is rounded
      * on the way where the state is single. Nothing is watched. */
     void (*recover)(const lar_single_run *run, const double *u, int64_t *force);
 } lar_single_kernels;

@@ -154,52 +154,51 @@ LAR_INLINE void relate(lar_lane at[HALVES][3], lar_lane origin[HALVES][3], singl
     }
 }
 
-LAR_INLINE void single_gather(const float *nodes, const int32_t *first, const int32_t *offset,
-                              single_lane out[3]) {
+LAR_INLINE void single_gather(const float *nodes, size_t stride, const int32_t *first,
+                              const int32_t *node, single_lane out[3]) {
     const double *u = (const double *)(const void *)nodes;
     lar_lane at[HALVES][3], origin[HALVES][3];
     for (int h = 0; h < HALVES; h++) {
-        lar_lane_gather(u, first + h * LAR_LANES, origin[h]);
-        lar_lane_gather(u, offset + h * LAR_LANES, at[h]);
+        lar_lane_gather(u, stride, first + h * LAR_LANES, origin[h]);
+        lar_lane_gather(u, stride, node + h * LAR_LANES, at[h]);
     }
     relate(at, origin, out);
 }
 
-LAR_INLINE void single_gather_row(const float *nodes, const int32_t *first, const int32_t *second,
-                                  const int32_t *a, const int32_t *b, bool half,
-                                  single_lane left[3], single_lane right[3]) {
+LAR_INLINE void single_gather_row(const float *nodes, size_t stride, const int32_t *first,
+                                  const int32_t *node, bool half, single_lane out[3]) {
     const double *u = (const double *)(const void *)nodes;
-    lar_lane l[HALVES][3], r[HALVES][3], origin[HALVES][3], unused[3];
+    lar_lane at[HALVES][3], origin[HALVES][3];
     for (int h = 0; h < HALVES; h++) {
-        const int at = h * LAR_LANES;
-        lar_lane_gather_row(u, first + at, second + at, half, origin[h], unused);
-        lar_lane_gather_row(u, a + at, b + at, half, l[h], r[h]);
+        lar_lane_gather_row(u, stride, first + h * LAR_LANES, half, origin[h]);
+        lar_lane_gather_row(u, stride, node + h * LAR_LANES, half, at[h]);
     }
-    relate(l, origin, left);
-    relate(r, origin, right);
+    relate(at, origin, out);
 }
 
-LAR_INLINE void single_scatter(int64_t *nodes, const int32_t *offset, const single_ilane add[3]) {
+LAR_INLINE void single_scatter(int64_t *nodes, size_t stride, const int32_t *node,
+                               const single_ilane add[3]) {
     single_halves from[3];
     for (int i = 0; i < 3; i++) from[i].whole = add[i];
     for (int h = 0; h < HALVES; h++) {
         const lar_ilane part[3] = {from[0].half[h], from[1].half[h], from[2].half[h]};
-        lar_ilane_scatter_add(nodes, offset + h * LAR_LANES, part);
+        lar_ilane_scatter_add(nodes, stride, node + h * LAR_LANES, part);
     }
 }
 
-LAR_INLINE void single_scatter_row(int64_t *nodes, const int32_t *a, const int32_t *b, bool half,
-                                   const single_ilane left[3], const single_ilane right[3]) {
+LAR_INLINE void single_scatter_row(int64_t *nodes, size_t stride, const int32_t *left_node,
+                                   const int32_t *right_node, bool half, const single_ilane left[3],
+                                   const single_ilane right[3]) {
     single_halves l[3], r[3];
     for (int i = 0; i < 3; i++) {
         l[i].whole = left[i];
         r[i].whole = right[i];
     }
     for (int h = 0; h < HALVES; h++) {
-        const int at = h * LAR_LANES;
         const lar_ilane l_part[3] = {l[0].half[h], l[1].half[h], l[2].half[h]};
         const lar_ilane r_part[3] = {r[0].half[h], r[1].half[h], r[2].half[h]};
-        lar_ilane_scatter_row(nodes, a + at, b + at, half, l_part, r_part);
+        lar_ilane_scatter_row(nodes, stride, left_node + h * LAR_LANES, right_node + h * LAR_LANES,
+                              half, l_part, r_part);
     }
 }
 
@@ -271,6 +270,7 @@ LAR_INLINE single_lane lar_lane_sign(single_lane x) {
 #define lar_ilane             single_ilane
 #define lar_lane_load         single_load
 #define lar_lane_load_once    single_load_once
+#define lar_lane_load_row     single_load
 #define lar_lane_store        single_store
 #define lar_lane_set          single_set
 #define lar_lane_fma          single_fma
@@ -281,17 +281,19 @@ LAR_INLINE single_lane lar_lane_sign(single_lane x) {
 #define lar_ilane_scatter_add single_scatter
 #define lar_ilane_scatter_row single_scatter_row
 /* Where the kernel gathers, `head` is the block and `lane` its first lane. */
-#define lar_lane_gather(u, offset, out) single_gather(u, head->node[0] + lane, offset, out)
-#define lar_lane_gather_row(u, a, b, half, left, right)                                            \
-    single_gather_row(u, head->node[0] + lane, head->node[1] + lane, a, b, half, left, right)
+#define lar_lane_gather(u, stride, local, out)                                                     \
+    single_gather(u, stride, head->node[0] + lane, local, out)
+#define lar_lane_gather_row(u, stride, local, half, out)                                           \
+    single_gather_row(u, stride, head->node[0] + lane, local, half, out)
+/* What is relative to an element's first node is made in one place. */
+#define LANES_LIE_IN_ROWS(rows) ((void)(rows), false)
+#define LANES_KNOW_FOURS        0
 /* Watching and moving are left to others: what they need does nothing. */
 #define lar_lane_not_greater(a, b) ((void)(a), (void)(b), 0U)
 #define lar_lane_abs(a)            (a)
 #define lar_ilane_to_lane(a)       ((void)(a), single_set(0))
 #define lar_ilane_load(p)          ((void)(p), (single_ilane){0})
 #define lar_ilane_store(p, a)      ((void)(p), (void)(a))
-#define lar_lane_per_node(p, k)    ((void)(p), (void)(k), single_set(0))
-#define lar_lane_repeat4(p, k)     ((void)(p), (void)(k), single_set(0))
 
 #define double float
 #include "mechanics/hex8.h"
@@ -317,6 +319,7 @@ typedef struct lar_block_run {
     int turn;
     bool streamed;
     int32_t count;
+    size_t axis_stride;
     const void *blocks;
     const lar_block_more *more;
     const float *rest;
@@ -333,7 +336,7 @@ typedef struct lar_hex8_monitor {
     float (*strain)[LAR_STRAIN_NUMBERS];
 } lar_hex8_monitor;
 typedef struct lar_leapfrog {
-    float keep, dt, speed, drift[4], push;
+    float keep, dt, speed, drift[3], push;
 } lar_leapfrog;
 typedef struct lar_kernels {
     const char *name;
@@ -341,9 +344,9 @@ typedef struct lar_kernels {
     int64_t (*recover)(const lar_block_run *run, const float *u, int64_t *force,
                        const lar_hex8_limits *limits, lar_hex8_monitor *monitor);
     void (*expand)(const lar_block_run *run, int32_t b, lar_hex8_block *whole);
-    bool (*update)(const lar_leapfrog *leapfrog, int32_t first, int32_t end, float *u, float *v,
-                   int64_t *force, const float *push, const float *mass, float *damped,
-                   float *fastest);
+    bool (*update)(const lar_leapfrog *leapfrog, int32_t first, int32_t end, size_t stride,
+                   float *u, float *v, int64_t *force, const float *push, const float *mass,
+                   float *damped, float *fastest);
 } lar_kernels;
 static inline size_t lar_block_size(lar_block_shape shape) {
     return shape == LAR_SHAPE_BOX ? sizeof(lar_box_block) : sizeof(lar_hex8_block);
@@ -375,6 +378,7 @@ static void recover_run(const lar_single_run *run, const double *u, int64_t *for
                                 .rows = (lar_block_rows)run->rows,
                                 .turn = run->turn,
                                 .count = run->count,
+                                .axis_stride = run->axis_stride,
                                 .blocks = run->blocks,
                                 .more = run->more};
     LAR_KERNELS_NAME.recover(&made, (const float *)(const void *)u, force, &none, NULL);

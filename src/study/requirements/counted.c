@@ -164,33 +164,31 @@ LAR_INLINE void counted_store(lar_lane *p, lar_lane a) {
     tally.bytes_stored += (int64_t)sizeof(plain);
     *p = a;
 }
-LAR_INLINE void counted_gather(const lar_lane *nodes, const int32_t *offset, lar_lane out[3]) {
+/* One lane is a row of its own: its nodes are loaded one by one, x first. */
+LAR_INLINE lar_lane counted_load_row(const lar_lane *p) {
     integers = false;
-    tally.bytes_loaded += (int64_t)(sizeof *offset + 3 * sizeof(plain));
-    for (int i = 0; i < 3; i++) out[i] = nodes[*offset + i];
-}
-LAR_INLINE void counted_gather_row(const lar_lane *nodes, const int32_t *a, const int32_t *b,
-                                   bool half, lar_lane left[3], lar_lane right[3]) {
-    (void)half;
-    counted_gather(nodes, a, left);
-    counted_gather(nodes, b, right);
+    return counted_load(p);
 }
 LAR_INLINE counted counted_round(lar_lane a) {
     integers = true;
     tally.conversions++;
     return llrint((plain)a);
 }
-LAR_INLINE void counted_scatter(int64_t *nodes, const int32_t *offset, const counted add[3]) {
-    tally.bytes_loaded += (int64_t)(sizeof *offset + 3 * sizeof *nodes);
+LAR_INLINE void counted_scatter(int64_t *nodes, size_t stride, const int32_t *node,
+                                const counted add[3]) {
+    tally.bytes_loaded += (int64_t)(sizeof *node + 3 * sizeof *nodes);
     tally.bytes_stored += (int64_t)(3 * sizeof *nodes);
-    for (int i = 0; i < 3; i++)
-        nodes[*offset + i] = (int64_t)((counted)nodes[*offset + i] + add[i]);
+    for (int i = 0; i < 3; i++) {
+        int64_t *sum = nodes + (size_t)*node + (size_t)i * stride;
+        *sum = (int64_t)((counted)*sum + add[i]);
+    }
 }
-LAR_INLINE void counted_scatter_row(int64_t *nodes, const int32_t *a, const int32_t *b, bool half,
-                                    const counted left[3], const counted right[3]) {
+LAR_INLINE void counted_scatter_row(int64_t *nodes, size_t stride, const int32_t *left_node,
+                                    const int32_t *right_node, bool half, const counted left[3],
+                                    const counted right[3]) {
     (void)half;
-    counted_scatter(nodes, a, left);
-    counted_scatter(nodes, b, right);
+    counted_scatter(nodes, stride, left_node, left);
+    counted_scatter(nodes, stride, right_node, right);
 }
 LAR_INLINE counted counted_load_force(const int64_t *p) {
     tally.bytes_loaded += (int64_t)sizeof *p;
@@ -207,8 +205,7 @@ LAR_INLINE lar_lane counted_to_lane(counted a) {
 #define lar_lane_load         counted_load
 #define lar_lane_load_once    counted_load
 #define lar_lane_store        counted_store
-#define lar_lane_gather       counted_gather
-#define lar_lane_gather_row   counted_gather_row
+#define lar_lane_load_row     counted_load_row
 #define lar_lane_round        counted_round
 #define lar_ilane             counted
 #define lar_ilane_scatter_add counted_scatter
@@ -266,12 +263,12 @@ static void fill_head(const lar_counted_block *from, lar_block_head *to) {
 void lar_counted_recover(int law, bool box, const lar_counted_block *block, const double *u,
                          int32_t nodes, int64_t *force, lar_operations *counts) {
     enum { NODES_MAX = 64 };
-    counted displacement[4 * NODES_MAX];
+    counted displacement[3 * NODES_MAX];
     lar_hex8_block general;
     lar_box_block boxes;
     lar_block_more more;
     if (nodes > NODES_MAX) return;
-    widen(u, 4 * (size_t)nodes, displacement);
+    widen(u, 3 * (size_t)nodes, displacement);
     fill_head(block, box ? &boxes.head : &general.head);
     widen(block->modulus[LAR_BLOCK_PARAMETERS], LAR_MORE_PARAMETERS * LAR_BLOCK, more.modulus[0]);
     if (box) {
@@ -284,6 +281,7 @@ void lar_counted_recover(int law, bool box, const lar_counted_block *block, cons
                                .shape = box ? LAR_SHAPE_BOX : LAR_SHAPE_GENERAL,
                                .rows = LAR_ROWS_NONE,
                                .count = 1,
+                               .axis_stride = (size_t)nodes,
                                .blocks = box ? (const void *)&boxes : (const void *)&general,
                                .more = lar_law_has_more((lar_law)law) ? &more : NULL};
     const lar_hex8_limits limits = {1e-3, INFINITY, INFINITY};
@@ -295,17 +293,17 @@ void lar_counted_recover(int law, bool box, const lar_counted_block *block, cons
 void lar_counted_update(double keep, double dt, double *u, double *v, int64_t *force,
                         const double *push, lar_operations *counts) {
     enum { NODES = 8 };
-    counted wide_u[4 * NODES], wide_v[4 * NODES], wide_push[NODES], fastest = 0;
+    counted wide_u[3 * NODES], wide_v[3 * NODES], wide_push[NODES], fastest = 0;
     const lar_leapfrog motion = {.keep = keep, .dt = dt, .speed = INFINITY, .push = 1};
-    widen(u, 4 * NODES, wide_u);
-    widen(v, 4 * NODES, wide_v);
+    widen(u, 3 * NODES, wide_u);
+    widen(v, 3 * NODES, wide_v);
     widen(push, NODES, wide_push);
     begin();
-    counted_kernels.update(&motion, 0, NODES, wide_u, wide_v, force, wide_push, NULL, NULL,
+    counted_kernels.update(&motion, 0, NODES, NODES, wide_u, wide_v, force, wide_push, NULL, NULL,
                            &fastest);
     end(counts);
-    narrow(wide_u, 4 * NODES, u);
-    narrow(wide_v, 4 * NODES, v);
+    narrow(wide_u, 3 * NODES, u);
+    narrow(wide_v, 3 * NODES, v);
 }
 
 typedef counted element_force(const counted corner[8][3], const lar_material *material,

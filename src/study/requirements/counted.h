@@ -38,15 +38,15 @@ typedef struct lar_counted_block {
     double modulus[7][8], stiffness[4][8];
     double gradient[6][3][8]; /* of a box: [m][0] along its own axis, m < 3 */
     double shape[4][3][8];
-    int32_t node[8][8]; /* 4 times the index */
+    int32_t node[8][8];
 } lar_counted_block;
 
-/* Recovers a block (law: lar_law) from u[][4], adds to force[][4], adds to *counts what all eight
- * elements need. */
+/* Recovers a block (law: lar_law) from u[3][nodes], adds to force[3][nodes], adds to *counts what
+ * all eight elements need. */
 void lar_counted_recover(int law, bool box, const lar_counted_block *block, const double *u,
                          int32_t nodes, int64_t *force, lar_operations *counts);
 
-/* Moves eight nodes by one step: u, v, force [8][4], push [8]. */
+/* Moves eight nodes by one step: u, v, force [3][8], push [8]. */
 void lar_counted_update(double keep, double dt, double *u, double *v, int64_t *force,
                         const double *push, lar_operations *counts);
 

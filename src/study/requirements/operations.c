@@ -31,8 +31,8 @@ static lar_operations count_block(const sample *s, bool box) {
     enum { NODES = 8 * LAR_BLOCK };
     lar_counted_block block;
     lar_hex8 element;
-    double u[NODES][4] = {{0}};
-    int64_t force[NODES][4] = {{0}};
+    double u[3][NODES] = {{0}};
+    int64_t force[3][NODES] = {{0}};
     lar_operations counts = {0};
     memset(&block, 0, sizeof block);
     lar_hex8_prepare(s->corner, &s->material, &element);
@@ -49,8 +49,8 @@ static lar_operations count_block(const sample *s, bool box) {
         for (int m = 0; m < LAR_HEX8_HOURGLASS; m++)
             for (int j = 0; j < 3; j++) block.shape[m][j][lane] = element.shape[m][j];
         for (int a = 0; a < 8; a++) {
-            block.node[a][lane] = 4 * (8 * lane + a);
-            for (int i = 0; i < 3; i++) u[8 * lane + a][i] = s->u[a][i];
+            block.node[a][lane] = 8 * lane + a;
+            for (int i = 0; i < 3; i++) u[i][8 * lane + a] = s->u[a][i];
         }
     }
     lar_counted_recover((int)s->material.law, box, &block, &u[0][0], NODES, &force[0][0], &counts);
@@ -83,8 +83,8 @@ lar_operations lar_operations_of_element(lar_kernel_kind kind, int law) {
 }
 
 lar_operations lar_operations_of_node(void) {
-    double u[8][4] = {{0}}, v[8][4] = {{0}}, push[8] = {0};
-    int64_t force[8][4] = {{0}};
+    double u[3][8] = {{0}}, v[3][8] = {{0}}, push[8] = {0};
+    int64_t force[3][8] = {{0}};
     lar_operations counts = {0};
     lar_counted_update(1, 1e-4, &u[0][0], &v[0][0], &force[0][0], push, &counts);
     counts.bytes_stored -= (int64_t)sizeof(double); /* the greatest speed, once per call */
@@ -106,7 +106,7 @@ lar_step_bytes lar_bytes_of_element(lar_kernel_kind kind, int law) {
 }
 
 lar_step_bytes lar_bytes_of_node(void) {
-    const int64_t node = 4 * (int64_t)sizeof(double);
+    const int64_t node = 3 * (int64_t)sizeof(double);
     /* u, v and f are read and written; push is read. */
     return (lar_step_bytes){3 * node + (int64_t)sizeof(double), 3 * node};
 }
