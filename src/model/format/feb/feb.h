@@ -1,4 +1,4 @@
-/* FEBio decks (.feb, format versions 3.0 and 4.0): what the parts of the reader share.
+/* FEBio decks (.feb, format versions 2.5, 3.0 and 4.0): what the parts of the reader share.
  *
  *     bytes --libxml2--> tree --feb_mesh--> lar_mesh          lar_feb_parse_mesh stops here
  *                         |---feb_material, feb_curve, feb_conditions--> lar_model
@@ -61,6 +61,9 @@ typedef struct lar_feb {
  * before and cleared by lar_feb_clear, also after a failure. */
 lar_status lar_feb_open(lar_feb *feb, const char *path, const lar_bytes *bytes, lar_error *error);
 void lar_feb_clear(lar_feb *feb);
+
+/* old.c: a tree of version 2.5 in the words of 4.0. */
+lar_status lar_feb_renew(lar_feb *feb);
 
 /* A failure and a notice that begin with FILE:LINE: of an element. */
 lar_status lar_feb_fail(const lar_feb *feb, const xmlNode *at, lar_status status,

@@ -59,9 +59,10 @@ static lar_status check_version(lar_feb *feb) {
     lar_status status = lar_feb_need_attribute(feb, feb->root, "version", &version);
     if (status) return status;
     if (strcmp(version, "3.0") == 0 || strcmp(version, "4.0") == 0) return LAR_OK;
+    if (strcmp(version, "2.5") == 0) return lar_feb_renew(feb);
     return lar_feb_fail(feb, feb->root, LAR_ERROR_UNSUPPORTED,
                         "format version %.20s of FEBio decks is not read; open the model in FEBio "
-                        "Studio and save it as version 3.0 or 4.0",
+                        "Studio and save it as version 4.0",
                         version);
 }
 
