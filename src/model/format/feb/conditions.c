@@ -88,7 +88,7 @@ static lar_status read_axis_list(lar_feb *feb, const xmlNode *dofs, unsigned *ax
 }
 
 static lar_status read_fix(lar_feb *feb, const xmlNode *at) {
-    static const char *const known[] = {"dofs", "x_dof", "y_dof", "z_dof", NULL};
+    static const char known[] = "dofs x_dof y_dof z_dof";
     const xmlNode *dofs = lar_feb_child(at, "dofs");
     unsigned axes;
     lar_status status = dofs ? read_axis_list(feb, dofs, &axes) : read_axis_flags(feb, at, &axes);
@@ -112,7 +112,7 @@ static lar_status read_fix(lar_feb *feb, const xmlNode *at) {
 
 /* Its size stands in <value> in version 4, in <scale> in version 3. */
 static lar_status read_move(lar_feb *feb, const xmlNode *at) {
-    static const char *const known[] = {"dof", "value", "scale", "relative", "shell_bottom", NULL};
+    static const char known[] = "dof value scale relative shell_bottom";
     const xmlNode *dof, *value = lar_feb_child(at, "value");
     int axis = 0, curve = 0;
     double by = 0.0;
@@ -188,7 +188,7 @@ static lar_status read_nodal_force(lar_feb *feb, const xmlNode *at, const char *
 }
 
 static lar_status read_nodal_load(lar_feb *feb, const xmlNode *at) {
-    static const char *const known[] = {"value", "dof", "scale", "relative", "shell_bottom", NULL};
+    static const char known[] = "value dof scale relative shell_bottom";
     const char *type;
     lar_status status = lar_feb_need_attribute(feb, at, "type", &type);
     if (status) return status;
@@ -287,8 +287,7 @@ static lar_status add_pressures(lar_feb *feb, const xmlNode *at, const char *nam
 }
 
 static lar_status read_pressure(lar_feb *feb, const xmlNode *at, const char *surface) {
-    static const char *const known[] = {"pressure", "linear", "symmetric_stiffness", "shell_bottom",
-                                        NULL};
+    static const char known[] = "pressure linear symmetric_stiffness shell_bottom";
     const xmlNode *value;
     int curve = 0;
     double pressure = 0.0;
@@ -357,7 +356,7 @@ static lar_status add_traction(lar_feb *feb, const xmlNode *at, const char *name
 
 /* A dead load per area at rest, `traction` times `scale`: FEBio's with `linear`. */
 static lar_status read_traction(lar_feb *feb, const xmlNode *at, const char *surface) {
-    static const char *const known[] = {"traction", "scale", "linear", "shell_bottom", NULL};
+    static const char known[] = "traction scale linear shell_bottom";
     const xmlNode *value, *scale = lar_feb_child(at, "scale");
     double traction[3], factor = 1;
     int curve = 0;
@@ -440,7 +439,7 @@ static lar_status read_body_values(lar_feb *feb, const xmlNode *at) {
 }
 
 static lar_status read_body_load(lar_feb *feb, const xmlNode *at) {
-    static const char *const known[] = {"x", "y", "z", "force", NULL};
+    static const char known[] = "x y z force";
     const char *type, *part = lar_feb_attribute(feb, at, "elem_set");
     bool whole = true;
     lar_status status = lar_feb_need_attribute(feb, at, "type", &type);
@@ -479,7 +478,7 @@ lar_status lar_feb_read_loads(lar_feb *feb, const xmlNode *section) {
 /* ---- initial --------------------------------------------------------------------------------- */
 
 static lar_status read_ic(lar_feb *feb, const xmlNode *ic) {
-    static const char *const known[] = {"value", NULL};
+    static const char known[] = "value";
     const char *type;
     lar_status status = lar_feb_need_attribute(feb, ic, "type", &type);
     if (status) return status;

@@ -70,9 +70,8 @@ lar_status lar_feb_fail(const lar_feb *feb, const xmlNode *at, lar_status status
                         const char *format, ...) __attribute__((format(printf, 4, 5)));
 lar_status lar_feb_notice(const lar_feb *feb, const xmlNode *at, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
-/* A notice for every child of `parent` whose name is not in `known`, which ends with NULL. */
-lar_status lar_feb_notice_others(const lar_feb *feb, const xmlNode *parent,
-                                 const char *const *known);
+/* A notice for every child of `parent` whose name is not among `known`, with spaces in between. */
+lar_status lar_feb_notice_others(const lar_feb *feb, const xmlNode *parent, const char *known);
 lar_status lar_feb_no_memory(const lar_feb *feb, const char *what);
 int lar_feb_line(const xmlNode *at);
 
@@ -81,6 +80,7 @@ xmlNode *lar_feb_first(const xmlNode *parent);
 xmlNode *lar_feb_next(const xmlNode *element);
 xmlNode *lar_feb_child(const xmlNode *parent, const char *name);
 bool lar_feb_is(const xmlNode *element, const char *name);
+bool lar_feb_is_any(const xmlNode *element, const char *names); /* with spaces in between */
 
 /* Value of an attribute, NULL when it is missing. Lives as long as `feb`. */
 const char *lar_feb_attribute(lar_feb *feb, const xmlNode *element, const char *name);

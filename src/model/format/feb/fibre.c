@@ -17,10 +17,10 @@
 
 /* Types of FEBio and their parameters, in the order of lar_fibre.parameter. */
 static const struct fibre_type {
-    const char *type;
+    char type[28];
     lar_fibre_law law;
     bool isochoric;
-    const char *name[LAR_FIBRE_PARAMETERS];
+    char name[LAR_FIBRE_PARAMETERS][8]; /* "": none further */
 } fibre_types[] = {
     {"fiber-exp-pow", LAR_FIBRE_EXP_POW, false, {"ksi", "alpha", "beta"}},
     {"fiber-exp-pow-uncoupled", LAR_FIBRE_EXP_POW, true, {"ksi", "alpha", "beta"}},
@@ -46,7 +46,7 @@ bool lar_feb_is_fibre(const char *type) {
 
 /* Types that contract by T0, along fibres and across them. */
 static const struct active_type {
-    const char *type;
+    char type[52];
     double along, across;
 } active_types[] = {
     {"prescribed uniaxial active contraction", 1, 0},
@@ -70,8 +70,7 @@ bool lar_feb_is_active(const char *type) {
 /* The same total stress in both forms: FEBio's uncoupled one is no deviator. */
 lar_status lar_feb_read_active(lar_feb *feb, const xmlNode *node, const char *type,
                                lar_fibre *fibre) {
-    static const char *const known[] = {"density",  "k", "pressure_model", "T0", "fiber",
-                                        "mat_axis", NULL};
+    static const char known[] = "density k pressure_model T0 fiber mat_axis";
     const struct active_type *active = find_active(type);
     const xmlNode *value = lar_feb_child(node, "T0");
     double stress = 0;
@@ -186,7 +185,7 @@ static lar_status read_numbers(lar_feb *feb, const xmlNode *node, const struct f
     fibre->isochoric = type->isochoric;
     fibre->line = lar_feb_line(node);
     for (int k = 0; k < LAR_FIBRE_PARAMETERS && !status; k++)
-        if (type->name[k])
+        if (*type->name[k])
             status = lar_feb_parameter(feb, node, type->name[k], true, &fibre->parameter[k]);
     /* FEBio then takes the one with which the slope goes on as c5. */
     double *p = fibre->parameter;
@@ -198,9 +197,8 @@ static lar_status read_numbers(lar_feb *feb, const xmlNode *node, const struct f
 lar_status lar_feb_read_fibre(lar_feb *feb, const xmlNode *node, const char *type,
                               lar_fibre *fibre) {
     const struct fibre_type *own = find_type(type);
-    static const char *const known[] = {
-        "density", "k",      "pressure_model", "ksi",      "alpha", "beta", "c3", "c4",
-        "c5",      "lambda", "fiber",          "mat_axis", "E",     "lam0", "mu", NULL};
+    static const char known[] =
+        "density k pressure_model ksi alpha beta c3 c4 c5 lambda fiber mat_axis E lam0 mu";
     lar_status status = refuse_angles(feb, node);
     if (!status) status = refuse_unless(feb, node, "mu", 0);
     /* Of a power law that goes on straight, lam0 is where it does; of others fibres begin there. */

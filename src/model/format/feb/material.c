@@ -141,9 +141,10 @@ static lar_status check_value(lar_feb *feb, const xmlNode *node, const lar_law_r
 static lar_status read_law(lar_feb *feb, const xmlNode *node, const xmlNode *outer, lar_law law,
                            bool trans_iso, lar_material *material) {
     const lar_law_dialect *dialect = lar_law_table[law].febio;
-    static const char *const fibres[] = {"c3", "c4", "c5", "lam_max", "fiber", "mat_axis"};
-    enum { FIBRES = sizeof fibres / sizeof *fibres }; /* of "trans iso" types: read apart */
-    const char *known[LAR_LAW_GIVEN + 3 + FIBRES] = {"density"};
+    char known[200];
+    int length =
+        snprintf(known, sizeof known, "density%s%s", dialect->volume ? " pressure_model" : "",
+                 trans_iso ? " c3 c4 c5 lam_max fiber mat_axis active_contraction" : "");
     double given[LAR_LAW_GIVEN] = {0};
     material->law = law;
     lar_status status = check_pressure_model(feb, node, dialect);
@@ -151,16 +152,13 @@ static lar_status read_law(lar_feb *feb, const xmlNode *node, const xmlNode *out
         const lar_law_parameter *of = &dialect->parameter[i];
         bool needed = !lar_law_may_miss(dialect->parameter, i);
         bool outside = outer && strcmp(of->name, "k") == 0;
-        known[1 + i] = of->name;
+        length += snprintf(known + length, sizeof known - (size_t)length, " %s", of->name);
         status = lar_feb_parameter(feb, outside ? outer : node, of->name, needed, &given[i]);
     }
     for (int i = 0; i < dialect->count && !status; i++)
         status = check_value(feb, node, &lar_law_table[law], &dialect->parameter[i], given[i]);
     if (status) return status;
     dialect->read(given, material->parameter);
-    int count = 1 + dialect->count;
-    if (dialect->volume) known[count++] = "pressure_model";
-    for (int i = 0; i < FIBRES && trans_iso; i++) known[count++] = fibres[i];
     return lar_feb_notice_others(feb, node, known);
 }
 
@@ -260,8 +258,7 @@ static lar_status read_body(lar_feb *feb, const xmlNode *solid, const xmlNode *o
 /* One law, with the bulk modulus of the mixture where that is uncoupled, and fibres. */
 static lar_status read_mixture(lar_feb *feb, const xmlNode *node, const xmlNode *outer,
                                lar_material *material) {
-    static const char *const known[] = {"density", "solid",          "mat_axis",
-                                        "k",       "pressure_model", NULL};
+    static const char known[] = "density solid mat_axis k pressure_model";
     const xmlNode *body = NULL;
     lar_status status = LAR_OK;
     for (xmlNode *solid = lar_feb_first(node); solid && !status; solid = lar_feb_next(solid)) {
@@ -318,13 +315,8 @@ static lar_status read_terms(lar_feb *feb, const xmlNode *node, lar_viscosity *v
 /* The law inside a viscous material, with fibres or without. */
 static lar_status read_viscous(lar_feb *feb, const xmlNode *node, const xmlNode *outer,
                                const char *of, lar_material *material) {
-    static const char *const known[] = {"density", "elastic", "g0", "g1", "g2", "g3", "g4", "g5",
-                                        "g6",      "t1",      "t2", "t3", "t4", "t5", "t6", NULL};
-    static const char *const known_apart[] = {"density", "elastic", "k",  "pressure_model",
-                                              "g0",      "g1",      "g2", "g3",
-                                              "g4",      "g5",      "g6", "t1",
-                                              "t2",      "t3",      "t4", "t5",
-                                              "t6",      NULL};
+    static const char known[] =
+        "k pressure_model density elastic g0 g1 g2 g3 g4 g5 g6 t1 t2 t3 t4 t5 t6";
     lar_viscosity *v = &material->viscosity;
     const xmlNode *inner = lar_feb_child(node, "elastic");
     const char *type;
@@ -345,7 +337,7 @@ static lar_status read_viscous(lar_feb *feb, const xmlNode *node, const xmlNode 
                             "an active contraction within a viscous material; Lariat's does not "
                             "relax, put it beside, in a mixture of the two");
     if (!status) status = read_terms(feb, node, v);
-    return status ? status : lar_feb_notice_others(feb, node, v->isochoric ? known_apart : known);
+    return status ? status : lar_feb_notice_others(feb, node, v->isochoric ? known : known + 17);
 }
 
 static lar_status read_material(lar_feb *feb, lar_feb_material *entry) {

@@ -151,13 +151,19 @@ bool lar_feb_is(const xmlNode *element, const char *name) {
     return strcmp((const char *)element->name, name) == 0;
 }
 
-lar_status lar_feb_notice_others(const lar_feb *feb, const xmlNode *parent,
-                                 const char *const *known) {
+bool lar_feb_is_any(const xmlNode *element, const char *names) {
+    lar_span rest = {names, strlen(names)}, name;
+    for (bool more = true; more;) {
+        more = lar_span_split(rest, ' ', &name, &rest);
+        if (lar_span_equal(name, (const char *)element->name)) return true;
+    }
+    return false;
+}
+
+lar_status lar_feb_notice_others(const lar_feb *feb, const xmlNode *parent, const char *known) {
     lar_status status = LAR_OK;
     for (xmlNode *child = lar_feb_first(parent); child && !status; child = lar_feb_next(child)) {
-        const char *const *name = known;
-        while (*name && !lar_feb_is(child, *name)) name++;
-        if (!*name)
+        if (!lar_feb_is_any(child, known))
             status = lar_feb_notice(feb, child, "<%s> in <%s> is not known and was left out",
                                     (const char *)child->name, (const char *)parent->name);
     }
