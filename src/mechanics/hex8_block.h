@@ -90,11 +90,13 @@ typedef struct lar_block_more {
 
 /* What a block's materials say of their viscosity (law/viscosity.h), beside it as well. */
 typedef struct lar_viscous_block {
-    double rest[LAR_BLOCK], share[LAR_VISCOUS_TERMS][LAR_BLOCK];
-    double rate[LAR_VISCOUS_TERMS][LAR_BLOCK]; /* 1 / t_i [1/s] */
+    double rest[LAR_BLOCK];
     double unit[LAR_BLOCK];    /* volume, scale and factor of stiffness: by which P is more than
                                   what is remembered; 0 without an element */
     double inverse[LAR_BLOCK]; /* of that; 0 without an element */
+    struct {
+        double share[LAR_BLOCK], rate[LAR_BLOCK]; /* g_i, 1 / t_i [1/s] */
+    } term[LAR_VISCOUS_TERMS];
 } __attribute__((aligned(64))) lar_viscous_block;
 
 /* Fibres (law/fibre.h), beside the block as well: parameters in pascal and active stresses times

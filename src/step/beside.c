@@ -8,8 +8,8 @@ void lar_fill_viscosity(const lar_domain *domain, const lar_lane_base *base,
     const lar_viscosity *v = &material->viscosity;
     block->rest[lane] = v->rest;
     for (int i = 0; i < v->terms; i++) {
-        block->share[i][lane] = v->share[i];
-        block->rate[i][lane] = 1 / v->time[i];
+        block->term[i].share[lane] = v->share[i];
+        block->term[i].rate[lane] = 1 / v->time[i];
     }
     block->unit[lane] = base->volume * domain->scale * factor;
     block->inverse[lane] = 1 / block->unit[lane];
