@@ -187,8 +187,7 @@ static const char *y_title(const lar_inverse_experiment *e) {
 /* One line, of profiles one for each moment. */
 static void draw_model(const axes *a, const lar_inverse_experiment *e, const double *model) {
     for (int32_t i = 0; i < e->values; i++) {
-        bool next = i == 0 || (e->kind == LAR_INVERSE_ASPIRATION && e->along[i] <= e->along[i - 1]);
-        if (next)
+        if (i == 0 || (e->kind == LAR_INVERSE_ASPIRATION && lar_inverse_new_moment(e, i)))
             fprintf(a->out,
                     "%s<polyline fill=\"none\" stroke=\"#2b5fb5\" stroke-width=\"1.5\" "
                     "points=\"",
