@@ -158,9 +158,10 @@ static void draw_axes(const axes *a, const char *title, const char *x, const cha
             "<text x=\"%d\" y=\"%d\" text-anchor=\"middle\">%s</text>\n"
             "<text x=\"16\" y=\"%d\" transform=\"rotate(-90 16 %d)\" "
             "text-anchor=\"middle\">%s</text>\n"
-            "<text x=\"%d\" y=\"%d\" fill=\"#555\">dots: measured, line: model</text>\n",
-            LEFT + WIDTH / 2, TOP + HEIGHT + 38, x, TOP + HEIGHT / 2, TOP + HEIGHT / 2, y, LEFT + 8,
-            TOP + 16);
+            "<text x=\"%d\" y=\"22\" text-anchor=\"end\" fill=\"#555\">dots: measured, line: "
+            "model</text>\n",
+            LEFT + WIDTH / 2, TOP + HEIGHT + 38, x, TOP + HEIGHT / 2, TOP + HEIGHT / 2, y,
+            LEFT + WIDTH);
 }
 
 /* Over the way, the time where there is none or it stands still, or the number of the value. */
