@@ -771,6 +771,19 @@ LAR_API lar_status lar_simulation_set_damping(lar_simulation *simulation, double
 #define LAR_STIFFNESS_MAX 4.0
 LAR_API lar_status lar_simulation_set_stiffness(lar_simulation *simulation, int32_t material,
                                                 double factor, lar_error *error);
+/* Materials that can have other parameters than the model's at a time. */
+enum { LAR_MATERIALS_SET_MAX = 16 };
+/* A parameter of a material's law: `name` as in scenes ("shear_modulus", "c1"), of its fibres'
+ * "fibres.ksi" and so on, in pascal where it has a unit, before the stiffness that was set counts;
+ * the material's other parameters stay as they are. NULL: all are the model's again. Density,
+ * viscous terms and active stress stay the model's. Steps may be divided as with stiffness, and
+ * what would have to be divided more, with the stiffness that is set, is refused: together they
+ * make frequencies at rest at most twice as high (LAR_STIFFNESS_MAX of their square).
+ * LAR_ERROR_ARGUMENT for that, for what the law does not have, which the message lists, for values
+ * that no material can have, and beyond LAR_MATERIALS_SET_MAX. Takes as long as creating the
+ * elements of that material. */
+LAR_API lar_status lar_simulation_set_parameter(lar_simulation *simulation, int32_t material,
+                                                const char *name, double value, lar_error *error);
 /* How active a material is, from 0 to 1 (it starts at 1): times what its model says at that time by
  * a curve or a wave, and times its active stress; material -1: all that have one. The 64th material
  * and all after it share a value. LAR_ERROR_ARGUMENT for other values and for a material without
@@ -808,6 +821,9 @@ LAR_API lar_status lar_simulation_set_support_on(lar_simulation *simulation, con
 LAR_API void lar_simulation_gravity(const lar_simulation *simulation, double gravity[3]);
 LAR_API double lar_simulation_damping(const lar_simulation *simulation);
 LAR_API double lar_simulation_stiffness(const lar_simulation *simulation, int32_t material);
+/* Likewise, without its stiffness; 0 for what there is not. */
+LAR_API double lar_simulation_parameter(const lar_simulation *simulation, int32_t material,
+                                        const char *name);
 /* What was set, without curve and wave. */
 LAR_API double lar_simulation_activation(const lar_simulation *simulation, int32_t material);
 /* What was set on a node and on sets that it is in, together [N]; 0 for no such node. */
@@ -1125,6 +1141,8 @@ LAR_API lar_status lar_session_set_gravity(lar_session *session, const double gr
 LAR_API lar_status lar_session_set_damping(lar_session *session, double damping, lar_error *error);
 LAR_API lar_status lar_session_set_stiffness(lar_session *session, int32_t material, double factor,
                                              lar_error *error);
+LAR_API lar_status lar_session_set_parameter(lar_session *session, int32_t material,
+                                             const char *name, double value, lar_error *error);
 LAR_API lar_status lar_session_activate(lar_session *session, int32_t material, double value,
                                         lar_error *error);
 LAR_API lar_status lar_session_set_force(lar_session *session, int32_t node, const double force[3],

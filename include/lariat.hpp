@@ -415,6 +415,10 @@ class Simulation : public detail::Handle<lar_simulation, lar_simulation_destroy>
     void set_stiffness(std::int32_t material, double factor) {
         detail::call(lar_simulation_set_stiffness, get(), material, factor);
     }
+    /* nullptr: all of that material are the model's again. */
+    void set_parameter(std::int32_t material, const char *name, double value = 0) {
+        detail::call(lar_simulation_set_parameter, get(), material, name, value);
+    }
     void activate(std::int32_t material, double value) {
         detail::call(lar_simulation_activate, get(), material, value);
     }
@@ -618,6 +622,10 @@ class Session : public detail::Handle<lar_session, detail::close> {
     void set_damping(double damping) { detail::call(lar_session_set_damping, get(), damping); }
     void set_stiffness(std::int32_t material, double factor) {
         detail::call(lar_session_set_stiffness, get(), material, factor);
+    }
+    /* nullptr: all of that material are the model's again. */
+    void set_parameter(std::int32_t material, const char *name, double value = 0) {
+        detail::call(lar_session_set_parameter, get(), material, name, value);
     }
     void activate(std::int32_t material, double value) {
         detail::call(lar_session_activate, get(), material, value);

@@ -278,9 +278,9 @@ static void measure(const lar_domain *domain, const lar_hex8_monitor *monitor, i
         lar_gid e = element[lane];
         size_t at = place + (size_t)lane;
         if (e < 0) continue;
-        double factor = domain->factor[lar_factor_of(domain->model->element_material[e])];
+        double faster = domain->faster[lar_factor_of(domain->model->element_material[e])];
         const float *strain = monitor->strain[i];
-        double rate = factor * domain->rate[e].square;
+        double rate = faster * domain->rate[e].square;
         double square = rate * lar_hex8_growth(lar_domain_material(domain, e), strain,
                                                strain[LAR_STRAIN_AREA] / 3.0);
         if (!(monitor->lane[i] & LAR_LANE_FLAT))
