@@ -18,7 +18,8 @@
  * order of the mesh file. Every call that can fail returns a lar_status (LAR_OK is 0) and writes
  * one sentence to *error, which may be NULL; outputs are set on success only. Calls without a
  * status accept NULL: they return 0, -1 for an index, "" or NULL for a text; what they fill in is
- * 0, but for arrays of nodes, which stay as they are. The library never exits, and prints nothing.
+ * 0, but for arrays of nodes, which stay as they are. The library never exits, and prints nothing:
+ * what a log would have stands in errors, lar_model_notice_text and lar_session_status.
  *
  * Threads. A model may be used by any number of threads at once. A simulation, and the results that
  * are written from it, belong to one thread at a time: also calls that take a const simulation may
@@ -95,6 +96,21 @@ typedef struct lar_memory_hooks {
  * files are read and written, and stacks of threads. */
 LAR_API lar_status lar_memory_set(const lar_memory_hooks *hooks, lar_error *error);
 
+/* Threads of the host: `start` makes one that calls run(data) once, and says into *thread what
+ * `join` gets, which waits for its end. `priority`: what lar_session_options asks for, 0: nothing.
+ * `start` returns 0, or an errno when there is no thread: loops do without, what needs one fails.
+ */
+typedef struct lar_thread_hooks {
+    int (*start)(void *context, int priority, void *(*run)(void *data), void *data, void **thread);
+    void (*join)(void *context, void *thread);
+    void *context;
+} lar_thread_hooks;
+
+/* All threads that the library needs come from these (of grids, loops of meshing and reading,
+ * sessions, devices, recordings, servers), called with all signals blocked; NULL: its own again.
+ * Called while it has none and no other call is under way. */
+LAR_API lar_status lar_threads_set(const lar_thread_hooks *hooks, lar_error *error);
+
 /* ---- model ------------------------------------------------------------------------------ */
 
 typedef struct lar_model lar_model;
@@ -128,11 +144,22 @@ typedef struct lar_mesh_arrays {
 } lar_mesh_arrays;
 
 /* Makes a model of arrays and the text of a scene (YAML, docs/formats.md), which has no key `mesh`,
- * or `mesh: given`, and no `surface`: no file is read. scene NULL: a soft default material and no
- * supports. Everything is copied. It behaves like a file with this mesh, to the last bit; where all
- * elements are left-handed they are turned, as those of files are. LAR_ERROR_MODEL names the
- * element, node or set that cannot be so; every node must belong to an element. The caller destroys
- * the model. */
+ * or `mesh: given`, and no `surface`: no file is read. A small one:
+ *
+ *     "lariat: 1\n"
+ *     "damping: 15\n"
+ *     "materials:\n"
+ *     "  - {name: liver, cells: all, law: neo-hookean, density: 1050,\n"
+ *     "     shear_modulus: 2.0e3, bulk_modulus: 4.0e4}\n"
+ *     "fix:\n"
+ *     "  - {nodes: floor, axes: xyz}\n"
+ *     "tools:\n"
+ *     "  - {name: jaws, shape: grasper, radius: 0.003, length: 0.02, at: [0.03, 0.04, 0.07]}\n"
+ *
+ * scene NULL: a soft default material and no supports. Everything is copied. It behaves like a file
+ * with this mesh, to the last bit; where all elements are left-handed they are turned, as those of
+ * files are. LAR_ERROR_MODEL names the element, node or set that cannot be so; every node must
+ * belong to an element. The caller destroys the model. */
 LAR_SIZED lar_status lar_model_from_arrays(const lar_mesh_arrays *mesh, const char *scene,
                                            lar_model **model, lar_error *error);
 

@@ -135,6 +135,10 @@ inline std::int32_t version_number() {
 inline void memory_set(const lar_memory_hooks &hooks) {
     detail::call(lar_memory_set, &hooks);
 }
+/* nullptr: the library's own again. */
+inline void threads_set(const lar_thread_hooks *hooks) {
+    detail::call(lar_threads_set, hooks);
+}
 inline void demo_write(const std::string &folder) {
     detail::call(lar_demo_write, folder.c_str());
 }
