@@ -27,8 +27,7 @@ lar_material lar_parameters_give(const lar_model *model, const lar_parameter_ent
     return made;
 }
 
-/* The name of value k, without what stands before it; NULL: the material has none there. */
-static const char *name_of(const lar_material *material, int k) {
+const char *lar_parameter_name(const lar_material *material, int k) {
     const lar_law_row *law = &lar_law_table[material->law];
     if (k >= LAR_LAW_PARAMETERS)
         return lar_fibre_parameter_name[material->fibre.law][k - LAR_LAW_PARAMETERS];
@@ -41,7 +40,8 @@ int lar_parameter_find(const lar_material *material, const char *name) {
     int end = fibres ? LAR_PARAMETER_VALUES : LAR_LAW_PARAMETERS;
     if (fibres) name += strlen(FIBRES);
     for (int k = first; k < end; k++)
-        if (name_of(material, k) && strcmp(name_of(material, k), name) == 0) return k;
+        if (lar_parameter_name(material, k) && strcmp(lar_parameter_name(material, k), name) == 0)
+            return k;
     return -1;
 }
 
@@ -49,9 +49,10 @@ void lar_parameter_names(const lar_material *material, char *out, size_t size) {
     size_t length = 0;
     *out = '\0';
     for (int k = 0; k < LAR_PARAMETER_VALUES; k++) {
-        if (!name_of(material, k) || length >= size) continue;
-        length += (size_t)snprintf(out + length, size - length, "%s%s%s", length ? ", " : "",
-                                   k < LAR_LAW_PARAMETERS ? "" : FIBRES, name_of(material, k));
+        if (!lar_parameter_name(material, k) || length >= size) continue;
+        length +=
+            (size_t)snprintf(out + length, size - length, "%s%s%s", length ? ", " : "",
+                             k < LAR_LAW_PARAMETERS ? "" : FIBRES, lar_parameter_name(material, k));
     }
 }
 

@@ -40,6 +40,8 @@ lar_material lar_parameters_give(const lar_model *model, const lar_parameter_ent
 /* Which value of an entry a name is: a parameter of the law as scenes call it, or "fibres." and one
  * of its fibres. -1: none. */
 int lar_parameter_find(const lar_material *material, const char *name);
+/* The name of a value, without "fibres."; NULL: the material has none there. */
+const char *lar_parameter_name(const lar_material *material, int k);
 /* All names, with commas between them. */
 void lar_parameter_names(const lar_material *material, char *out, size_t size);
 
