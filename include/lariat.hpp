@@ -453,6 +453,9 @@ class Simulation : public detail::Handle<lar_simulation, lar_simulation_destroy>
     double stiffness(std::int32_t material) const {
         return lar_simulation_stiffness(get(), material);
     }
+    double parameter(std::int32_t material, const char *name) const {
+        return lar_simulation_parameter(get(), material, name);
+    }
     double activation(std::int32_t material) const {
         return lar_simulation_activation(get(), material);
     }

@@ -9,7 +9,6 @@
 #include "mechanics/hex8_full.h"
 #include "mechanics/hex8_guard.h"
 #include "step/activation.h"
-#include "step/beside.h"
 #include "step/mass_scaling.h"
 #include "step/materials.h"
 #include "step/viscous_history.h"

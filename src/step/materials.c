@@ -5,18 +5,25 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "mechanics/hex8_guard.h"
 #include "step/activation.h"
-#include "step/beside.h"
+
+/* Beside one block. */
+typedef struct beside_blocks {
+    lar_viscous_block *relaxing; /* NULL: it is elastic */
+    lar_fibre_block *fibres;     /* NULL: it has none */
+    lar_fibre_block *second;     /* of the other family; NULL: they are no pair */
+} beside_blocks;
 
 static lar_block_more *more_of(const lar_domain *domain, int32_t r, int32_t b) {
     return domain->run[r].more ? domain->more + domain->run_first[r] + b : NULL;
 }
 
-static lar_beside beside_of(const lar_domain *domain, int32_t r, int32_t b) {
+static beside_blocks beside_of(const lar_domain *domain, int32_t r, int32_t b) {
     int32_t at = domain->run_first[r] + b;
-    return (lar_beside){.relaxing = domain->run[r].viscous ? domain->relaxing + at : NULL,
-                        .fibres = domain->run[r].fibrous ? domain->fibres + at : NULL,
-                        .second = domain->run[r].second ? domain->second + at : NULL};
+    return (beside_blocks){.relaxing = domain->run[r].viscous ? domain->relaxing + at : NULL,
+                           .fibres = domain->run[r].fibrous ? domain->fibres + at : NULL,
+                           .second = domain->run[r].second ? domain->second + at : NULL};
 }
 
 /* How many times as large the shear modulus is as the model's by the parameters that were set:
@@ -31,13 +38,47 @@ static double shear_of(const lar_domain *domain, int32_t material) {
     return 1;
 }
 
+static void fill_viscosity(const lar_domain *domain, const lar_lane_base *base,
+                           lar_viscous_block *block, int lane, const lar_material *material,
+                           double factor) {
+    const lar_viscosity *v = &material->viscosity;
+    block->rest[lane] = v->rest;
+    for (int i = 0; i < v->terms; i++) {
+        block->share[i][lane] = v->share[i];
+        block->rate[i][lane] = 1 / v->time[i];
+    }
+    block->unit[lane] = base->volume * domain->scale * factor;
+    block->inverse[lane] = 1 / block->unit[lane];
+}
+
+/* One family of element e. */
+static void fill_family(lar_fibre_block *block, int lane, const lar_material *material,
+                        const double direction[3], double unit) {
+    const lar_fibre *fibre = &material->fibre;
+    for (int i = 0; i < 3; i++) block->direction[i][lane] = direction[i];
+    for (int k = 0; k < LAR_FIBRE_PARAMETERS; k++)
+        block->parameter[k][lane] =
+            lar_fibre_scales(fibre->law, k) ? fibre->parameter[k] * unit : fibre->parameter[k];
+    block->along[lane] = fibre->along * unit;
+    block->across[lane] = fibre->across * unit;
+    block->limit[lane] = lar_fibre_limit(material) * unit;
+}
+
+static void fill_fibres(const lar_domain *domain, const lar_lane_base *base, beside_blocks beside,
+                        int lane, const lar_material *material, lar_gid e) {
+    double direction[6], unit = base->volume * domain->scale;
+    lar_model_fibres(domain->model, e, direction);
+    fill_family(beside.fibres, lane, material, direction, unit);
+    if (beside.second) fill_family(beside.second, lane, material, direction + 3, unit);
+}
+
 void lar_materials_fill(const lar_domain *domain, int32_t r, int32_t b, void *block, int lane) {
     int32_t at = domain->run_first[r] + b;
     lar_gid e = domain->layout.block[at].element[lane];
     const lar_lane_base *base = domain->base + LAR_BLOCK * at + lane;
     lar_block_head *head = block;
     lar_block_more *more = more_of(domain, r, b);
-    lar_beside beside = beside_of(domain, r, b);
+    beside_blocks beside = beside_of(domain, r, b);
     int32_t material = domain->model->element_material[e];
     double factor = domain->factor[lar_factor_of(material)];
     double hourglass = factor * shear_of(domain, material);
@@ -48,10 +89,43 @@ void lar_materials_fill(const lar_domain *domain, int32_t r, int32_t b, void *bl
         *lar_block_parameter(head, more, k, lane) =
             lar_law_scales(made->law, k) ? made->parameter[k] * base->volume * domain->scale
                                          : made->parameter[k];
-    if (beside.relaxing) lar_fill_viscosity(domain, base, beside.relaxing, lane, made, factor);
-    if (beside.fibres) lar_fill_fibres(domain, base, beside, lane, made, e);
+    if (beside.relaxing) fill_viscosity(domain, base, beside.relaxing, lane, made, factor);
+    if (beside.fibres) fill_fibres(domain, base, beside, lane, made, e);
     domain->corner_limit[LAR_BLOCK * at + lane] = base->limit * hourglass * hourglass;
 }
+
+/* ---- fibres -------------------------------------------------------------------------------- */
+
+bool lar_fibres_plan(lar_domain *domain) {
+    size_t blocks = (size_t)domain->layout.block_count;
+    bool pairs = false;
+    for (int32_t r = 0; r < domain->run_count; r++) {
+        pairs = pairs || domain->run[r].fibrous > LAR_FIBRE_SINGLE;
+        if (domain->run[r].fibrous) domain->fibre_bytes = blocks * sizeof *domain->fibres;
+    }
+    if (domain->fibre_bytes) domain->fibres = lar_calloc_aligned(domain->fibre_bytes, 1);
+    if (pairs) domain->second = lar_calloc_aligned(domain->fibre_bytes, 1);
+    if ((domain->fibre_bytes && !domain->fibres) || (pairs && !domain->second)) return false;
+    for (int32_t r = 0; r < domain->run_count; r++) {
+        lar_block_run *run = &domain->run[r];
+        if (run->fibrous) run->fibres = domain->fibres + domain->run_first[r];
+        if (run->fibrous > LAR_FIBRE_SINGLE) run->second = domain->second + domain->run_first[r];
+    }
+    return true;
+}
+
+lar_status lar_fibres_check(const lar_domain *domain, lar_error *error) {
+    const lar_material *fibrous = lar_model_fibrous(domain->model);
+    if (!fibrous || domain->kind == LAR_ELEMENT_HEX8) return LAR_OK;
+    const char *quote = fibrous->name && *fibrous->name ? "'" : "";
+    return lar_fail(error, LAR_ERROR_UNSUPPORTED,
+                    "%s:%d: the material %s%.60s%s has fibres, which only elements hex8 can have; "
+                    "take these, or leave its fibres out",
+                    lar_model_source(domain->model), fibrous->fibre.line, quote,
+                    *quote ? fibrous->name : "without a name", quote);
+}
+
+/* ---- changes ------------------------------------------------------------------------------- */
 
 lar_status lar_materials_copy(lar_domain *domain, lar_error *error) {
     const lar_model *model = domain->model;
