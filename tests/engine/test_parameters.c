@@ -140,6 +140,28 @@ static void a_faster_body_stays_stable(void **unused) {
     }
 }
 
+/* What changes no frequency to speak of divides no step, where that has room. */
+static void shear_of_what_keeps_its_volume_is_free(void **unused) {
+    (void)unused;
+    brick b = soft_brick;
+    b.bulk = 200 * b.shear;
+    for (int tight = 0; tight < 2; tight++) {
+        lar_model *model = brick_model(&b);
+        fix_nodes(model, brick_side(&b, 0, 0), LAR_AXIS_ALL);
+        throw_body(model, (double[]){0, 0, 0}, (double[]){0, 1, 0}, 0.05);
+        lar_simulation *simulation = start(model);
+        lar_options options = lar_options_default();
+        options.time_step = (tight ? 0.999 : 0.8) * simulation->domain.stable_step;
+        lar_simulation_destroy(simulation);
+        simulation = start_with(model, options);
+        advance(simulation, 50);
+        set(simulation, 0, "shear_modulus", 2.5 * b.shear);
+        advance(simulation, 1000);
+        assert_int_equal(lar_simulation_step_parts(simulation), tight ? 2 : 1);
+        finish(simulation, model);
+    }
+}
+
 static void what_makes_no_sense_is_refused(void **unused) {
     (void)unused;
     lar_model *model = brick_model(&soft_brick);
@@ -390,6 +412,7 @@ int main(void) {
         cmocka_unit_test(a_body_settles_as_they_say),
         cmocka_unit_test(stiffness_goes_on_top),
         cmocka_unit_test(a_faster_body_stays_stable),
+        cmocka_unit_test(shear_of_what_keeps_its_volume_is_free),
         cmocka_unit_test(what_makes_no_sense_is_refused),
         cmocka_unit_test(places_are_counted),
         cmocka_unit_test(every_joule_is_accounted_for),
