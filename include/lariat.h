@@ -807,8 +807,9 @@ enum { LAR_MATERIALS_SET_MAX = 16 };
  * what would have to be divided more, with the stiffness that is set, is refused: together they
  * make frequencies at rest at most twice as high (LAR_STIFFNESS_MAX of their square).
  * LAR_ERROR_ARGUMENT for that, for what the law does not have, which the message lists, for values
- * that no material can have, and beyond LAR_MATERIALS_SET_MAX. Takes as long as creating the
- * elements of that material. */
+ * that no material can have, and beyond LAR_MATERIALS_SET_MAX. Strained tissue that becomes many
+ * times as stiff at once springs back with what that adds, and may break the run: go there in
+ * steps. Takes as long as creating the elements of that material. */
 LAR_API lar_status lar_simulation_set_parameter(lar_simulation *simulation, int32_t material,
                                                 const char *name, double value, lar_error *error);
 /* How active a material is, from 0 to 1 (it starts at 1): times what its model says at that time by

@@ -33,9 +33,9 @@ static double faster_with(const lar_domain *domain, int32_t material, const lar_
         lar_hex8 hex8;
         if (model->element_material[e] != material) continue;
         double now = lar_element_frequency(model, domain->kind, e, made, &hex8);
-        double usual =
-            lar_element_frequency(model, domain->kind, e, &model->material[material], &hex8);
-        double square = (now / usual) * (now / usual);
+        const lar_element_rate *rate = &domain->rate[e];
+        double usual = rate->square * rate->mass / (rate->mass - rate->added);
+        double square = now * now / usual;
         most = square <= most ? most : square; /* what is no number, too */
     }
     static const double LITTLE = 1.02, ROOM = 0.9;

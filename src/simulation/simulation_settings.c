@@ -171,21 +171,27 @@ static double element_account(const lar_simulation *simulation, const body_eleme
     return account;
 }
 
-/* Those whose factor or parameters become others, by factor. */
-static void mark_changed(const lar_tools *now, const lar_settings *wanted,
-                         const lar_parameters *parameters, bool changed[LAR_FACTORS_MAX]) {
+/* How often the accounts of materials count that become others, before and after; by factor. An
+ * account is linear in the stiffness: with other parameters alone it has to be looked at again. */
+static void weigh_changes(const lar_tools *now, const lar_settings *wanted,
+                          const lar_parameters *parameters, double before[LAR_FACTORS_MAX],
+                          double after[LAR_FACTORS_MAX]) {
     const lar_parameters *list[] = {&now->parameters, parameters};
     bool set = memcmp(&now->parameters, parameters, sizeof *parameters) != 0;
-    for (int i = 0; i < LAR_FACTORS_MAX; i++)
-        changed[i] = wanted->factor[i] != now->settings.factor[i];
+    for (int i = 0; i < LAR_FACTORS_MAX; i++) {
+        before[i] = 1 - wanted->factor[i] / now->settings.factor[i];
+        after[i] = 0;
+    }
     for (int k = 0; k < 2 && set; k++)
-        for (int32_t i = 0; i < list[k]->count; i++)
-            changed[lar_factor_of(list[k]->entry[i].material)] = true;
+        for (int32_t m = 0; m < list[k]->count; m++) {
+            int i = lar_factor_of(list[k]->entry[m].material);
+            before[i] = after[i] = 1;
+        }
 }
 
-/* The accounts of all elements of these materials [J]. */
+/* The accounts of all elements, so often [J]. */
 static double materials_account(const lar_simulation *simulation,
-                                const bool changed[LAR_FACTORS_MAX]) {
+                                const double times[LAR_FACTORS_MAX]) {
     const lar_domain *domain = &simulation->domain;
     double half = 0.5 * length_of_step(simulation), sum = 0;
     for (int32_t r = 0; r < domain->run_count; r++)
@@ -193,14 +199,14 @@ static double materials_account(const lar_simulation *simulation,
             int32_t b = domain->run_first[r] + k / LAR_BLOCK;
             lar_hex8 hex8;
             body_element element = {.e = domain->layout.block[b].element[k % LAR_BLOCK]};
-            if (element.e < 0 ||
-                !changed[lar_factor_of(domain->model->element_material[element.e])])
-                continue;
+            if (element.e < 0) continue;
+            double often = times[lar_factor_of(domain->model->element_material[element.e])];
+            if (often == 0) continue;
             if (domain->kind == LAR_ELEMENT_HEX8) {
                 lar_domain_element(domain, r, b, k % LAR_BLOCK, &hex8);
                 element.hex8 = &hex8;
             }
-            sum += element_account(simulation, &element, half);
+            sum += often * element_account(simulation, &element, half);
         }
     return sum;
 }
@@ -208,7 +214,7 @@ static double materials_account(const lar_simulation *simulation,
 lar_status lar_simulation_change_materials(lar_simulation *simulation, const lar_settings *wanted,
                                            const lar_parameters *parameters, lar_error *error) {
     lar_tools *tools = &simulation->tools;
-    bool changed[LAR_FACTORS_MAX];
+    double before[LAR_FACTORS_MAX], after[LAR_FACTORS_MAX], work;
     if (!lar_parameters_bearable(parameters, wanted))
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "stiffness and parameters of a material together would make its elements "
@@ -218,13 +224,13 @@ lar_status lar_simulation_change_materials(lar_simulation *simulation, const lar
                         LAR_STIFFNESS_MAX);
     lar_status status = lar_simulation_gather(simulation, error);
     if (status) return status;
-    mark_changed(tools, wanted, parameters, changed);
-    double before = materials_account(simulation, changed);
+    weigh_changes(tools, wanted, parameters, before, after);
+    work = -materials_account(simulation, before);
     tools->settings = *wanted;
     tools->parameters = *parameters;
     tools->division.due = 1;
     lar_simulation_settle(simulation);
-    lar_simulation_add_external(simulation, materials_account(simulation, changed) - before);
+    lar_simulation_add_external(simulation, work + materials_account(simulation, after));
     if (simulation->computer) simulation->computer->tools_sent = false;
     return LAR_OK;
 }
