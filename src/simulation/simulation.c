@@ -123,7 +123,8 @@ static void note_time(lar_simulation *simulation) {
 
 void lar_simulation_settle(lar_simulation *simulation) {
     note_time(simulation);
-    bool tissue = lar_domain_stiffen(&simulation->domain, &simulation->tools.settings);
+    bool tissue = lar_domain_stiffen(&simulation->domain, &simulation->tools.settings,
+                                     &simulation->tools.parameters);
     bool tools = lar_spares_take(&simulation->tools, &simulation->list);
     if (tissue || tools) lar_simulation_limit_tools(simulation);
     lar_burden_take(&simulation->domain, &simulation->tools.heavier, NULL);

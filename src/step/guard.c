@@ -350,8 +350,8 @@ static void look_ahead(const lar_domain *domain, const lar_state *state, int32_t
 /* How fast a strained element has become: (omega dt / 2)^2, if it is not heavier for a while. */
 static void measure(const lar_domain *domain, lar_gid e, size_t place, double stiffness,
                     double areas, const float strain[LAR_STRAIN_NUMBERS], lar_state *state) {
-    double factor = domain->factor[lar_factor_of(domain->model->element_material[e])];
-    double rate = factor * domain->rate[e].square;
+    double faster = domain->faster[lar_factor_of(domain->model->element_material[e])];
+    double rate = faster * domain->rate[e].square;
     double square = rate * lar_hex8_growth(lar_domain_material(domain, e), strain,
                                            strain[LAR_STRAIN_AREA] / 3.0);
     square += (1 + 2 * LEAD) * stiffness / domain->rate[e].mass;
