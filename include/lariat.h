@@ -18,7 +18,8 @@
  * order of the mesh file. Every call that can fail returns a lar_status (LAR_OK is 0) and writes
  * one sentence to *error, which may be NULL; outputs are set on success only. Calls without a
  * status accept NULL: they return 0, -1 for an index, "" or NULL for a text; what they fill in is
- * 0, but for arrays of nodes, which stay as they are. The library never exits, and prints nothing.
+ * 0, but for arrays of nodes, which stay as they are. The library never exits, and prints nothing:
+ * what a log would have stands in errors, lar_model_notice_text and lar_session_status.
  *
  * Threads. A model may be used by any number of threads at once. A simulation, and the results that
  * are written from it, belong to one thread at a time: also calls that take a const simulation may
@@ -95,6 +96,21 @@ typedef struct lar_memory_hooks {
  * files are read and written, and stacks of threads. */
 LAR_API lar_status lar_memory_set(const lar_memory_hooks *hooks, lar_error *error);
 
+/* Threads of the host: `start` makes one that calls run(data) once, and says into *thread what
+ * `join` gets, which waits for its end. `priority`: what lar_session_options asks for, 0: nothing.
+ * `start` returns 0, or an errno when there is no thread: loops do without, what needs one fails.
+ */
+typedef struct lar_thread_hooks {
+    int (*start)(void *context, int priority, void *(*run)(void *data), void *data, void **thread);
+    void (*join)(void *context, void *thread);
+    void *context;
+} lar_thread_hooks;
+
+/* All threads that the library needs come from these (of grids, loops of meshing and reading,
+ * sessions, devices, recordings, servers), called with all signals blocked; NULL: its own again.
+ * Called while it has none and no other call is under way. */
+LAR_API lar_status lar_threads_set(const lar_thread_hooks *hooks, lar_error *error);
+
 /* ---- model ------------------------------------------------------------------------------ */
 
 typedef struct lar_model lar_model;
@@ -128,11 +144,22 @@ typedef struct lar_mesh_arrays {
 } lar_mesh_arrays;
 
 /* Makes a model of arrays and the text of a scene (YAML, docs/formats.md), which has no key `mesh`,
- * or `mesh: given`, and no `surface`: no file is read. scene NULL: a soft default material and no
- * supports. Everything is copied. It behaves like a file with this mesh, to the last bit; where all
- * elements are left-handed they are turned, as those of files are. LAR_ERROR_MODEL names the
- * element, node or set that cannot be so; every node must belong to an element. The caller destroys
- * the model. */
+ * or `mesh: given`, and no `surface`: no file is read. A small one:
+ *
+ *     "lariat: 1\n"
+ *     "damping: 15\n"
+ *     "materials:\n"
+ *     "  - {name: liver, cells: all, law: neo-hookean, density: 1050,\n"
+ *     "     shear_modulus: 2.0e3, bulk_modulus: 4.0e4}\n"
+ *     "fix:\n"
+ *     "  - {nodes: floor, axes: xyz}\n"
+ *     "tools:\n"
+ *     "  - {name: jaws, shape: grasper, radius: 0.003, length: 0.02, at: [0.03, 0.04, 0.07]}\n"
+ *
+ * scene NULL: a soft default material and no supports. Everything is copied. It behaves like a file
+ * with this mesh, to the last bit; where all elements are left-handed they are turned, as those of
+ * files are. LAR_ERROR_MODEL names the element, node or set that cannot be so; every node must
+ * belong to an element. The caller destroys the model. */
 LAR_SIZED lar_status lar_model_from_arrays(const lar_mesh_arrays *mesh, const char *scene,
                                            lar_model **model, lar_error *error);
 
@@ -415,6 +442,10 @@ typedef struct lar_meshing_options {
     const char *fibres; /* along what fibres run, by a rule as scenes have it, for example "axis:
                            [0, 0, 1]"; NULL: there are none */
     const char *fibre_region; /* the name of the region that has them; NULL: all but bones */
+    const char *const *tissues; /* tissue files for the starter scene in place of the table's
+                                   figures: FILE for all regions but bones, or REGION=FILE; NULL:
+                                   none */
+    int32_t tissue_count;
 } lar_meshing_options;
 
 LAR_SIZED lar_meshing_options lar_meshing_options_default(void);
@@ -771,6 +802,20 @@ LAR_API lar_status lar_simulation_set_damping(lar_simulation *simulation, double
 #define LAR_STIFFNESS_MAX 4.0
 LAR_API lar_status lar_simulation_set_stiffness(lar_simulation *simulation, int32_t material,
                                                 double factor, lar_error *error);
+/* Materials that can have other parameters than the model's at a time. */
+enum { LAR_MATERIALS_SET_MAX = 16 };
+/* A parameter of a material's law: `name` as in scenes ("shear_modulus", "c1"), of its fibres'
+ * "fibres.ksi" and so on, in pascal where it has a unit, before the stiffness that was set counts;
+ * the material's other parameters stay as they are. NULL: all are the model's again. Density,
+ * viscous terms and active stress stay the model's. Steps may be divided as with stiffness, and
+ * what would have to be divided more, with the stiffness that is set, is refused: together they
+ * make frequencies at rest at most twice as high (LAR_STIFFNESS_MAX of their square).
+ * LAR_ERROR_ARGUMENT for that, for what the law does not have, which the message lists, for values
+ * that no material can have, and beyond LAR_MATERIALS_SET_MAX. Strained tissue that becomes many
+ * times as stiff at once springs back with what that adds, and may break the run: go there in
+ * steps. Takes as long as creating the elements of that material. */
+LAR_API lar_status lar_simulation_set_parameter(lar_simulation *simulation, int32_t material,
+                                                const char *name, double value, lar_error *error);
 /* How active a material is, from 0 to 1 (it starts at 1): times what its model says at that time by
  * a curve or a wave, and times its active stress; material -1: all that have one. The 64th material
  * and all after it share a value. LAR_ERROR_ARGUMENT for other values and for a material without
@@ -808,6 +853,9 @@ LAR_API lar_status lar_simulation_set_support_on(lar_simulation *simulation, con
 LAR_API void lar_simulation_gravity(const lar_simulation *simulation, double gravity[3]);
 LAR_API double lar_simulation_damping(const lar_simulation *simulation);
 LAR_API double lar_simulation_stiffness(const lar_simulation *simulation, int32_t material);
+/* Likewise, without its stiffness; 0 for what there is not. */
+LAR_API double lar_simulation_parameter(const lar_simulation *simulation, int32_t material,
+                                        const char *name);
 /* What was set, without curve and wave. */
 LAR_API double lar_simulation_activation(const lar_simulation *simulation, int32_t material);
 /* What was set on a node and on sets that it is in, together [N]; 0 for no such node. */
@@ -1125,6 +1173,8 @@ LAR_API lar_status lar_session_set_gravity(lar_session *session, const double gr
 LAR_API lar_status lar_session_set_damping(lar_session *session, double damping, lar_error *error);
 LAR_API lar_status lar_session_set_stiffness(lar_session *session, int32_t material, double factor,
                                              lar_error *error);
+LAR_API lar_status lar_session_set_parameter(lar_session *session, int32_t material,
+                                             const char *name, double value, lar_error *error);
 LAR_API lar_status lar_session_activate(lar_session *session, int32_t material, double value,
                                         lar_error *error);
 LAR_API lar_status lar_session_set_force(lar_session *session, int32_t node, const double force[3],

@@ -135,6 +135,10 @@ inline std::int32_t version_number() {
 inline void memory_set(const lar_memory_hooks &hooks) {
     detail::call(lar_memory_set, &hooks);
 }
+/* nullptr: the library's own again. */
+inline void threads_set(const lar_thread_hooks *hooks) {
+    detail::call(lar_threads_set, hooks);
+}
 inline void demo_write(const std::string &folder) {
     detail::call(lar_demo_write, folder.c_str());
 }
@@ -415,6 +419,10 @@ class Simulation : public detail::Handle<lar_simulation, lar_simulation_destroy>
     void set_stiffness(std::int32_t material, double factor) {
         detail::call(lar_simulation_set_stiffness, get(), material, factor);
     }
+    /* nullptr: all of that material are the model's again. */
+    void set_parameter(std::int32_t material, const char *name, double value = 0) {
+        detail::call(lar_simulation_set_parameter, get(), material, name, value);
+    }
     void activate(std::int32_t material, double value) {
         detail::call(lar_simulation_activate, get(), material, value);
     }
@@ -444,6 +452,9 @@ class Simulation : public detail::Handle<lar_simulation, lar_simulation_destroy>
     double damping() const { return lar_simulation_damping(get()); }
     double stiffness(std::int32_t material) const {
         return lar_simulation_stiffness(get(), material);
+    }
+    double parameter(std::int32_t material, const char *name) const {
+        return lar_simulation_parameter(get(), material, name);
     }
     double activation(std::int32_t material) const {
         return lar_simulation_activation(get(), material);
@@ -618,6 +629,10 @@ class Session : public detail::Handle<lar_session, detail::close> {
     void set_damping(double damping) { detail::call(lar_session_set_damping, get(), damping); }
     void set_stiffness(std::int32_t material, double factor) {
         detail::call(lar_session_set_stiffness, get(), material, factor);
+    }
+    /* nullptr: all of that material are the model's again. */
+    void set_parameter(std::int32_t material, const char *name, double value = 0) {
+        detail::call(lar_session_set_parameter, get(), material, name, value);
     }
     void activate(std::int32_t material, double value) {
         detail::call(lar_session_activate, get(), material, value);

@@ -10,9 +10,9 @@
  *
  * These stay as they are: lar_error, lar_array_set, lar_surface_arrays, lar_set_info,
  * lar_surface_info, lar_embedded_info, lar_ray_hit, lar_model_contact_info, lar_tool_pose,
- * lar_grid_aim, lar_memory_hooks, lar_touch, lar_rest, lar_grasp_answer, lar_tool_load,
- * lar_server_options and all that is in another struct, but at its end. The library makes
- * lar_snapshot, so that may grow.
+ * lar_grid_aim, lar_memory_hooks, lar_thread_hooks, lar_touch, lar_rest, lar_grasp_answer,
+ * lar_tool_load, lar_server_options and all that is in another struct, but at its end. The library
+ * makes lar_snapshot, so that may grow.
  */
 #ifndef LARIAT_SIZES_H
 #define LARIAT_SIZES_H

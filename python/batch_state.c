@@ -148,6 +148,80 @@ static PyObject *tool_openings(PyObject *me, PyObject *args, PyObject *keywords)
     return of_tools(me, args, keywords, "tool_openings", copy_openings, 'd', 1);
 }
 
+/* ---- what a learner sees -------------------------------------------------------------------- */
+
+/* Of the first tool: tip, opening, wrench, points held. */
+enum { OF_TOOL = 3 + 1 + 6 + 1 };
+
+typedef struct observe_call {
+    double *out; /* [members][OF_TOOL + 3 watched] */
+    const int32_t *node;
+    size_t watched, nodes;
+} observe_call;
+
+static lar_status observe_member(python_member_call *call, python_member *member, int place,
+                                 bool caller, lar_error *error) {
+    const observe_call *o = call->context;
+    double *row = o->out + (size_t)place * (OF_TOOL + 3 * o->watched);
+    lar_tool_pose pose;
+    lar_tool_force force;
+    (void)caller;
+    lar_status status = lar_simulation_tool_pose(member->taken, 0, &pose, error);
+    if (!status) status = lar_simulation_tool_force(member->taken, 0, &force, error);
+    if (status) return status;
+    double(*all)[3] = malloc(o->nodes * sizeof *all);
+    if (!all) {
+        *error = (lar_error){LAR_ERROR_MEMORY, "no memory for the places of nodes"};
+        return LAR_ERROR_MEMORY;
+    }
+    python_positions(member->taken, all);
+    memcpy(row, pose.position, sizeof pose.position);
+    row[3] = pose.opening;
+    memcpy(row + 4, force.force, sizeof force.force);
+    memcpy(row + 7, force.torque, sizeof force.torque);
+    row[10] = force.held;
+    for (size_t i = 0; i < o->watched; i++)
+        memcpy(row + OF_TOOL + 3 * i, all[o->node[i]], sizeof all[0]);
+    free(all);
+    return LAR_OK;
+}
+
+static bool check_watched(const python_batch *self, const python_rows *nodes) {
+    if (self->tools == 0) return python_refuse("observe: the members have no tool");
+    for (Py_ssize_t i = 0; i < nodes->rows; i++) {
+        int32_t node = ((const int32_t *)nodes->data)[i];
+        if (node < 0 || node >= self->nodes)
+            return python_refuse("nodes: there is no node %d; there are %d, counted from 0",
+                                 (int)node, self->nodes);
+    }
+    return true;
+}
+
+static PyObject *observe(PyObject *me, PyObject *args, PyObject *keywords) {
+    static char *names[] = {"nodes", "out", NULL};
+    PyObject *source, *out = NULL;
+    python_rows nodes = {.data = NULL};
+    python_target target;
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, "O|O:observe", names, &source, &out) ||
+        !python_integers(source, "nodes", 0, &nodes))
+        return NULL;
+    python_batch *self = python_batch_look(me, "observe");
+    const Py_ssize_t shape[3] = {self ? self->count : 0, OF_TOOL + 3 * nodes.rows, 1};
+    bool ok =
+        self && check_watched(self, &nodes) && python_target_of_shape(out, 'd', 2, shape, &target);
+    if (!ok) {
+        python_rows_free(&nodes);
+        return NULL;
+    }
+    observe_call o = {target.data, nodes.data, (size_t)nodes.rows, (size_t)self->nodes};
+    python_member_call call = {
+        .name = "observe", .work = observe_member, .cost = NODE * self->nodes, .context = &o};
+    python_members_parse(self, NULL, &call.members);
+    ok = python_batch_run(self, &call);
+    python_rows_free(&nodes);
+    return python_target_close(&target, !ok);
+}
+
 /* ---- numbers -------------------------------------------------------------------------------- */
 
 static lar_status copy_hash(python_member_call *call, python_member *member, int place, bool caller,
@@ -418,6 +492,12 @@ PyMethodDef python_batch_state_methods[] = {
      "members   int32 [k], which ones; None: all\n\n"
      "No faster than half the tool's radius in a step. What one member refuses is raised when the "
      "others\nhave moved; `members` of the exception is a dict of member: message."},
+    {"observe", FUNCTION(observe), METH_VARARGS | METH_KEYWORDS,
+     "observe($self, nodes, out=None)\n--\n\nWhat environments see, by one call, float64 [n, 11 + "
+     "3 w]: of the first tool the tip (3, m), how far its jaws are open (1), the wrench (6, N and "
+     "N m about the tip) and how many surface points it has hold of (1); and the places of "
+     "`nodes`, "
+     "int32 [w] (m)." OUT_DOC},
     {"hashes", hashes, METH_NOARGS,
      "hashes($self)\n--\n\nSimulation.hash() of every member, a tuple of ints."},
     {"steps", steps, METH_NOARGS,

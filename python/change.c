@@ -1,5 +1,6 @@
-/* Gravity, damping, stiffness, activation, forces on nodes and supports, of a simulation and of a
- * session: the same words for both, because the library has the same calls for both. */
+/* Gravity, damping, stiffness, parameters, activation, forces on nodes and supports, of a
+ * simulation and of a session: the same words for both, because the library has the same calls for
+ * both. */
 #include "module.h"
 
 /* A number for each material: the library's calls. */
@@ -15,6 +16,8 @@ typedef struct changes {
     lar_status (*set_gravity)(void *it, const double gravity[3], lar_error *error);
     lar_status (*set_damping)(void *it, double damping, lar_error *error);
     set_for_material *set_stiffness, *activate;
+    lar_status (*set_parameter)(void *it, int32_t material, const char *name, double value,
+                                lar_error *error);
     lar_status (*set_force)(void *it, int32_t node, const double force[3], lar_error *error);
     lar_status (*set_force_on)(void *it, const char *set, const double force[3], lar_error *error);
     lar_status (*set_support)(void *it, int32_t node, unsigned axes, int held, lar_error *error);
@@ -41,6 +44,10 @@ typedef struct changes {
     static lar_status kind##_activate(void *it, int32_t material, double value,                    \
                                       lar_error *error) {                                          \
         return lar_##kind##_activate(it, material, value, error);                                  \
+    }                                                                                              \
+    static lar_status kind##_set_parameter(void *it, int32_t material, const char *name,           \
+                                           double value, lar_error *error) {                       \
+        return lar_##kind##_set_parameter(it, material, name, value, error);                       \
     }                                                                                              \
     static lar_status kind##_set_force(void *it, int32_t node, const double force[3],              \
                                        lar_error *error) {                                         \
@@ -80,10 +87,11 @@ typedef struct changes {
         python_##kind##_give((python_##kind *)me);                                                 \
     }                                                                                              \
     static const changes kind##_changes = {                                                        \
-        kind##_take,        kind##_look,         kind##_give,          kind##_model,               \
-        kind##_set_gravity, kind##_set_damping,  kind##_set_stiffness, kind##_activate,            \
-        kind##_set_force,   kind##_set_force_on, kind##_set_support,   kind##_set_support_on,      \
-        kind##_gravity,     kind##_damping,      kind##_stiffness,     kind##_activation};
+        kind##_take,           kind##_look,        kind##_give,          kind##_model,             \
+        kind##_set_gravity,    kind##_set_damping, kind##_set_stiffness, kind##_activate,          \
+        kind##_set_parameter,  kind##_set_force,   kind##_set_force_on,  kind##_set_support,       \
+        kind##_set_support_on, kind##_gravity,     kind##_damping,       kind##_stiffness,         \
+        kind##_activation};
 
 static const lar_model *simulation_model(PyObject *me) {
     return ((python_simulation *)me)->model->model;
@@ -185,6 +193,52 @@ static PyObject *activate(PyObject *me, PyObject *args, PyObject *keywords) {
     return set_number(me, args, keywords, "activate", "value", changes_of(me)->activate);
 }
 
+/* The index of `material`, which one has to be; false: an exception. */
+static bool one_material(PyObject *me, PyObject *material, int32_t *index) {
+    const lar_model *model = changes_of(me)->model(me);
+    if (!python_material(model, material, index)) return false;
+    if (*index >= 0 && *index < lar_model_material_count(model)) return true;
+    python_refuse("material: there is no material %R", material);
+    return false;
+}
+
+static PyObject *set_parameter(PyObject *me, PyObject *args, PyObject *keywords) {
+    static char *names[] = {"material", "name", "value", NULL};
+    const changes *c = changes_of(me);
+    PyObject *material, *value = Py_None;
+    const char *name = NULL;
+    double number = 0;
+    int32_t index;
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, "O|zO:set_parameter", names, &material, &name,
+                                     &value) ||
+        !one_material(me, material, &index))
+        return NULL;
+    if ((name != NULL) != (value != Py_None)) {
+        python_refuse("set_parameter: expected a name and a value, or neither");
+        return NULL;
+    }
+    if (name && !python_number(value, "value", &number)) return NULL;
+    void *it = c->take(me, "set_parameter");
+    if (!it) return NULL;
+    lar_error error;
+    lar_status status;
+    PYTHON_UNLOCKED(status = c->set_parameter(it, index, name, number, &error));
+    return done(me, c, status, &error);
+}
+
+static PyObject *parameter(PyObject *me, PyObject *args, PyObject *keywords) {
+    static char *names[] = {"material", "name", NULL};
+    PyObject *material;
+    const char *name;
+    int32_t index;
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, "Os:parameter", names, &material, &name) ||
+        !one_material(me, material, &index))
+        return NULL;
+    lar_simulation *simulation = python_simulation_look((python_simulation *)me, "parameter");
+    return simulation ? PyFloat_FromDouble(lar_simulation_parameter(simulation, index, name))
+                      : NULL;
+}
+
 /* `call` (material). */
 static PyObject *get_number(PyObject *me, PyObject *args, PyObject *keywords, const char *call,
                             of_material *get) {
@@ -195,12 +249,8 @@ static PyObject *get_number(PyObject *me, PyObject *args, PyObject *keywords, co
     char format[32];
     snprintf(format, sizeof format, "O:%s", call);
     if (!PyArg_ParseTupleAndKeywords(args, keywords, format, names, &material) ||
-        !python_material(c->model(me), material, &index))
+        !one_material(me, material, &index))
         return NULL;
-    if (index < 0 || index >= lar_model_material_count(c->model(me))) {
-        python_refuse("material: there is no material %R", material);
-        return NULL;
-    }
     void *it = c->look(me, call);
     return it ? PyFloat_FromDouble(get(it, index)) : NULL;
 }
@@ -312,6 +362,11 @@ static PyObject *force(PyObject *me, PyObject *args, PyObject *keywords) {
      "divided."},                                                                                  \
         {"stiffness", FUNCTION(stiffness), METH_VARARGS | METH_KEYWORDS,                           \
          "stiffness($self, material)\n--\n\nThat factor now; material by index or name."},         \
+        {"set_parameter", FUNCTION(set_parameter), METH_VARARGS | METH_KEYWORDS,                   \
+         "set_parameter($self, material, name=None, value=None)\n--\n\nA parameter of a "          \
+         "material's law, as scenes call it ('shear_modulus', 'c1'), or of its fibres "            \
+         "('fibres.ksi'), in Pa where it has a unit; material by index or name. Without a name: "  \
+         "all are the model's again. What would make steps too long is refused."},                 \
         {"activate", FUNCTION(activate), METH_VARARGS | METH_KEYWORDS,                             \
          "activate($self, value, material=None)\n--\n\nHow active a material with active stress "  \
          "is, 0 to 1, times what its curve or wave says; by index or name, None: all that have "   \
@@ -337,6 +392,9 @@ static PyObject *force(PyObject *me, PyObject *args, PyObject *keywords) {
 
 PyMethodDef python_change_methods[] = {
     SHARED_METHODS,
+    {"parameter", FUNCTION(parameter), METH_VARARGS | METH_KEYWORDS,
+     "parameter($self, material, name)\n--\n\nThat parameter now, without stiffness; 0.0 for what "
+     "the material does not have."},
     {"force", FUNCTION(force), METH_VARARGS | METH_KEYWORDS,
      "force($self, node)\n--\n\nWhat was set on a node and on sets that it is in, together [N], a "
      "tuple."},

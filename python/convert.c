@@ -175,11 +175,19 @@ static bool int32_of(PyObject *source, const char *name, int32_t *out) {
     return true;
 }
 
+const char *python_text(PyObject *text, const char *name) {
+    Py_ssize_t length = 0;
+    const char *utf8 = PyUnicode_AsUTF8AndSize(text, &length);
+    if (!utf8 || strlen(utf8) == (size_t)length) return utf8;
+    python_refuse("%s: there is a character 0 in the text", name);
+    return NULL;
+}
+
 bool python_material(const lar_model *model, PyObject *source, int32_t *index) {
     *index = -1;
     if (!source || source == Py_None) return true;
     if (!PyUnicode_Check(source)) return int32_of(source, "material", index);
-    const char *wanted = PyUnicode_AsUTF8AndSize(source, NULL);
+    const char *wanted = python_text(source, "material");
     lar_material_info info;
     int32_t count = lar_model_material_count(model);
     for (int32_t i = 0; wanted && i < count; i++)
@@ -193,7 +201,7 @@ bool python_material(const lar_model *model, PyObject *source, int32_t *index) {
 
 bool python_where(PyObject *where, const char **set, int32_t *node) {
     if (PyUnicode_Check(where))
-        *set = PyUnicode_AsUTF8AndSize(where, NULL);
+        *set = python_text(where, "where");
     else if (!int32_of(where, "where: a node or the name of a set of nodes", node))
         return false;
     return !PyErr_Occurred();

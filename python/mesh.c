@@ -44,15 +44,8 @@ static void request_free(request *r) {
 /* A text as long as the request lives; takes `text` over. */
 static const char *keep_text(request *r, PyObject *text, const char *name) {
     const char *utf8 = NULL;
-    Py_ssize_t length = 0;
-    if (!text || PyList_Append(r->kept, text))
-        utf8 = NULL;
-    else if (PyBytes_Check(text))
-        utf8 = PyBytes_AsString(text);
-    else if ((utf8 = PyUnicode_AsUTF8AndSize(text, &length)) && strlen(utf8) != (size_t)length) {
-        python_refuse("%s: there is a character 0 in the text", name);
-        utf8 = NULL;
-    }
+    if (text && !PyList_Append(r->kept, text))
+        utf8 = PyBytes_Check(text) ? PyBytes_AsString(text) : python_text(text, name);
     Py_XDECREF(text);
     return utf8;
 }

@@ -32,7 +32,7 @@ static bool take_set(PyObject *value, const char *name, lar_array_set *set, pyth
     set->kind = "nodes";
     if (PyTuple_Check(value) && PyTuple_Size(value) == 2 &&
         PyUnicode_Check(PyTuple_GetItem(value, 0))) {
-        set->kind = PyUnicode_AsUTF8AndSize(PyTuple_GetItem(value, 0), NULL);
+        set->kind = python_text(PyTuple_GetItem(value, 0), label);
         value = PyTuple_GetItem(value, 1);
     }
     if (!set->kind || !python_integers(value, label, 0, rows)) return false;
@@ -57,7 +57,7 @@ static bool take_sets(PyObject *sets, arrays *a) {
     while (PyDict_Next(a->named, &at, &key, &value)) {
         if (!PyUnicode_Check(key))
             return python_refuse_type("sets: expected names as keys, got %R", key);
-        const char *name = PyUnicode_AsUTF8AndSize(key, NULL);
+        const char *name = python_text(key, "sets");
         int32_t i = a->sets++;
         if (!name || !take_set(value, name, &a->set[i], &a->set_rows[i])) return false;
     }
@@ -124,11 +124,8 @@ static PyObject *make(const arrays *a, PyObject *scene) {
                                   .fibre = a->fibres.data,
                                   .fibre2 = a->fibres2.data};
     PyObject *text = scene == Py_None ? scene : python_scene_text(scene);
-    Py_ssize_t length = 0;
-    const char *utf8 = text && text != Py_None ? PyUnicode_AsUTF8AndSize(text, &length) : NULL;
-    bool whole = !utf8 || strlen(utf8) == (size_t)length;
-    if (!whole) python_refuse("scene: there is a character 0 in the text");
-    if (!text || (text != Py_None && !utf8) || !whole) {
+    const char *utf8 = text && text != Py_None ? python_text(text, "scene") : NULL;
+    if (!text || (text != Py_None && !utf8)) {
         if (text != Py_None) Py_XDECREF(text);
         return NULL;
     }

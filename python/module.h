@@ -164,6 +164,9 @@ PyObject *python_touch_list(const lar_touch *touch, int32_t count);
 PyObject *python_tool_dict(const lar_tool_info *info);
 /* "sphere", ... as lar_tool_info for lar_simulation_add_tool. */
 bool python_tool_wanted(PyObject *args, PyObject *keywords, lar_tool_info *info);
+/* A str in UTF-8 that lives as long as it; NULL and an exception where it has a character 0, which
+ * the library would take for its end. */
+const char *python_text(PyObject *text, const char *name);
 /* The index of a material: a number or a name; None: all, -1. */
 bool python_material(const lar_model *model, PyObject *source, int32_t *index);
 

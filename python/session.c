@@ -42,7 +42,7 @@ bool python_session_tool(lar_session *session, PyObject *source, int32_t *index)
         *index = (int32_t)number;
         return true;
     }
-    const char *wanted = PyUnicode_AsUTF8AndSize(source, NULL);
+    const char *wanted = python_text(source, "tool");
     for (int32_t i = 0; wanted && !lar_session_tool_info(session, i, &info, NULL); i++)
         if (strcmp(info.name, wanted) == 0) {
             *index = i;

@@ -58,7 +58,7 @@ bool python_simulation_tool(lar_simulation *simulation, PyObject *source, int32_
         *index = (int32_t)number;
         return true;
     }
-    const char *wanted = PyUnicode_AsUTF8AndSize(source, NULL);
+    const char *wanted = python_text(source, "tool");
     lar_tool_info info;
     for (int32_t i = 0; wanted && i < count; i++)
         if (!lar_simulation_tool(simulation, i, &info, NULL) && strcmp(info.name, wanted) == 0) {

@@ -49,7 +49,7 @@ static int32_t threads_at_most(void) {
 
 void lar_parallel_for(int32_t count, int32_t portion, lar_parallel_for_work *work, void *context) {
     task shared = {work, context, count, portion, 0};
-    pthread_t thread[THREADS_MAX];
+    lar_thread thread[THREADS_MAX];
     const int64_t portions = ((int64_t)count + portion - 1) / portion;
     const int32_t max = portions > 1 ? threads_at_most() : 1;
     int started = 0;
@@ -57,5 +57,5 @@ void lar_parallel_for(int32_t count, int32_t portion, lar_parallel_for_work *wor
            !lar_thread_start(&thread[started], help, &shared))
         started++;
     take_portions(&shared);
-    for (int i = 0; i < started; i++) pthread_join(thread[i], NULL);
+    for (int i = 0; i < started; i++) lar_thread_join(&thread[i]);
 }

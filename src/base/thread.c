@@ -1,6 +1,51 @@
 #include "base/thread.h"
 
-#include <stdbool.h>
+#include <signal.h>
+
+#include "base/error.h"
+
+static lar_thread_hooks host;
+
+lar_status lar_threads_set(const lar_thread_hooks *hooks, lar_error *error) {
+    if (hooks && (!hooks->start || !hooks->join))
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "lar_threads_set needs functions that start and join, or NULL for the "
+                        "library's own");
+    host = hooks ? *hooks : (lar_thread_hooks){0};
+    return LAR_OK;
+}
+
+static int start_own(pthread_t *thread, int priority, void *(*run)(void *), void *context) {
+    struct sched_param urgency = {.sched_priority = priority};
+    pthread_attr_t attributes;
+    pthread_attr_init(&attributes);
+    if (priority > 0) {
+        pthread_attr_setinheritsched(&attributes, PTHREAD_EXPLICIT_SCHED);
+        pthread_attr_setschedpolicy(&attributes, SCHED_FIFO);
+        pthread_attr_setschedparam(&attributes, &urgency);
+    }
+    int cause = pthread_create(thread, &attributes, run, context);
+    pthread_attr_destroy(&attributes);
+    return cause;
+}
+
+int lar_thread_start_urgent(lar_thread *thread, int priority, void *(*run)(void *), void *context) {
+    sigset_t all, before;
+    *thread = (lar_thread){.hosted = host.start != NULL};
+    sigfillset(&all);
+    pthread_sigmask(SIG_SETMASK, &all, &before);
+    int cause = thread->hosted ? host.start(host.context, priority, run, context, &thread->hosts)
+                               : start_own(&thread->own, priority, run, context);
+    pthread_sigmask(SIG_SETMASK, &before, NULL);
+    return cause;
+}
+
+void lar_thread_join(const lar_thread *thread) {
+    if (thread->hosted)
+        host.join(host.context, thread->hosts);
+    else
+        pthread_join(thread->own, NULL);
+}
 
 #ifdef __linux__
 

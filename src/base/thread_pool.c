@@ -22,7 +22,7 @@ static const double AWAKE = 2.5e-3, AWAKE_OVERSUBSCRIBED = 0.2e-3;
 typedef struct worker {
     lar_thread_pool *pool;
     int32_t number;
-    pthread_t thread;
+    lar_thread thread;
     uint64_t done; /* atomic: jobs finished */
 } __attribute__((aligned(64))) worker;
 
@@ -102,7 +102,7 @@ lar_status lar_thread_pool_create(int32_t count, bool pin, int32_t first_core,
     for (int32_t i = 1; i < count && !status; i++) {
         pool->worker[i].pool = pool;
         pool->worker[i].number = i;
-        int cause = pthread_create(&pool->worker[i].thread, NULL, attend, &pool->worker[i]);
+        int cause = lar_thread_start(&pool->worker[i].thread, attend, &pool->worker[i]);
         if (cause)
             status = lar_fail(error, LAR_ERROR_MEMORY,
                               "the system gives no thread %d of %d: %s; use fewer processors or "
@@ -127,7 +127,7 @@ lar_status lar_thread_pool_create(int32_t count, bool pin, int32_t first_core,
 void lar_thread_pool_destroy(lar_thread_pool *pool) {
     if (!pool) return;
     give_order(pool, NULL, NULL);
-    for (int32_t i = 1; i <= pool->started; i++) pthread_join(pool->worker[i].thread, NULL);
+    for (int32_t i = 1; i <= pool->started; i++) lar_thread_join(&pool->worker[i].thread);
     lar_pin_restore(pool->caller);
     lar_thread_restore_slice(pool->caller_slice);
     pthread_cond_destroy(&pool->wake);

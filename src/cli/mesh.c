@@ -16,7 +16,7 @@ enum { INPUTS_MAX = 255 };
 typedef struct mesh_settings {
     const char *input[INPUTS_MAX];
     int32_t inputs;
-    cli_texts labels;
+    cli_texts labels, tissues;
     const char *names, *title, *out, *fibres, *fibres_in;
     int64_t elements; /* 0: not given */
     double size, scale;
@@ -235,6 +235,8 @@ static lar_status make(void *context, int32_t elements, lar_meshing **meshing, l
     options.fix = s->fix > 0 ? fix_names[s->fix] : NULL;
     options.fibres = s->fibres;
     options.fibre_region = s->fibres_in;
+    options.tissues = s->tissues.text;
+    options.tissue_count = s->tissues.count;
     options.progress = show_progress;
     options.context = &m->progress;
     lar_status status = lar_meshing_create(s->input, s->inputs, &options, meshing, error);
@@ -325,6 +327,10 @@ static int mesh_main(int argc, char **argv) {
                  &s.fibres),
         CLI_TEXT("--fibres-in", "NAME", "the region that has them; without: all but bones",
                  &s.fibres_in),
+        CLI_TEXTS("--tissue", "[REGION=]FILE",
+                  "a tissue file for a region, or for all but bones, in\nplace of a figure of the "
+                  "literature; may be given again",
+                  &s.tissues),
         CLI_TEXT("--title", "TEXT", "title, and the name of the files", &s.title),
         CLI_TEXT("--out", "DIR", "folder for the files; without: called as the title", &s.out),
         CLI_FLAG("--force", "replace files that are there", &s.force),

@@ -43,7 +43,7 @@ typedef struct link_state {
 
 typedef struct lar_comm_heartbeat {
     lar_comm *comm;
-    pthread_t thread;
+    lar_thread thread;
     bool runs;
     int wake[2];            /* a pipe */
     int32_t ended;          /* the first whose connection ended without a goodbye, -1: none */
@@ -273,7 +273,7 @@ void lar_heartbeat_stop(lar_comm *comm) {
     if (w->runs) {
         __atomic_store_n(&w->leaving, 1, __ATOMIC_RELEASE);
         wake_up(w);
-        pthread_join(w->thread, NULL);
+        lar_thread_join(&w->thread);
     }
     for (int i = 0; i < 2; i++)
         if (w->wake[i] >= 0) close(w->wake[i]);

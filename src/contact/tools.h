@@ -18,6 +18,7 @@
 #include <stddef.h>
 
 #include "model/forces.h"
+#include "model/parameters.h"
 #include "model/settings.h"
 #include "model/supports.h"
 
@@ -142,6 +143,7 @@ typedef struct lar_tools {
     lar_settings settings;
     lar_forces forces;
     lar_supports supports;
+    lar_parameters parameters;
     lar_heavy_now heavier;
     lar_spare_tool spare[LAR_SPARES_MAX];
     lar_tool_motion motion[LAR_TOOLS_MAX]; /* where tools really go */

@@ -43,7 +43,7 @@ typedef enum lar_law_value {
 } lar_law_value;
 
 typedef struct lar_law_parameter {
-    const char *name;
+    char name[16]; /* where it stands: a pointer would be one relocation more of the library */
     lar_law_value value;
 } lar_law_parameter;
 

@@ -8,8 +8,8 @@
  * answers at once). After a sudden strain S falls as g0 + sum_i g_i exp(-t / t_i). The stress of
  * one step is in viscous_stress.h, what an element remembers between two of them is here:
  *
- *     value   0       1 .. 6   7 .. 12   13 .. 18   19 .. 24   25 .. 30
- *             work    C - 1      Se         H1         H2         H3       xx xy xz yy yz zz
+ *     value   0       1 .. 6   7 .. 12   13 .. 18   19 .. 24       43 .. 48
+ *             work    C - 1      Se         H1         H2     ...     H6       xx xy xz yy yz zz
  *
  * in pascal of the material as the model has it: who makes a material stiffer by a factor makes it
  * so from the beginning.
@@ -19,7 +19,7 @@
 
 #include <stdbool.h>
 
-enum { LAR_VISCOUS_TERMS = 3 };
+enum { LAR_VISCOUS_TERMS = 6 }; /* as many as FEBio has */
 
 typedef struct lar_viscosity {
     int terms;                       /* 0: the material is elastic, and nothing else counts */
@@ -65,10 +65,13 @@ static inline double lar_viscosity_volume_rest(const lar_viscosity *viscosity) {
     return viscosity->isochoric ? 1 : lar_viscosity_rest(viscosity);
 }
 
-/* Kinds of viscosity whose elements may share a block: 0 none, else terms and part. */
-enum { LAR_VISCOUS_KINDS = 8 };
+/* Kinds of viscosity whose elements may share a block: 0 none, else terms and part. Model hashes
+ * and checkpoints have these numbers, those of up to three terms for longer than the others. */
+enum { LAR_VISCOUS_KINDS = 14 };
 static inline int lar_viscosity_kind(const lar_viscosity *viscosity) {
-    return viscosity->terms == 0 ? 0 : viscosity->terms + (viscosity->isochoric ? 4 : 0);
+    const int terms = viscosity->terms, isochoric = viscosity->isochoric;
+    if (terms == 0) return 0;
+    return terms <= 3 ? terms + 4 * isochoric : terms + 4 + 3 * isochoric;
 }
 
 #endif

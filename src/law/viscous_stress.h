@@ -58,6 +58,27 @@ LAR_INLINE lar_lane lar_viscous_relax(const lar_viscous_lane *c, int terms, int 
     return now;
 }
 
+/* What a step changes, of all six values together. */
+typedef struct lar_viscous_sum {
+    lar_lane work, size;
+    lar_lane over[6]; /* S - Se, in the units of P */
+} lar_viscous_sum;
+
+/* Value k of a lane, whose strain C - 1 and stress Se are these now. */
+LAR_INLINE void lar_viscous_value(const lar_viscous_lane *c, int terms, int k, double twice,
+                                  lar_lane strain, lar_lane stress, const double *before,
+                                  double *after, int stride, lar_viscous_sum *sum) {
+    int strained = stride * (LAR_HISTORY_STRAIN + k), stressed = stride * (LAR_HISTORY_STRESS + k);
+    lar_lane change = stress - lar_lane_load(before + stressed), then;
+    lar_lane now = lar_viscous_relax(c, terms, k, change, before, after, stride, &then);
+    lar_lane step = lar_lane_set(0.25 * twice) * (strain - lar_lane_load(before + strained));
+    sum->work = lar_lane_fma(then + now, step, sum->work);
+    lar_lane_store(after + stressed, stress);
+    lar_lane_store(after + strained, strain);
+    sum->over[k] = c->unit * lar_lane_fma(c->rest - lar_lane_set(1), stress, now);
+    sum->size = lar_lane_fma(lar_lane_set(twice) * sum->over[k], sum->over[k], sum->size);
+}
+
 /* P of the law becomes P of the material. What is remembered stands in `before` and goes on in
  * `after`, which may be the same: value k of some lanes at k times `stride`. Returns a number not
  * below |S - Se|^2 |F|^2 in order of magnitude, in the units of P. */
@@ -66,35 +87,32 @@ LAR_INLINE lar_lane lar_viscous_stress(const lar_lane F[9], const lar_viscous_la
                                        int stride, lar_lane P[9]) {
     static const int symmetric[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}};
     static const double twice[6] = {1, 2, 2, 1, 2, 1}; /* of a product of tensors */
-    lar_lane cof[9], part[9], strain[6], stress[6], over[6];
-    lar_lane J = lar_lane_cofactor(F, cof), work = lar_lane_set(0), size = work;
-    lar_lane reciprocal = lar_lane_set(1) / J, mean = work;
+    lar_lane cof[9], part[9], strain[6], stress[6], mean = lar_lane_set(0);
+    lar_lane J = lar_lane_cofactor(F, cof), reciprocal = lar_lane_set(1) / J;
+    lar_viscous_sum sum = {.work = mean, .size = mean};
     for (int k = 0; isochoric && k < 9; k++) mean = lar_lane_fma(P[k], F[k], mean);
     mean = mean * reciprocal * lar_lane_set(1.0 / 3);
     for (int k = 0; k < 9; k++) part[k] = isochoric ? lar_lane_fnma(mean, cof[k], P[k]) : P[k];
     lar_lane_pull(cof, part, c->inverse * reciprocal, stress);
     lar_lane_pull(F, F, lar_lane_set(1), strain);
-    for (int k = 0; k < 6; k++) {
-        int strained = stride * (LAR_HISTORY_STRAIN + k),
-            stressed = stride * (LAR_HISTORY_STRESS + k);
-        lar_lane change = stress[k] - lar_lane_load(before + stressed), then;
-        lar_lane now = lar_viscous_relax(c, terms, k, change, before, after, stride, &then);
-        if (k == 0 || k == 3 || k == 5) strain[k] = strain[k] - lar_lane_set(1);
-        lar_lane step =
-            lar_lane_set(0.25 * twice[k]) * (strain[k] - lar_lane_load(before + strained));
-        work = lar_lane_fma(then + now, step, work);
-        lar_lane_store(after + stressed, stress[k]);
-        lar_lane_store(after + strained, strain[k]);
-        over[k] = c->unit * lar_lane_fma(c->rest - lar_lane_set(1), stress[k], now);
-        size = lar_lane_fma(lar_lane_set(twice[k]) * over[k], over[k], size);
-    }
-    work = lar_lane_load(before + stride * LAR_HISTORY_WORK) + work;
-    lar_lane_store(after + stride * LAR_HISTORY_WORK, work);
+    for (int k = 0; k < 6; k++)
+        if (twice[k] == 1) strain[k] = strain[k] - lar_lane_set(1);
+    if (__builtin_constant_p(terms))
+        for (int k = 0; k < 6; k++)
+            lar_viscous_value(c, terms, k, twice[k], strain[k], stress[k], before, after, stride,
+                              &sum);
+    else /* shorter: 2 kB for each instruction set, and 5 % more instructions */
+#pragma GCC unroll 1
+        for (int k = 0; k < 6; k++)
+            lar_viscous_value(c, terms, k, twice[k], strain[k], stress[k], before, after, stride,
+                              &sum);
+    sum.work = lar_lane_load(before + stride * LAR_HISTORY_WORK) + sum.work;
+    lar_lane_store(after + stride * LAR_HISTORY_WORK, sum.work);
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++)
             for (int k = 0; k < 3; k++)
-                P[3 * i + j] = lar_lane_fma(F[3 * i + k], over[symmetric[k][j]], P[3 * i + j]);
-    return size * lar_lane_square_sum(F);
+                P[3 * i + j] = lar_lane_fma(F[3 * i + k], sum.over[symmetric[k][j]], P[3 * i + j]);
+    return sum.size * lar_lane_square_sum(F);
 }
 
 #endif

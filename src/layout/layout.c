@@ -96,6 +96,16 @@ lar_status lar_layout_create_styled(const lar_model *model, lar_layout_style sty
     return status;
 }
 
+uint32_t lar_layout_turn(const lar_layout *layout, const lar_mesh *mesh, lar_gid e) {
+    uint32_t turn = 0;
+    for (unsigned a = 0; a < 8; a++) {
+        unsigned k = 0;
+        while (k < 7 && mesh->element[e][k] != layout->corner[e][a]) k++;
+        turn |= k << 4 * a;
+    }
+    return turn;
+}
+
 void lar_layout_destroy(lar_layout *layout) {
     if (!layout->corner_lent) free(layout->corner);
     free(layout->block);

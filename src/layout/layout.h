@@ -70,4 +70,8 @@ lar_status lar_layout_create_styled(const lar_model *model, lar_layout_style sty
                                     lar_layout *layout, lar_error *error);
 void lar_layout_destroy(lar_layout *layout); /* idempotent */
 
+/* Which corner of the mesh's element e each of its corners here is: four bits each, the first one
+ * lowest. */
+uint32_t lar_layout_turn(const lar_layout *layout, const lar_mesh *mesh, lar_gid e);
+
 #endif

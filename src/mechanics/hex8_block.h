@@ -90,11 +90,13 @@ typedef struct lar_block_more {
 
 /* What a block's materials say of their viscosity (law/viscosity.h), beside it as well. */
 typedef struct lar_viscous_block {
-    double rest[LAR_BLOCK], share[LAR_VISCOUS_TERMS][LAR_BLOCK];
-    double rate[LAR_VISCOUS_TERMS][LAR_BLOCK]; /* 1 / t_i [1/s] */
+    double rest[LAR_BLOCK];
     double unit[LAR_BLOCK];    /* volume, scale and factor of stiffness: by which P is more than
                                   what is remembered; 0 without an element */
     double inverse[LAR_BLOCK]; /* of that; 0 without an element */
+    struct {
+        double share[LAR_BLOCK], rate[LAR_BLOCK]; /* g_i, 1 / t_i [1/s] */
+    } term[LAR_VISCOUS_TERMS];
 } __attribute__((aligned(64))) lar_viscous_block;
 
 /* Fibres (law/fibre.h), beside the block as well: parameters in pascal and active stresses times
@@ -211,15 +213,46 @@ typedef int64_t (*lar_hex8_recover_more)(const lar_block_run *run, const lar_vis
 /* Makes block `block` of a lean run whole. */
 typedef void (*lar_hex8_expand)(const lar_block_run *run, int32_t block, lar_hex8_block *whole);
 
-/* Looks at the corners of those of block `block` of a run that have a bit in `lanes`, with nodes at
- * `rest` and displaced by `u`, both
- * [3][axis_stride]. A corner's volume is what its edges span; at rest
- * no corner of a lane has more than `largest` [8] (aligned to 64 bytes). Returns a bit for each
- * lane where one is not above share[0] times that at rest; and for share[1], which is more, eight
- * bits further up. */
-typedef unsigned (*lar_hex8_corners)(const lar_block_run *run, int32_t block, unsigned lanes,
-                                     const double largest[LAR_BLOCK], const double *rest,
-                                     const double *u, const double share[2]);
+/* Elements of any blocks side by side. Lanes that are not looked at have nodes all the same. */
+typedef struct lar_hex8_group {
+    double largest[LAR_BLOCK] __attribute__((aligned(64))); /* no corner's edges span more at rest
+                                                               [m^3] */
+    int32_t node[8][LAR_BLOCK];                             /* as in lar_block_head */
+} lar_hex8_group;
+
+/* Where nodes are: at `rest`, displaced by `u`, and, with `v` (else NULL), moved on with that for
+ * ahead[lane] seconds; all [3][stride]. */
+typedef struct lar_hex8_places {
+    size_t stride;
+    const double *rest, *u, *v, *ahead;
+} lar_hex8_places;
+
+/* What corners have, their edges span it. */
+typedef struct lar_hex8_corner_look {
+    double above[LAR_BLOCK] __attribute__((aligned(64))); /* of none less than this more than
+                                                             share[1] of that at rest [m^3] */
+    double longest[LAR_BLOCK];                            /* square of an edge [m^2] */
+    uint8_t at[LAR_BLOCK]; /* a bit for each corner that has not more than share[0] */
+} lar_hex8_corner_look;
+
+/* Looks at the corners of those of a group that have a bit in `lanes`. Returns a bit for each lane
+ * where one has not more than share[0] of its volume at rest; and for share[1], which is more,
+ * eight bits further up. */
+typedef unsigned (*lar_hex8_corners)(const lar_hex8_group *group, unsigned lanes,
+                                     const lar_hex8_places *places, const double share[2],
+                                     lar_hex8_corner_look *look);
+
+/* How such elements are and move: lar_hex8_areas [m^4], and the largest square of a corner's speed
+ * beside the first one [m^2/s^2]. */
+typedef struct lar_hex8_motion {
+    double areas[LAR_BLOCK] __attribute__((aligned(64)));
+    double parting[LAR_BLOCK];
+} lar_hex8_motion;
+
+/* Of those lanes that have a bit; nodes move with `v` [3][stride]. */
+typedef void (*lar_hex8_motion_of)(const lar_hex8_group *group, unsigned lanes,
+                                   const lar_hex8_places *places, const double *v,
+                                   lar_hex8_motion *motion);
 
 /* How nodes move in one leapfrog step of length dt with mass-proportional damping. */
 typedef struct lar_leapfrog {
@@ -250,6 +283,7 @@ typedef struct lar_kernels {
     lar_hex8_recover_more recover_more;
     lar_hex8_expand expand;
     lar_hex8_corners corners;
+    lar_hex8_motion_of motion;
     lar_node_update update;
 } lar_kernels;
 

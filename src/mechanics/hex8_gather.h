@@ -183,4 +183,10 @@ LAR_INLINE void gather_modes(const lar_block_head *head, int lane, lar_block_row
     }
 }
 
+/* factor / 64 (a x b), axis i: of the volume's derivatives (LAR_HEX8_VOLUME_TERM). */
+LAR_INLINE lar_lane volume_term(double factor, const lar_lane a[3], const lar_lane b[3], int i) {
+    int j = i == 2 ? 0 : i + 1, k = i == 0 ? 2 : i - 1;
+    return lar_lane_set(factor / 64) * (a[j] * b[k] - a[k] * b[j]);
+}
+
 #endif

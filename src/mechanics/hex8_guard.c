@@ -111,11 +111,12 @@ static double wave_modulus(const lar_material *material) {
 }
 
 void lar_hex8_guard_force(const double rest[8][3], const double now[8][3], const double v[8][3],
-                          const lar_material *material, lar_guard_lead lead, double force[8][3],
-                          lar_guard *guard) {
+                          const lar_material *material, lar_guard_lead lead, unsigned corners,
+                          double force[8][3], lar_guard *guard) {
     double modulus = KAPPA * wave_modulus(material) / 8;
     *guard = (lar_guard){.min = INFINITY};
-    for (int a = 0; a < 8; a++) {
+    for (; corners; corners &= corners - 1) {
+        int a = __builtin_ctz(corners);
         corner_span c = {0};
         span_corner(rest, now, a, &c);
         if (!(c.j >= guard->min)) guard->min = c.j;
@@ -153,7 +154,8 @@ double lar_hex8_guard_power(const double rest[8][3], const double now[8][3], con
 
 void lar_hex8_guard(const double rest[8][3], const double now[8][3], const lar_material *material,
                     lar_guard *guard) {
-    lar_hex8_guard_force(rest, now, NULL, material, (lar_guard_lead){0}, NULL, guard);
+    lar_hex8_guard_force(rest, now, NULL, material, (lar_guard_lead){0}, LAR_ALL_CORNERS, NULL,
+                         guard);
 }
 
 /* Signs of the seven modes at node a (hex8.h). */

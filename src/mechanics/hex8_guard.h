@@ -48,11 +48,14 @@ typedef struct lar_guard_lead {
     double closing, opening; /* [s] */
 } lar_guard_lead;
 
-/* The same, and adds the barrier's forces dw/dx [N] to `force`, for corners with the velocities `v`
+enum { LAR_ALL_CORNERS = 255 };
+
+/* The same of those corners that have a bit in `corners`: the others are known to be sound. And
+ * adds the barrier's forces dw/dx [N] to `force` (may be NULL), for corners with the velocities `v`
  * [m/s]. */
 void lar_hex8_guard_force(const double rest[8][3], const double now[8][3], const double v[8][3],
-                          const lar_material *material, lar_guard_lead lead, double force[8][3],
-                          lar_guard *guard);
+                          const lar_material *material, lar_guard_lead lead, unsigned corners,
+                          double force[8][3], lar_guard *guard);
 
 /* The power [W] that such dampers take at these velocities. */
 double lar_hex8_guard_power(const double rest[8][3], const double now[8][3], const double v[8][3],

@@ -20,6 +20,7 @@
 #include "mechanics/node_update.h"
 #ifndef LAR_KERNEL_ELASTIC
 #include "mechanics/hex8_fibre.h"
+#include "mechanics/hex8_group.h"
 #include "mechanics/hex8_viscous.h"
 #endif
 
@@ -31,12 +32,6 @@
 LAR_INLINE lar_lane quotient(lar_lane a, lar_lane b, lar_lane reciprocal) {
     lar_lane q = a * reciprocal;
     return lar_lane_fma(lar_lane_fnma(q, b, a), reciprocal, q);
-}
-
-/* factor (a x b), axis i */
-LAR_INLINE lar_lane volume_term(double factor, const lar_lane a[3], const lar_lane b[3], int i) {
-    int j = i == 2 ? 0 : i + 1, k = i == 0 ? 2 : i - 1;
-    return lar_lane_set(factor / 64) * (a[j] * b[k] - a[k] * b[j]);
 }
 
 /* Gradients and shapes of some lanes, as hex8.c makes them, operation for operation. */
@@ -480,64 +475,6 @@ static int64_t recover_more(const lar_block_run *run, const lar_viscous_step *st
 }
 #endif
 
-/* ---- corners ------------------------------------------------------------------------------- */
-
-/* The volumes that the edges span in the eight corners. */
-LAR_INLINE void corner_volumes(const lar_lane x[8][3], lar_lane volume[8]) {
-    /* Of every corner the corners where its edges along xi, eta, zeta begin and end. */
-    static const int from[8][3] = {{0, 0, 0}, {0, 1, 1}, {3, 1, 2}, {3, 0, 3},
-                                   {4, 4, 0}, {4, 5, 1}, {7, 5, 2}, {7, 4, 3}};
-    static const int to[8][3] = {{1, 3, 4}, {1, 2, 5}, {2, 2, 6}, {2, 3, 7},
-                                 {5, 7, 4}, {5, 6, 5}, {6, 6, 6}, {6, 7, 7}};
-    UNROLL8 for (int a = 0; a < 8; a++) {
-        lar_lane e[3][3];
-        UNROLL3 for (int k = 0; k < 3; k++) UNROLL3 for (int i = 0; i < 3; i++) e[k][i] =
-            x[to[a][k]][i] - x[from[a][k]][i];
-        lar_lane sum = e[0][0] * lar_lane_fnma(e[1][2], e[2][1], e[1][1] * e[2][2]);
-        sum = lar_lane_fma(e[0][1], lar_lane_fnma(e[1][0], e[2][2], e[1][2] * e[2][0]), sum);
-        volume[a] = lar_lane_fma(e[0][2], lar_lane_fnma(e[1][1], e[2][0], e[1][0] * e[2][1]), sum);
-    }
-}
-
-/* The lanes of some that have a corner with not more than `share` of its volume at rest. */
-LAR_INLINE unsigned lanes_below(const lar_lane now[8], const lar_lane at_rest[8], double share) {
-    unsigned below = 0;
-    UNROLL8 for (int a = 0; a < 8; a++) below |=
-        lar_lane_not_greater(now[a], lar_lane_set(share) * at_rest[a]);
-    return below;
-}
-
-LAR_INLINE void place_corners(const lar_block_head *head, int lane, lar_block_rows rows,
-                              lane_nodes nodes, lar_lane corner[8][3]) {
-    picked_corners picked;
-    const lane_corners from = find_corners(head, lane, rows, false, nodes, &picked);
-    UNROLL8 for (int a = 0; a < 8; a++) load_corner(from, a, false, corner[a]);
-}
-
-static unsigned corners(const lar_block_run *run, int32_t b, unsigned lanes,
-                        const double largest[LAR_BLOCK], const double *rest, const double *u,
-                        const double share[2]) {
-    const lar_block_head *head =
-        (const void *)((const char *)run->blocks + (size_t)b * lar_run_stride(run));
-    unsigned below[2] = {0, 0};
-    for (int lane = 0; lane < LAR_BLOCK; lane += LAR_LANES) {
-        lar_lane rested[8][3], x[8][3], now[8], at_rest[8];
-        unsigned part = lanes >> lane & ((1u << LAR_LANES) - 1);
-        if (!part) continue;
-        place_corners(head, lane, run->rows, nodes_of(run, rest), rested);
-        place_corners(head, lane, run->rows, nodes_of(run, u), x);
-        UNROLL8 for (int a = 0; a < 8; a++) UNROLL3 for (int i = 0; i < 3; i++) x[a][i] +=
-            rested[a][i];
-        corner_volumes((const lar_lane(*)[3])x, now);
-        UNROLL8 for (int a = 0; a < 8; a++) at_rest[a] = lar_lane_load(&largest[lane]);
-        if (!(lanes_below(now, at_rest, share[1]) & part)) continue;
-        corner_volumes((const lar_lane(*)[3])rested, at_rest);
-        for (int k = 0; k < 2; k++)
-            below[k] |= (lanes_below(now, at_rest, share[k]) & part) << lane;
-    }
-    return below[0] | below[1] << LAR_BLOCK;
-}
-
 #if LAR_SIMD == LAR_SIMD_AVX512
 #define LAR_KERNELS_NAME   lar_kernels_avx512
 #define LAR_KERNELS_TEXT   "avx512"
@@ -571,8 +508,9 @@ const lar_kernels LAR_KERNELS_NAME = {
     .recover = recover,
 #ifndef LAR_KERNEL_ELASTIC
     .recover_more = recover_more,
+    .corners = corners,
+    .motion = motion,
 #endif
     .expand = expand,
-    .corners = corners,
     .update = update,
 };

@@ -33,10 +33,10 @@ __attribute__((noinline)) static void viscous_change(double length, int term, la
 LAR_INLINE void viscous_load(const lar_viscous_block *block, int lane, int terms, double length,
                              viscous_lane *of) {
     for (int i = 0; i < terms; i++) {
-        lar_lane rate = lar_lane_load(&block->rate[i][lane]), last = of->rate[i];
+        lar_lane rate = lar_lane_load(&block->term[i].rate[lane]), last = of->rate[i];
         unsigned same = lar_lane_not_greater(rate, last) & lar_lane_not_greater(last, rate);
         if (__builtin_expect(same != (1U << LAR_LANES) - 1, 0)) viscous_change(length, i, rate, of);
-        of->c.share[i] = lar_lane_load(&block->share[i][lane]);
+        of->c.share[i] = lar_lane_load(&block->term[i].share[lane]);
     }
     of->c.rest = lar_lane_load(&block->rest[lane]);
     of->c.unit = lar_lane_load(&block->unit[lane]);

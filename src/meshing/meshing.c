@@ -21,6 +21,7 @@ lar_meshing_options lar_meshing_options_default(void) {
 
 void lar_meshing_destroy(lar_meshing *meshing) {
     if (!meshing) return;
+    lar_starter_clear_tissues(meshing);
     lar_boundary_clear(&meshing->boundary);
     lar_mesh_clear(&meshing->mesh);
     lar_triangles_clear(&meshing->outer);
@@ -114,10 +115,11 @@ static lar_status check_options(work *w) {
     const lar_meshing_options *o = &w->options;
     if (!isfinite(o->size) || o->size < 0 || !isfinite(o->scale) || o->scale < 0)
         return refuse(w, "%s", "size and scale are finite and not negative; 0 is the default");
-    if (o->elements < 0 || o->label_count < 0 || (o->label_count > 0 && !o->labels))
+    if (o->elements < 0 || o->label_count < 0 || (o->label_count > 0 && !o->labels) ||
+        o->tissue_count < 0 || (o->tissue_count > 0 && !o->tissues))
         return refuse(w, "%s",
-                      "the numbers of elements and of labels are not negative, and labels "
-                      "are not NULL");
+                      "the numbers of elements, labels and tissues are not negative, and labels "
+                      "and tissues are not NULL");
     if (o->size > 0 && o->elements > 0)
         return refuse(w, "%s",
                       "size and number of elements are both given; one follows from the "
@@ -333,6 +335,12 @@ static void count_regions(lar_meshing *m) {
                                     .density = tissue->density,
                                     .held = tissue->rigid,
                                     .usual_max = tissue->max};
+        if (m->given[r].path) {
+            region->source = m->given[r].path;
+            region->shear_modulus = m->given[r].shear;
+            region->bulk_modulus = m->given[r].bulk;
+            region->density = m->given[r].density;
+        }
         m->info.quality.true_volume += region->true_volume;
         for (int32_t e = 0; e < m->mesh.element_count; e++) {
             double corner[8][3];
@@ -415,6 +423,7 @@ static lar_status describe(work *w) {
     }
     if (!status) status = check_volume(w);
     if (!status && w->options.fibres) status = lay_fibres(w);
+    if (!status) status = lar_starter_check_tissues(m, w->error);
     return status ? status : lar_meshing_list_sets(m, w->error);
 }
 
@@ -428,6 +437,7 @@ static lar_status create(work *w, const lar_meshing_options *options, lar_meshin
     if (!w->meshing) return lar_fail_memory(error, sizeof *w->meshing, "a meshing");
     lar_status status = check_options(w);
     if (!status) status = make_boundary(w);
+    if (!status) status = lar_starter_take_tissues(w->meshing, &w->options, w->error);
     if (!status) status = make_mesh(w);
     if (!status) status = describe(w);
     lar_image_clear(&w->read);

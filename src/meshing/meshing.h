@@ -7,6 +7,7 @@
  *       +--> starter/extra_supports.c  what carries its weight besides
  *       +--> starter/sag.c             how far it moves under its weight, and how slowly
  *       +--> starter/fibres.c          along what its fibres run
+ *       +--> starter/given.c           tissue files in place of the table of tissues
  *       +--> quality.c                 deviation, volumes, quality of elements
  *       '--> write.c                   all files, the scene by starter/starter.c
  */
@@ -31,6 +32,14 @@ typedef struct lar_support {
     double slowest;         /* [1/s] angular frequency of the slowest motion; 0: not known */
 } lar_support;
 
+/* A tissue file, as it goes into the scene. */
+typedef struct lar_given_tissue {
+    char *path; /* NULL: there is none */
+    lar_bytes text;
+    double shear, bulk, density; /* strained at once [Pa], [kg/m^3] */
+    bool fibres;                 /* it has some, without a direction */
+} lar_given_tissue;
+
 struct lar_meshing {
     char *title;
     char *stem;  /* the title as a file's name */
@@ -45,6 +54,7 @@ struct lar_meshing {
     char *fibres;             /* the rule of mesh.fibre; NULL: there are none */
     const char *fibre_region; /* that has them; NULL: all but bones */
     lar_region_info *region;  /* [info.regions] */
+    lar_given_tissue *given;  /* [info.regions] */
     lar_meshing_info info;
     char *scene;        /* path, once written */
     char *text;         /* of the scene for memory, once asked for */
@@ -63,6 +73,17 @@ bool lar_starter_fibrous(const lar_meshing *meshing, const lar_region_info *regi
 
 /* Lays mesh.fibre by meshing->fibres; sets and the regions' information must be there. */
 lar_status lar_starter_lay_fibres(lar_meshing *meshing, lar_error *error);
+
+/* Reads the tissue files of the options into meshing->given; the boundary's regions must be there.
+ */
+lar_status lar_starter_take_tissues(lar_meshing *meshing, const lar_meshing_options *options,
+                                    lar_error *error);
+/* When fibres are laid: those of tissue files must have a direction. */
+lar_status lar_starter_check_tissues(const lar_meshing *meshing, lar_error *error);
+void lar_starter_clear_tissues(lar_meshing *meshing);
+/* Fails because there is no region of that name; `what` asks for it. */
+lar_status lar_starter_no_region(const lar_meshing *meshing, const char *what, const char *name,
+                                 lar_error *error);
 
 /* Writes the scene, whole or not at all; it names the mesh's and the surface's files. */
 lar_status lar_starter_write(const lar_meshing *meshing, const char *path, lar_error *error);

@@ -316,7 +316,8 @@ static void report_here(const lar_computer *computer, lar_report *report) {
 static void stiffen_on_thread(void *context, int32_t number) {
     lar_computer *computer = context;
     if (number % computer->threads == 0)
-        lar_domain_stiffen(&processor_of(computer, number)->domain, &computer->tools->settings);
+        lar_domain_stiffen(&processor_of(computer, number)->domain, &computer->tools->settings,
+                           &computer->tools->parameters);
 }
 
 /* What strained elements have more is accounted for by the first thread of each processor. */
@@ -329,15 +330,13 @@ static void take_masses(lar_processor *p, const lar_tools *tools) {
 /* What has been set since the last stretch: gravity and damping are read in every step, materials
  * are made anew. */
 static void take_settings(lar_computer *computer) {
-    const lar_settings *settings = &computer->tools->settings;
     const lar_domain *domain = &computer->processor[0].domain;
     uint64_t interval = lar_interval_length(computer->whole, computer->tools);
     for (int32_t i = 0; i < computer->hosted; i++) {
         computer->processor[i].domain.interval = interval;
         take_masses(&computer->processor[i], computer->tools);
     }
-    if (memcmp(domain->factor, settings->factor, sizeof domain->factor) != 0 ||
-        memcmp(domain->activation, settings->activation, sizeof domain->activation) != 0)
+    if (!lar_domain_follows(domain, &computer->tools->settings, &computer->tools->parameters))
         lar_thread_pool_run(computer->pool, stiffen_on_thread, computer);
 }
 
@@ -492,6 +491,7 @@ static lar_status take_tools(lar_computer *computer, const void *payload, size_t
                 lar_forces_good(&tools->forces, computer->whole->model,
                                 lar_domain_force_max(computer->whole)) &&
                 lar_supports_good(&tools->supports, computer->whole->model) &&
+                lar_parameters_good(&tools->parameters, &tools->settings, computer->whole->model) &&
                 lar_spares_good(tools->spare, computer->list->spares) &&
                 lar_heavier_now_good(computer->whole, &tools->heavier);
     if (!fits) return refuse_order(error);

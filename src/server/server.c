@@ -376,7 +376,7 @@ void lar_server_close(lar_server *server) {
     if (server->started) {
         __atomic_store_n(&server->ending, true, __ATOMIC_RELEASE);
         lws_cancel_service(server->context);
-        pthread_join(server->thread, NULL);
+        lar_thread_join(&server->thread);
     }
     if (server->working) lar_work_stop(&server->work);
     if (server->context)

@@ -17,6 +17,7 @@
 #include <libwebsockets.h>
 
 #include "base/clock.h"
+#include "base/thread.h"
 #include "server/files.h"
 #include "server/hands.h"
 #include "base/json/write.h"
@@ -111,7 +112,7 @@ struct lar_server {
     int listener, spare; /* `spare`: a number for a socket, kept for when there are none left */
     struct lws_context *context;
     struct lws_vhost *vhost;
-    pthread_t thread;
+    lar_thread thread;
     bool started;
     bool ending;     /* atomic */
     int32_t viewers; /* atomic */

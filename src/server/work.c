@@ -152,7 +152,7 @@ void lar_work_stop(lar_work *work) {
         work->ending = true;
         pthread_cond_signal(&work->bell);
         pthread_mutex_unlock(&work->lock);
-        pthread_join(work->thread, NULL);
+        lar_thread_join(&work->thread);
         pthread_mutex_destroy(&work->lock);
         pthread_cond_destroy(&work->bell);
     }

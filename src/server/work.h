@@ -12,6 +12,7 @@
 
 #include <pthread.h>
 
+#include "base/thread.h"
 #include "server/picture.h"
 #include "server/reading.h"
 
@@ -41,7 +42,7 @@ typedef struct lar_work {
     void (*wake)(void *context); /* the server's thread; may be called from any */
     void *context;
 
-    pthread_t thread;
+    lar_thread thread;
     bool started;
     pthread_mutex_t lock; /* of what follows */
     pthread_cond_t bell;

@@ -195,6 +195,20 @@ lar_status lar_session_set_stiffness(lar_session *session, int32_t material, dou
                NULL, error);
 }
 
+lar_status lar_session_set_parameter(lar_session *session, int32_t material, const char *name,
+                                     double value, lar_error *error) {
+    int index;
+    lar_status status = check_session(session, error);
+    if (!status)
+        status = lar_simulation_parameter_index(session->simulation->domain.model, material, name,
+                                                &index, error);
+    if (status) return status;
+    return set(
+        session,
+        (lar_setting){.kind = LAR_SETTING_PARAMETER, .of = material, .value = {value, index}}, NULL,
+        error);
+}
+
 lar_status lar_session_activate(lar_session *session, int32_t material, double value,
                                 lar_error *error) {
     return set(session,

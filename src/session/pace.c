@@ -94,7 +94,7 @@ void lar_pace_computed(lar_pace *pace, uint64_t steps, int64_t engine, int64_t b
     if (steps == 0) steps = 1;
     lar_histogram_add(&pace->steps, (uint64_t)(engine > 0 ? engine : 0) / steps);
     double min = 1e-9 * (double)busy / (double)steps;
-    if (pace->total.min == 0 || min < pace->total.min) pace->total.min = min;
+    if (busy > 0 && (pace->total.min == 0 || min < pace->total.min)) pace->total.min = min;
     pace->total.steps += steps;
 }
 

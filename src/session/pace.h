@@ -68,7 +68,7 @@ void lar_pace_wait(lar_pace *pace);
 /* A tick that lasts `seconds` (simulated) begins. */
 void lar_pace_begin(lar_pace *pace, double seconds, int64_t now);
 /* The steps are done: `engine` is the time that they took, `busy` what their thread had of a
- * processor meanwhile [ns]. */
+ * processor meanwhile [ns]; 0: not known. */
 void lar_pace_computed(lar_pace *pace, uint64_t steps, int64_t engine, int64_t busy);
 /* Steps take another time from now on: the least that is known is of no use any more. */
 void lar_pace_forget_min(lar_pace *pace);

@@ -206,7 +206,7 @@ lar_status lar_session_close(lar_session *session, lar_error *error) {
         pthread_mutex_lock(&session->requests.lock);
         lar_requests_place(&session->requests, &(lar_request){.kind = LAR_REQUEST_END});
         pthread_mutex_unlock(&session->requests.lock);
-        pthread_join(session->thread, NULL);
+        lar_thread_join(&session->thread);
     }
     lar_session_record_end(session);
     lar_status status = lar_recorder_close(session->recorder, error);

@@ -19,6 +19,7 @@
 #ifndef LAR_SESSION_SESSION_H
 #define LAR_SESSION_SESSION_H
 
+#include "base/thread.h"
 #include "simulation/simulation.h"
 #include "session/advice.h"
 #include "session/coupling.h"
@@ -81,7 +82,7 @@ struct lar_session {
     lar_triple_buffer *view; /* lar_session_view, to everybody: looking takes the newest one over */
     lar_history history;
     lar_snapshots snapshots;
-    pthread_t thread;
+    lar_thread thread;
     bool started; /* under requests.lock */
     bool hosted;  /* the same: lar_session_tick instead of a thread */
 

@@ -20,6 +20,15 @@ static lar_status set_support(const lar_setting *setting, lar_simulation *simula
         axes >= 1 && axes <= LAR_AXIS_ALL ? (unsigned)axes : 0, setting->value[1] != 0, error);
 }
 
+static lar_status set_parameter(const lar_setting *setting, lar_simulation *simulation,
+                                lar_error *error) {
+    double index = setting->value[1];
+    bool good = index >= -1 && index < LAR_PARAMETER_VALUES;
+    return lar_simulation_set_parameter_at(simulation, setting->of,
+                                           good ? (int)index : LAR_PARAMETER_VALUES,
+                                           setting->value[0], error);
+}
+
 lar_status lar_setting_apply(const lar_setting *setting, lar_simulation *simulation,
                              lar_error *error) {
     switch (setting->kind) {
@@ -41,6 +50,8 @@ lar_status lar_setting_apply(const lar_setting *setting, lar_simulation *simulat
     case LAR_SETTING_SUPPORT:
     case LAR_SETTING_SUPPORT_ON:
         return set_support(setting, simulation, error);
+    case LAR_SETTING_PARAMETER:
+        return set_parameter(setting, simulation, error);
     case LAR_SETTING_ACTIVATION:
         return lar_simulation_activate(simulation, setting->of, setting->value[0], error);
     default:

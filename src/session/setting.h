@@ -1,5 +1,5 @@
-/* One change of gravity, damping, stiffness, activation, tools, forces on nodes or supports: what
- * is asked of a session, recorded and replayed. */
+/* One change of gravity, damping, stiffness, parameters of materials, activation, tools, forces on
+ * nodes or supports: what is asked of a session, recorded and replayed. */
 #ifndef LAR_SESSION_SETTING_H
 #define LAR_SESSION_SETTING_H
 
@@ -18,6 +18,8 @@ typedef enum lar_setting_kind {
     LAR_SETTING_ACTIVATION,    /* value[0], of material `of`; -1: all that are active */
     LAR_SETTING_SUPPORT,       /* axes value[0] of node `of`; value[1]: held (not 0) or released */
     LAR_SETTING_SUPPORT_ON,    /* the same of every node of set `of` of the model */
+    LAR_SETTING_PARAMETER,     /* value[0], of material `of`: its parameter value[1], counted as in
+                                  model/parameters.h; -1: all are the model's */
     LAR_SETTING_KINDS
 } lar_setting_kind;
 

@@ -24,10 +24,10 @@
  * 32 shares. A state with added tools has an odd version from 5 on, any other one an even one. One
  * with forces that were set on nodes has version 8 or 9, one with an activation that was set 10 or
  * 11, with forces or without, one with strained elements that are heavier, or may soon be, 12 or
- * 13, with supports that were set 14 or 15, each with all of the others; others are written as they
- * always were. */
+ * 13, with supports that were set 14 or 15, with parameters of materials that were set 16 or 17,
+ * each with all of the others; others are written as they always were. */
 enum { BEFORE_SETTINGS = 3, BEFORE_THIRDS = 5, VERSION = 6, FORCES = 8, ACTIVE = 10 };
-enum { HEAVIER = 12, SUPPORTED = 14, NEWEST = 15 };
+enum { HEAVIER = 12, SUPPORTED = 14, PARAMETERS = 16, NEWEST = 17 };
 enum { BYTE_ORDER_MARK = 0x01020304 };
 
 typedef struct file_head {
@@ -53,6 +53,8 @@ _Static_assert(sizeof(lar_tool_follower) == 240, "the format");
 _Static_assert(LAR_NODE_VALUES == 7, "the format");
 _Static_assert(sizeof(lar_force_entry) == 32 && offsetof(lar_forces, entry) == 8, "the format");
 _Static_assert(sizeof(lar_support_entry) == 8 && offsetof(lar_supports, entry) == 8, "the format");
+_Static_assert(sizeof(lar_parameter_entry) == 104 && offsetof(lar_parameters, entry) == 8,
+               "the format");
 _Static_assert(sizeof(lar_heavy) == 40 && offsetof(lar_heavy_list, of) == 24, "the format");
 _Static_assert(sizeof(lar_spare_tool) == 104 && LAR_SPARES_MAX == 4, "the format");
 
@@ -60,10 +62,10 @@ _Static_assert(sizeof(lar_spare_tool) == 104 && LAR_SPARES_MAX == 4, "the format
 typedef struct file_shape {
     uint32_t version;
     int32_t tools, grasps;
-    size_t history;   /* values that viscous elements remember: as many as the model says */
-    int32_t forces;   /* that were set; of versions that have them */
-    int32_t heavier;  /* strained elements that stand in it, likewise */
-    int32_t supports; /* that were set, likewise */
+    size_t history;  /* values that viscous elements remember: as many as the model says */
+    int32_t forces;  /* that were set; of versions that have them */
+    int32_t heavier; /* strained elements that stand in it, likewise */
+    int32_t supports, parameters; /* that were set, likewise */
 } file_shape;
 
 static bool has_added(uint32_t version) {
@@ -100,10 +102,17 @@ static size_t supports_bytes(const file_shape *shape) {
     return offsetof(lar_supports, entry) + (size_t)shape->supports * sizeof(lar_support_entry);
 }
 
+/* The same of materials with parameters that were set. */
+static size_t parameters_bytes(const file_shape *shape) {
+    if (shape->version < PARAMETERS) return 0;
+    return offsetof(lar_parameters, entry) +
+           (size_t)shape->parameters * sizeof(lar_parameter_entry);
+}
+
 static size_t file_bytes(const file_shape *shape, size_t nodes) {
     size_t tools = (size_t)shape->tools, grasps = (size_t)shape->grasps;
     return sizeof(file_head) + settings_bytes(shape->version) + forces_bytes(shape) +
-           heavier_bytes(shape) + supports_bytes(shape) +
+           heavier_bytes(shape) + supports_bytes(shape) + parameters_bytes(shape) +
            tools * (sizeof(lar_tool_motion) + sizeof(lar_tool_follower)) +
            grasps * sizeof(lar_grasp) + nodes * LAR_NODE_VALUES * sizeof(double) +
            shape->history * sizeof(double) + sizeof(uint64_t);
@@ -160,7 +169,8 @@ static file_shape shape_of(const lar_domain *whole, const lar_tools *tools) {
     const lar_tool_list *list = whole->surroundings.list;
     int32_t spares = lar_spares_needed(tools->spare);
     const lar_heavy_list *heavier = &tools->strained;
-    uint32_t version = tools->supports.count > 0                 ? SUPPORTED
+    uint32_t version = tools->parameters.count > 0               ? PARAMETERS
+                       : tools->supports.count > 0               ? SUPPORTED
                        : some_strained(heavier)                  ? HEAVIER
                        : lar_settings_activate(&tools->settings) ? ACTIVE
                        : tools->forces.count > 0                 ? FORCES
@@ -169,6 +179,7 @@ static file_shape shape_of(const lar_domain *whole, const lar_tools *tools) {
                         .forces = tools->forces.count,
                         .heavier = heavier->count,
                         .supports = tools->supports.count,
+                        .parameters = tools->parameters.count,
                         .tools = (list ? lar_spares_first(list) : 0) + spares,
                         .grasps = tools->grasp_count,
                         .history = lar_viscous_total(whole)};
@@ -184,6 +195,7 @@ static unsigned char *fill_tools(unsigned char *at, const file_shape *shape,
     at = append(at, &tools->forces, forces_bytes(shape));
     at = append(at, &tools->strained, heavier_bytes(shape));
     at = append(at, &tools->supports, supports_bytes(shape));
+    at = append(at, &tools->parameters, parameters_bytes(shape));
     at = append(at, tools->motion, count * sizeof tools->motion[0]);
     at = append(at, tools->follower, count * sizeof tools->follower[0]);
     return append(at, tools->grasps, grasps * sizeof tools->grasps[0]);
@@ -455,15 +467,19 @@ static int32_t count_at(const lar_bytes *bytes, size_t at, int32_t max) {
     return count <= max ? count : -1;
 }
 
-/* Forces stand behind the settings, strained elements behind them, and then supports. */
+/* Forces stand behind the settings, then strained elements, supports and parameters. */
 static void count_entries(const file_head *head, const lar_bytes *bytes, file_shape *shape) {
     size_t at = sizeof *head + settings_bytes(head->version);
     if (head->version >= FORCES) shape->forces = count_at(bytes, at, LAR_FORCES_MAX);
-    if (head->version >= HEAVIER && shape->forces >= 0)
-        shape->heavier = count_at(bytes, at + forces_bytes(shape), LAR_HEAVY_LIST);
-    if (head->version >= SUPPORTED && shape->forces >= 0 && shape->heavier >= 0)
-        shape->supports =
-            count_at(bytes, at + forces_bytes(shape) + heavier_bytes(shape), LAR_SUPPORTS_MAX);
+    if (shape->forces < 0) return;
+    at += forces_bytes(shape);
+    if (head->version >= HEAVIER) shape->heavier = count_at(bytes, at, LAR_HEAVY_LIST);
+    if (shape->heavier < 0) return;
+    at += heavier_bytes(shape);
+    if (head->version >= SUPPORTED) shape->supports = count_at(bytes, at, LAR_SUPPORTS_MAX);
+    if (shape->supports < 0) return;
+    at += supports_bytes(shape);
+    if (head->version >= PARAMETERS) shape->parameters = count_at(bytes, at, LAR_MATERIALS_SET_MAX);
 }
 
 /* What fill_tools writes; *at moves behind it. */
@@ -482,6 +498,7 @@ static bool take_tools(const file_head *head, const file_shape *shape, const lar
     *at = extract(*at, &tools->forces, forces_bytes(shape));
     *at = extract(*at, &tools->strained, heavier_bytes(shape));
     *at = extract(*at, &tools->supports, supports_bytes(shape));
+    *at = extract(*at, &tools->parameters, parameters_bytes(shape));
     *at = extract(*at, tools->motion, count * sizeof tools->motion[0]);
     *at = extract(*at, tools->follower, count * sizeof tools->follower[0]);
     for (size_t i = 0; i < count && head->version <= BEFORE_THIRDS; i++)
@@ -493,7 +510,10 @@ static bool take_tools(const file_head *head, const file_shape *shape, const lar
                 lar_spares_good(tools->spare, list ? list->spares : 0) &&
                 lar_heavier_good(whole, &tools->strained) &&
                 lar_supports_good(&tools->supports, whole->model) &&
-                (tools->supports.count > 0) == (head->version >= SUPPORTED) &&
+                lar_parameters_good(&tools->parameters, &tools->settings, whole->model) &&
+                (tools->parameters.count > 0) == (head->version >= PARAMETERS) &&
+                (head->version >= PARAMETERS ||
+                 (tools->supports.count > 0) == (head->version >= SUPPORTED)) &&
                 (head->version >= SUPPORTED ||
                  some_strained(&tools->strained) == (head->version >= HEAVIER));
     for (int32_t i = 0; good && i < tools->count; i++) {
@@ -527,7 +547,7 @@ lar_status lar_checkpoint_parse(const char *path, const lar_bytes *bytes, const 
     int32_t spares = head.tools < constant ? -1 : head.tools - constant;
     if (spares < 0 || spares > (has_added(head.version) ? LAR_SPARES_MAX : 0) || head.grasps < 0 ||
         head.grasps > LAR_GRASPS_MAX || shape.forces < 0 || shape.heavier < 0 ||
-        shape.supports < 0 || bytes->size != file_bytes(&shape, nodes))
+        shape.supports < 0 || shape.parameters < 0 || bytes->size != file_bytes(&shape, nodes))
         return refuse(error, path, "its parts have sizes that do not fit; take another checkpoint");
     if (spares > 0 && spares > list->spares)
         return lar_fail(error, LAR_ERROR_MODEL,

@@ -52,7 +52,7 @@ typedef struct choosing {
     double setup; /* what creating the first of them took [s] */
     bool beside;  /* a companion works */
     _Atomic bool over;
-    pthread_t companion;
+    lar_thread companion;
 } choosing;
 
 /* ---- one simulation ------------------------------------------------------------------------- */
@@ -118,7 +118,7 @@ static void begin_company(choosing *c) {
 
 static void end_company(choosing *c) {
     atomic_store(&c->over, true);
-    if (c->beside) pthread_join(c->companion, NULL);
+    if (c->beside) lar_thread_join(&c->companion);
 }
 
 /* ---- all of them ---------------------------------------------------------------------------- */

@@ -123,7 +123,8 @@ static void note_time(lar_simulation *simulation) {
 
 void lar_simulation_settle(lar_simulation *simulation) {
     note_time(simulation);
-    bool tissue = lar_domain_stiffen(&simulation->domain, &simulation->tools.settings);
+    bool tissue = lar_domain_stiffen(&simulation->domain, &simulation->tools.settings,
+                                     &simulation->tools.parameters);
     bool tools = lar_spares_take(&simulation->tools, &simulation->list);
     if (tissue || tools) lar_simulation_limit_tools(simulation);
     lar_burden_take(&simulation->domain, &simulation->tools.heavier, NULL);
@@ -156,6 +157,7 @@ lar_status lar_simulation_create_state(lar_simulation *simulation, bool search_a
     lar_status status = lar_state_create(&simulation->state, domain->layout.node_padded,
                                          domain->history_count, error);
     if (!status) status = lar_strained_create(domain, &simulation->strained, error);
+    simulation->strained.follows = simulation->strained.follows && !search_always;
     simulation->state.strained = &simulation->strained;
     simulation->state.needs = domain->burden ? &simulation->needs : NULL;
     if (!status)

@@ -92,6 +92,18 @@ void lar_simulation_settle(lar_simulation *simulation);
 lar_status lar_simulation_support_here(lar_simulation *simulation, const lar_supports *supports,
                                        lar_error *error);
 
+/* Materials as stiff as `wanted` says, with these parameters, and the work that it takes; refuses
+ * what steps cannot be divided for. Both may be those of simulation->tools. */
+lar_status lar_simulation_change_materials(lar_simulation *simulation, const lar_settings *wanted,
+                                           const lar_parameters *parameters, lar_error *error);
+
+/* Parameter `index` (model/parameters.h) of a material; -1: all as the model says. */
+lar_status lar_simulation_set_parameter_at(lar_simulation *simulation, int32_t material, int index,
+                                           double value, lar_error *error);
+/* Its index; `name` NULL: -1. */
+lar_status lar_simulation_parameter_index(const lar_model *model, int32_t material,
+                                          const char *name, int *index, lar_error *error);
+
 /* External work that a change between steps does [J]; the state is whole. */
 void lar_simulation_add_external(lar_simulation *simulation, double work);
 

@@ -137,9 +137,9 @@ static double viscous_account(const lar_simulation *simulation, const body_eleme
     return element->hex8->volume * (factor * history[LAR_HISTORY_WORK] - half * power);
 }
 
-/* Energy of an element less dt f v-/2 with its material as it is [J]: linear in its stiffness. (Of
- * barriers the energy only: their force in half a step is nothing beside it.) The element's nodes
- * are numbered differently in its block, so corners are those of the layout. */
+/* Energy of an element less dt f v-/2 with its material as it is [J]. (Of barriers the energy only:
+ * their force in half a step is nothing beside it.) The element's nodes are numbered differently in
+ * its block, so corners are those of the layout. */
 static double element_account(const lar_simulation *simulation, const body_element *element,
                               double half) {
     const lar_domain *domain = &simulation->domain;
@@ -172,8 +172,27 @@ static double element_account(const lar_simulation *simulation, const body_eleme
     return account;
 }
 
-/* What it takes to make materials as stiff as `wanted` [J]. */
-static double stiffening(const lar_simulation *simulation, const lar_settings *wanted) {
+/* How often the accounts of materials count that become others, before and after; by factor. An
+ * account is linear in the stiffness: with other parameters alone it has to be looked at again. */
+static void weigh_changes(const lar_tools *now, const lar_settings *wanted,
+                          const lar_parameters *parameters, double before[LAR_FACTORS_MAX],
+                          double after[LAR_FACTORS_MAX]) {
+    const lar_parameters *list[] = {&now->parameters, parameters};
+    bool set = memcmp(&now->parameters, parameters, sizeof *parameters) != 0;
+    for (int i = 0; i < LAR_FACTORS_MAX; i++) {
+        before[i] = 1 - wanted->factor[i] / now->settings.factor[i];
+        after[i] = 0;
+    }
+    for (int k = 0; k < 2 && set; k++)
+        for (int32_t m = 0; m < list[k]->count; m++) {
+            int i = lar_factor_of(list[k]->entry[m].material);
+            before[i] = after[i] = 1;
+        }
+}
+
+/* The accounts of all elements, so often [J]. */
+static double materials_account(const lar_simulation *simulation,
+                                const double times[LAR_FACTORS_MAX]) {
     const lar_domain *domain = &simulation->domain;
     double half = 0.5 * length_of_step(simulation), sum = 0;
     for (int32_t r = 0; r < domain->run_count; r++)
@@ -182,16 +201,39 @@ static double stiffening(const lar_simulation *simulation, const lar_settings *w
             lar_hex8 hex8;
             body_element element = {.e = domain->layout.block[b].element[k % LAR_BLOCK]};
             if (element.e < 0) continue;
-            int i = lar_factor_of(domain->model->element_material[element.e]);
-            double ratio = wanted->factor[i] / domain->factor[i];
-            if (ratio == 1) continue;
+            double often = times[lar_factor_of(domain->model->element_material[element.e])];
+            if (often == 0) continue;
             if (domain->kind == LAR_ELEMENT_HEX8) {
                 lar_domain_element(domain, r, b, k % LAR_BLOCK, &hex8);
                 element.hex8 = &hex8;
             }
-            sum += (ratio - 1) * element_account(simulation, &element, half);
+            sum += often * element_account(simulation, &element, half);
         }
     return sum;
+}
+
+lar_status lar_simulation_change_materials(lar_simulation *simulation, const lar_settings *wanted,
+                                           const lar_parameters *parameters, lar_error *error) {
+    lar_tools *tools = &simulation->tools;
+    double before[LAR_FACTORS_MAX], after[LAR_FACTORS_MAX], work;
+    if (!lar_parameters_bearable(parameters, wanted))
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "stiffness and parameters of a material together would make its elements "
+                        "so fast that steps had to be divided more than they can be for that: the "
+                        "square of a frequency at rest may become %g times what it is by the "
+                        "model; set softer ones, or change the model's materials",
+                        LAR_STIFFNESS_MAX);
+    lar_status status = lar_simulation_gather(simulation, error);
+    if (status) return status;
+    weigh_changes(tools, wanted, parameters, before, after);
+    work = -materials_account(simulation, before);
+    tools->settings = *wanted;
+    tools->parameters = *parameters;
+    tools->division.due = 1;
+    lar_simulation_settle(simulation);
+    lar_simulation_add_external(simulation, work + materials_account(simulation, after));
+    if (simulation->computer) simulation->computer->tools_sent = false;
+    return LAR_OK;
 }
 
 lar_status lar_simulation_set_stiffness(lar_simulation *simulation, int32_t material, double factor,
@@ -214,14 +256,8 @@ lar_status lar_simulation_set_stiffness(lar_simulation *simulation, int32_t mate
     for (int i = 0; i < LAR_FACTORS_MAX; i++)
         if (material < 0 || i == lar_factor_of(material)) wanted.factor[i] = factor;
     if (memcmp(&wanted, &simulation->tools.settings, sizeof wanted) == 0) return LAR_OK;
-    status = lar_simulation_gather(simulation, error);
-    if (status) return status;
-    lar_simulation_add_external(simulation, stiffening(simulation, &wanted));
-    simulation->tools.settings = wanted;
-    simulation->tools.division.due = 1;
-    lar_simulation_settle(simulation);
-    if (simulation->computer) simulation->computer->tools_sent = false;
-    return LAR_OK;
+    return lar_simulation_change_materials(simulation, &wanted, &simulation->tools.parameters,
+                                           error);
 }
 
 double lar_simulation_stiffness(const lar_simulation *simulation, int32_t material) {

@@ -9,8 +9,8 @@
 #include "mechanics/hex8_full.h"
 #include "mechanics/hex8_guard.h"
 #include "step/activation.h"
-#include "step/beside.h"
 #include "step/mass_scaling.h"
+#include "step/materials.h"
 #include "step/viscous_history.h"
 
 /* Steps that fit into ticks of the host's clock: the longest that are not longer. */
@@ -72,35 +72,6 @@ static lar_status list_spares(lar_domain *domain, lar_error *error) {
     return LAR_OK;
 }
 
-static lar_block_more *more_of(const lar_domain *domain, int32_t r, int32_t b) {
-    return domain->run[r].more ? domain->more + domain->run_first[r] + b : NULL;
-}
-
-static lar_beside beside_of(const lar_domain *domain, int32_t r, int32_t b) {
-    int32_t at = domain->run_first[r] + b;
-    return (lar_beside){.relaxing = domain->run[r].viscous ? domain->relaxing + at : NULL,
-                        .fibres = domain->run[r].fibrous ? domain->fibres + at : NULL,
-                        .second = domain->run[r].second ? domain->second + at : NULL};
-}
-
-/* What an element's material says in its lane, and *limit of corner_limit. */
-static void fill_material(const lar_domain *domain, const lar_lane_base *base, lar_block_head *head,
-                          lar_block_more *more, lar_beside beside, int lane, lar_gid e,
-                          double *limit) {
-    int32_t material = domain->model->element_material[e];
-    double factor = domain->factor[lar_factor_of(material)];
-    for (int m = 0; m < LAR_HEX8_HOURGLASS; m++)
-        head->stiffness[m][lane] = base->stiffness[m] * factor * domain->scale;
-    const lar_material *made = &domain->material[material];
-    for (int k = 0; k < lar_law_table[made->law].count; k++)
-        *lar_block_parameter(head, more, k, lane) =
-            lar_law_scales(made->law, k) ? made->parameter[k] * base->volume * domain->scale
-                                         : made->parameter[k];
-    if (beside.relaxing) lar_fill_viscosity(domain, base, beside.relaxing, lane, made, factor);
-    if (beside.fibres) lar_fill_fibres(domain, base, beside, lane, made, e);
-    *limit = base->limit * factor * factor;
-}
-
 /* `memory`: the block; `whole`: where the gradients and shapes of a general one go. */
 static void fill_lane(const lar_domain *domain, const lar_block_run *run, void *memory,
                       lar_hex8_block *whole, int lane, lar_gid e, double *steepest,
@@ -131,6 +102,8 @@ static void fill_lane(const lar_domain *domain, const lar_block_run *run, void *
     base->limit =
         lar_hex8_corner_limit(&hex8, (const double(*)[3])corner) * domain->scale * domain->scale;
     base->largest = lar_hex8_largest_corner((const double(*)[3])corner);
+    base->areas = lar_hex8_areas((const double(*)[3])corner);
+    base->corner = lar_layout_turn(&domain->layout, mesh, e);
     domain->area_limit[base - domain->base] = lar_hex8_area_limit(&hex8);
 }
 
@@ -238,8 +211,7 @@ static bool fill_block(lar_domain *domain, int32_t r, int32_t b, void *memory, d
         if (e >= 0) {
             lar_lane_base *base = domain->base + LAR_BLOCK * at + lane;
             fill_lane(domain, run, memory, whole, lane, e, steepest, base);
-            fill_material(domain, base, memory, more_of(domain, r, b), beside_of(domain, r, b),
-                          lane, e, limit + lane);
+            lar_materials_fill(domain, r, b, memory, lane);
             continue;
         }
         if (run->rest) ((lar_lean_block *)memory)->volume[lane] = LAR_LEAN_NOTHING;
@@ -304,77 +276,6 @@ static lar_status build_blocks(lar_domain *domain, lar_error *error) {
     if (!domain->blocks) return lar_fail_memory(error, whole, "the elements");
     fill_blocks(domain);
     return LAR_OK;
-}
-
-/* ---- materials ------------------------------------------------------------------------------ */
-
-static lar_status copy_materials(lar_domain *domain, lar_error *error) {
-    const lar_model *model = domain->model;
-    size_t count = (size_t)model->material_count;
-    for (int i = 0; i < LAR_FACTORS_MAX; i++) domain->factor[i] = 1;
-    domain->material = lar_calloc(count, sizeof *domain->material);
-    if (!domain->material)
-        return lar_fail_memory(error, count * sizeof *domain->material, "the materials");
-    memcpy(domain->material, model->material, count * sizeof *domain->material);
-    return LAR_OK;
-}
-
-static lar_material times(const lar_material *material, double factor) {
-    lar_material made = *material;
-    for (int k = 0; k < LAR_LAW_PARAMETERS; k++)
-        if (lar_law_scales(made.law, k)) made.parameter[k] *= factor;
-    for (int k = 0; k < LAR_FIBRE_PARAMETERS; k++)
-        if (lar_fibre_scales(made.fibre.law, k)) made.fibre.parameter[k] *= factor;
-    return made;
-}
-
-lar_material lar_domain_material_copy(const lar_domain *domain, lar_gid e, double *factor) {
-    int32_t material = domain->model->element_material[e];
-    double now;
-    __atomic_load(&domain->factor[lar_factor_of(material)], &now, __ATOMIC_RELAXED);
-    if (factor) *factor = now;
-    lar_material made = times(&domain->model->material[material], now);
-    if (!lar_fibre_active(&made.fibre)) return made;
-    __atomic_load(&domain->now, &now, __ATOMIC_RELAXED);
-    double activation = lar_activation_at(domain, e, now);
-    made.fibre.along *= activation;
-    made.fibre.across *= activation;
-    return made;
-}
-
-/* Elements whose material has changed. */
-static void fill_changed(lar_domain *domain, const bool changed[LAR_FACTORS_MAX]) {
-    char *memory = domain->blocks;
-    for (int32_t r = 0; r < domain->run_count; r++)
-        for (int32_t b = 0; b < domain->run[r].count; b++) {
-            size_t block = (size_t)(domain->run_first[r] + b);
-            double *limit = domain->corner_limit + LAR_BLOCK * block;
-            for (int lane = 0; lane < LAR_BLOCK; lane++) {
-                lar_gid e = domain->layout.block[block].element[lane];
-                if (e >= 0 && changed[lar_factor_of(domain->model->element_material[e])])
-                    fill_material(domain, domain->base + LAR_BLOCK * block + lane, (void *)memory,
-                                  more_of(domain, r, b), beside_of(domain, r, b), lane, e,
-                                  limit + lane);
-            }
-            memory += lar_run_stride(&domain->run[r]);
-        }
-}
-
-bool lar_domain_stiffen(lar_domain *domain, const lar_settings *settings) {
-    const lar_model *model = domain->model;
-    bool changed[LAR_FACTORS_MAX], any = false;
-    lar_activation_take(domain, settings);
-    for (int i = 0; i < LAR_FACTORS_MAX; i++) {
-        changed[i] = settings->factor[i] != domain->factor[i];
-        any = any || changed[i];
-        double factor = settings->factor[i];
-        __atomic_store(&domain->factor[i], &factor, __ATOMIC_RELAXED);
-    }
-    if (!any) return false;
-    for (int i = 0; i < model->material_count; i++)
-        domain->material[i] = times(&model->material[i], domain->factor[lar_factor_of(i)]);
-    if (domain->blocks) fill_changed(domain, changed);
-    return true;
 }
 
 void lar_domain_element(const lar_domain *domain, int32_t r, int32_t b, int lane, lar_hex8 *hex8) {
@@ -484,7 +385,7 @@ lar_status lar_domain_create_styled(const lar_model *model, const lar_options *o
     *domain = (lar_domain){.model = model, .kind = options->element};
     lar_status status = lar_kernels_find(options->isa, &domain->kernels, error);
     if (!status) status = lar_fibres_check(domain, error);
-    if (!status) status = copy_materials(domain, error);
+    if (!status) status = lar_materials_copy(domain, error);
     if (!status) status = choose_step(domain, options, error);
     domain->interval = LAR_INTERVAL_MAX; /* with tools: lar_interval_length */
     if (!status) status = lar_layout_create_styled(model, style, &domain->layout, error);
@@ -546,7 +447,7 @@ lar_status lar_domain_create_part(const lar_domain *whole, const lar_part *part,
                            .stable_worst = whole->stable_worst,
                            .adds = whole->adds,
                            .leapfrog = whole->leapfrog};
-    lar_status status = copy_materials(domain, error);
+    lar_status status = lar_materials_copy(domain, error);
     if (!status)
         status = lar_layout_create_part(whole->model, &whole->layout, part, &domain->layout, error);
     if (!status) status = list_spares(domain, error);

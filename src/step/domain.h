@@ -17,6 +17,7 @@
 #include "layout/part_layout.h"
 #include "mechanics/hex8_block.h"
 #include "model/model.h"
+#include "model/parameters.h"
 #include "step/mass/masses.h"
 #include "step/stable_step.h"
 
@@ -26,6 +27,8 @@ typedef struct lar_lane_base {
     double stiffness[LAR_HEX8_HOURGLASS]; /* c_m [N/m] */
     double limit;                         /* of corner_limit */
     double largest;                       /* corner at rest [m^3] (mechanics/hex8_guard.h) */
+    double areas;                         /* lar_hex8_areas at rest [m^4] */
+    uint32_t corner; /* which corner of the mesh each of the layout's is, four bits each */
 } lar_lane_base;
 
 typedef struct lar_domain {
@@ -40,8 +43,12 @@ typedef struct lar_domain {
     void *blocks;           /* all blocks of all runs */
     bool lean;              /* general ones are lean */
     lar_lane_base *base;    /* [8 for each block] */
-    lar_material *material; /* [materials of the model] as stiff as they are now; names are lent */
+    lar_material *material; /* [materials of the model] as they are now; names are lent, parameters
+                               atomic */
+    lar_parameters set;     /* that `material` follows */
     double factor[LAR_FACTORS_MAX];     /* of their stiffness (model/settings.h); atomic */
+    double faster[LAR_FACTORS_MAX];     /* what the squares of frequencies of their elements are,
+                                           times the model's: by stiffness and parameters */
     double activation[LAR_FACTORS_MAX]; /* what was set of their activation, likewise */
     bool activates;                     /* activation is not 1 everywhere at all times */
     double now;                         /* time of the last state [s], of a whole; atomic */
@@ -130,7 +137,7 @@ static inline double lar_domain_push_of(const lar_domain *domain, double mass) {
     return dt / (mass * (1 + 0.5 * domain->model->damping * dt) * domain->scale);
 }
 
-/* The material of element e as stiff as it is now. */
+/* The material of element e as it is now. */
 static inline const lar_material *lar_domain_material(const lar_domain *domain, lar_gid e) {
     return &domain->material[domain->model->element_material[e]];
 }
@@ -139,11 +146,16 @@ static inline const lar_material *lar_domain_material(const lar_domain *domain, 
  * (may be NULL) is how many times as stiff it is as the model says. */
 lar_material lar_domain_material_copy(const lar_domain *domain, lar_gid e, double *factor);
 
-/* Between steps: makes materials as stiff as `settings` ask. Stresses, hourglass forces and
- * barriers become what they would have been if the model had had these materials: the element's
- * numbers are made anew, so that it does not matter how stiff it was before. True when something
- * changed. What is active becomes as active as they ask, which costs nothing and is not told. */
-bool lar_domain_stiffen(lar_domain *domain, const lar_settings *settings);
+/* Between steps: makes materials as stiff as `settings` ask, with the `parameters` that were set.
+ * Stresses, hourglass forces and barriers become what they would have been if the model had had
+ * these materials: the element's numbers are made anew, so that it does not matter how stiff it was
+ * before. True when something changed. What is active becomes as active as they ask, which costs
+ * nothing and is not told. */
+bool lar_domain_stiffen(lar_domain *domain, const lar_settings *settings,
+                        const lar_parameters *parameters);
+/* Whether there is something to do for it. */
+bool lar_domain_follows(const lar_domain *domain, const lar_settings *settings,
+                        const lar_parameters *parameters);
 
 /* The element in a lane of block `b` (of layout.block), as stiff as it is now; hex8 only. */
 void lar_domain_element(const lar_domain *domain, int32_t run, int32_t b, int lane, lar_hex8 *hex8);

@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/vector.h"
 #include "mechanics/hex8_guard.h"
@@ -12,8 +13,6 @@
  * least corner that was not listed stood at 0.48. */
 static const double SHARES[2] = {LAR_GUARD_START, 2 * LAR_GUARD_START};
 
-enum { ALL_LANES = (1 << LAR_BLOCK) - 1 };
-
 /* Part of the step by which the damping leads; it counts twice beside the spring (theory.md 10). */
 static const double LEAD = 0.5;
 
@@ -23,18 +22,24 @@ lar_status lar_strained_create(const lar_domain *domain, lar_strained *strained,
     *strained = (lar_strained){.lane = lar_calloc(lanes, sizeof *strained->lane),
                                .count = lar_calloc(runs, sizeof *strained->count),
                                .strain = lar_calloc(lanes, sizeof *strained->strain),
+                               .near = lar_calloc(lanes, sizeof *strained->near),
+                               .stiffness = lar_calloc(lanes, sizeof *strained->stiffness),
+                               .sound = lar_calloc(lanes, sizeof *strained->sound),
                                .damped = lar_calloc(lanes, sizeof *strained->damped),
                                .damped_count = lar_calloc(runs, sizeof *strained->damped_count)};
+    strained->follows = domain->layout.thread_count == 1;
     bool active = lar_model_active(domain->model) != NULL;
     if (active) {
         strained->activation = lar_calloc_aligned(lanes, sizeof *strained->activation);
         strained->active_energy = lar_calloc_aligned(lanes, sizeof *strained->active_energy);
     }
-    if (strained->lane && strained->count && strained->strain && strained->damped &&
-        strained->damped_count && (!active || (strained->activation && strained->active_energy)))
+    if (strained->lane && strained->count && strained->strain && strained->near &&
+        strained->stiffness && strained->sound && strained->damped && strained->damped_count &&
+        (!active || (strained->activation && strained->active_energy)))
         return LAR_OK;
     lar_strained_destroy(strained);
-    size_t each = sizeof *strained->lane + sizeof *strained->strain + sizeof *strained->damped;
+    size_t each = 2 * sizeof *strained->lane + sizeof *strained->strain +
+                  2 * sizeof *strained->sound + sizeof *strained->damped;
     return lar_fail_memory(error, lanes * each, "the strained elements");
 }
 
@@ -42,6 +47,9 @@ void lar_strained_destroy(lar_strained *strained) {
     free(strained->lane);
     free(strained->count);
     free(strained->strain);
+    free(strained->near);
+    free(strained->stiffness);
+    free(strained->sound);
     free(strained->damped);
     free(strained->damped_count);
     free(strained->activation);
@@ -57,6 +65,59 @@ static void corners_of(const lar_domain *domain, const lar_state *state, lar_gid
         for (int i = 0; i < 3; i++) now[a][i] += rest[a][i];
 }
 
+/* Strained elements of a run that are looked at side by side. */
+typedef struct strained_group {
+    lar_hex8_group hex8;
+    int count;
+    int32_t lane[LAR_BLOCK];  /* block * 8 + lane */
+    int32_t entry[LAR_BLOCK]; /* of a list */
+    lar_gid element[LAR_BLOCK];
+} strained_group;
+
+static void set_nodes(strained_group *group, int at, const lar_block_head *head, int32_t lane) {
+    for (int a = 0; a < 8; a++) group->hex8.node[a][at] = head->node[a][lane];
+}
+
+static lar_gid element_of(const lar_domain *domain, int32_t r, int32_t lane) {
+    const lar_lanes *block = domain->layout.block + domain->run_first[r] + lane / LAR_BLOCK;
+    return block->element[lane % LAR_BLOCK];
+}
+
+static bool is_there(const lar_domain *domain, int32_t r, int32_t lane) {
+    return element_of(domain, r, lane) >= 0;
+}
+
+static void add_lane(const lar_domain *domain, int32_t r, int32_t lane, int32_t entry,
+                     strained_group *group) {
+    const lar_block_run *run = &domain->run[r];
+    int32_t block = lane / LAR_BLOCK, at = group->count++;
+    const lar_block_head *head =
+        (const void *)((const char *)run->blocks + (size_t)block * lar_run_stride(run));
+    size_t first = LAR_BLOCK * (size_t)domain->run_first[r];
+    set_nodes(group, at, head, lane % LAR_BLOCK);
+    group->hex8.largest[at] = domain->base[first + (size_t)lane].largest;
+    group->lane[at] = lane;
+    group->entry[at] = entry;
+    group->element[at] = element_of(domain, r, lane);
+}
+
+/* All lanes are computed with. */
+static unsigned fill_up(strained_group *group) {
+    for (int at = group->count; at < LAR_BLOCK; at++) {
+        for (int a = 0; a < 8; a++) group->hex8.node[a][at] = group->hex8.node[a][0];
+        group->hex8.largest[at] = 0;
+    }
+    return (1U << group->count) - 1;
+}
+
+/* Corners of a lane of run r as the mesh counts them: forces of several are added in that order. */
+static unsigned corners_in_mesh(const lar_domain *domain, int32_t r, int32_t lane, unsigned at) {
+    uint32_t corner = domain->base[LAR_BLOCK * domain->run_first[r] + lane].corner;
+    unsigned in_mesh = 0;
+    for (; at; at &= at - 1) in_mesh |= 1u << (corner >> 4 * __builtin_ctz(at) & 7);
+    return in_mesh;
+}
+
 /* What is found in a step counts from the next one on, until that is over or, where steps are not
  * divided and nothing is close to it, until the next interval is. */
 enum { SEEN_IN_STEPS = 3 };
@@ -67,74 +128,34 @@ static double steps_ahead(const lar_domain *domain, const lar_state *state) {
 
 /* Whether nodes of an element move against each other by more than a tenth of its size in that
  * time: what springs back when it is let go comes to its barriers from where nobody looks. */
-static bool is_thrown(const lar_domain *domain, const lar_state *state, lar_gid e, double volume) {
-    const lar_gid *node = domain->layout.corner[e];
-    double first[3], most = 0, ahead = steps_ahead(domain, state) * domain->time_step;
-    lar_state_velocity(state, domain->layout.local[node[0]], first);
-    for (int a = 1; a < 8; a++) {
-        double away[3];
-        lar_state_velocity(state, domain->layout.local[node[a]], away);
-        lar_minus(away, first, away);
-        double square = lar_dot(away, away);
-        if (square > most) most = square;
-    }
-    double square = 100 * most * ahead * ahead;
+static bool is_thrown(const lar_domain *domain, const lar_state *state, double parting,
+                      double volume) {
+    double ahead = steps_ahead(domain, state) * domain->time_step;
+    double square = 100 * parting * ahead * ahead;
     return square * square * square > volume * volume;
 }
 
-/* How stiff an element's barriers are: now, where a corner is at one, and where its corners will be
- * after so many steps if nothing stops them. */
-static double barriers_of(const lar_domain *domain, const lar_state *state, lar_gid e, bool at_one,
-                          double steps) {
-    const lar_material *material = lar_domain_material(domain, e);
+/* How stiff an element's barriers will be in `ahead` seconds if nothing stops these corners. */
+static double barriers_ahead(const lar_domain *domain, const lar_state *state, lar_gid e,
+                             double ahead, unsigned corners) {
     double rest[8][3], now[8][3], v[8][3];
-    lar_guard guard = {0}, then;
+    lar_guard then;
     corners_of(domain, state, e, rest, now);
-    if (at_one) lar_hex8_guard((const double(*)[3])rest, (const double(*)[3])now, material, &guard);
     lar_domain_corners(domain, state->v, e, v);
     for (int a = 0; a < 8; a++)
-        for (int i = 0; i < 3; i++) now[a][i] += steps * domain->time_step * v[a][i];
-    lar_hex8_guard((const double(*)[3])rest, (const double(*)[3])now, material, &then);
-    return fmax(guard.stiffness, then.stiffness);
+        for (int i = 0; i < 3; i++) now[a][i] += ahead * v[a][i];
+    lar_hex8_guard_force((const double(*)[3])rest, (const double(*)[3])now, NULL,
+                         lar_domain_material(domain, e), (lar_guard_lead){0}, corners, NULL, &then);
+    return then.stiffness;
 }
 
 /* How the square of a flat element's frequency has grown, with what its neighbours leave of it: its
  * areas as they are, not as those of a cube would be with such a strain. 0 for others. */
-static double growth_of_flat(const lar_domain *domain, const lar_state *state, lar_gid e,
-                             size_t place, const float strain[LAR_STRAIN_NUMBERS]) {
-    double rest[8][3], now[8][3];
+static double growth_of_flat(const lar_domain *domain, lar_gid e, size_t place, double areas,
+                             const float strain[LAR_STRAIN_NUMBERS]) {
     if (!domain->area_limit || !(domain->area_limit[place] < LAR_STRAINED_AREA)) return 0;
-    corners_of(domain, state, e, rest, now);
-    double area =
-        lar_hex8_areas((const double(*)[3])now) / lar_hex8_areas((const double(*)[3])rest);
-    return domain->rate[e].share * lar_hex8_growth(lar_domain_material(domain, e), strain, area);
-}
-
-/* What barriers that an element is at, or is coming to, do to the square of its frequency. `below`:
- * the bits of its lane (lar_hex8_corners). */
-static double square_of_barriers(const lar_domain *domain, const lar_state *state, lar_gid e,
-                                 unsigned below, double volume) {
-    double steps = 0;
-    if (below >> LAR_BLOCK & 1)
-        steps = SEEN_IN_STEPS;
-    else if (is_thrown(domain, state, e, volume))
-        steps = steps_ahead(domain, state);
-    if (!(steps > 0)) return 0;
-    return (1 + 2 * LEAD) * barriers_of(domain, state, e, below & 1, steps) / domain->rate[e].mass;
-}
-
-/* Strained lanes of one block, from entry `i` of a monitor on, without those that are listed for
- * being flat alone: their corners are far from the barrier. Returns where those of the next begin.
- */
-static int32_t lanes_of_block(const lar_hex8_monitor *monitor, int32_t i, int32_t *block,
-                              unsigned *lanes) {
-    *block = (monitor->lane[i] & ~LAR_LANE_FLAT) / LAR_BLOCK;
-    for (*lanes = 0; i < monitor->count; i++) {
-        int32_t lane = monitor->lane[i] & ~LAR_LANE_FLAT;
-        if (lane / LAR_BLOCK != *block) break;
-        if (lane == monitor->lane[i]) *lanes |= 1u << lane % LAR_BLOCK;
-    }
-    return i;
+    return domain->rate[e].share * lar_hex8_growth(lar_domain_material(domain, e), strain,
+                                                   areas / domain->base[place].areas);
 }
 
 /* In whole units, which sum to nothing. */
@@ -192,7 +213,8 @@ static void add_half_work(const double rest[8][3], const double now[8][3], const
  * before the nodes move; `damped` says what the other half comes from, NULL: nothing counts. What
  * opens is damped as in a whole step: it gives back no more than it took while the step was not
  * divided yet. (A damper that never pulls cannot make a corner swing, however much it leads.) */
-static bool apply(const lar_domain *domain, lar_gid e, lar_damped *damped, lar_state *state) {
+static bool apply(const lar_domain *domain, lar_gid e, unsigned corners, lar_damped *damped,
+                  lar_state *state, double *stiffness) {
     double rest[8][3], now[8][3], v[8][3], force[8][3] = {{0}};
     double step = domain->time_step / state->parts;
     double mean = state->past > 0 ? 0.5 * (state->past + step) : step;
@@ -201,7 +223,8 @@ static bool apply(const lar_domain *domain, lar_gid e, lar_damped *damped, lar_s
     corners_of(domain, state, e, rest, now);
     lar_domain_corners(domain, state->v, e, v);
     lar_hex8_guard_force((const double(*)[3])rest, (const double(*)[3])now, (const double(*)[3])v,
-                         lar_domain_material(domain, e), lead, force, &guard);
+                         lar_domain_material(domain, e), lead, corners, force, &guard);
+    if (stiffness) *stiffness = guard.stiffness;
     if (!(guard.min < LAR_GUARD_START)) return false;
     if (state->lets_go) {
         if (damped) *damped = (lar_damped){.element = e, .step = (float)step, .gone = true};
@@ -253,86 +276,191 @@ static void finish_damping(const lar_domain *domain, int32_t r, lar_state *state
     strained->damped_count[r] = 0;
 }
 
-/* Those lanes of a block of run r where a corner is below START, and from bit 8 on those where one
- * is below twice START. */
-static unsigned lanes_below(const lar_domain *domain, int32_t r, int32_t block, unsigned lanes,
-                            const lar_state *state) {
-    const lar_lane_base *base = domain->base + LAR_BLOCK * (size_t)(domain->run_first[r] + block);
-    double largest[LAR_BLOCK] __attribute__((aligned(64)));
-    for (int lane = 0; lane < LAR_BLOCK; lane++) largest[lane] = base[lane].largest;
-    return domain->kernels->corners(&domain->run[r], block, lanes, largest, domain->rest, state->u,
-                                    SHARES);
+/* A corner's volume changes by no more than (L + 2 d)^3 - L^3 while its nodes go d, with edges of L
+ * at most; that is below 7.28 L^2 d for d up to L / 10. So far may nodes go. */
+static double may_go(double above, double longest) {
+    return above > 0 ? fmin(0.1 * sqrt(longest), above / (7.28 * longest)) : 0;
 }
 
-static void apply_lanes(const lar_domain *domain, int32_t r, const lar_gid *element, unsigned lanes,
+/* Looks at the corners of a group, which is empty then: adds the forces of their barriers. With
+ * `lists` the lanes with a corner below twice START are listed. */
+static void apply_group(const lar_domain *domain, int32_t r, bool lists, strained_group *group,
                         lar_state *state) {
-    lar_damped *damped = state->strained->damped + LAR_BLOCK * (size_t)domain->run_first[r];
-    int32_t *count = &state->strained->damped_count[r];
-    for (; lanes; lanes &= lanes - 1)
-        *count += apply(domain, element[__builtin_ctz(lanes)], &damped[*count], state);
+    lar_strained *strained = state->strained;
+    size_t first = LAR_BLOCK * (size_t)domain->run_first[r];
+    int32_t *count = &strained->count[r], *damped = &strained->damped_count[r];
+    const lar_hex8_places places = {.stride = state->stride, .rest = domain->rest, .u = state->u};
+    lar_hex8_corner_look look;
+    unsigned below = domain->kernels->corners(&group->hex8, fill_up(group), &places, SHARES, &look);
+    for (int k = 0; k < group->count; k++) {
+        size_t place = first + (size_t)group->lane[k];
+        double stiffness = 0;
+        strained->sound[place] = strained->travel + may_go(look.above[k], look.longest[k]);
+        if (below >> k & 1) {
+            unsigned corners = corners_in_mesh(domain, r, group->lane[k], look.at[k]);
+            *damped += apply(domain, group->element[k], corners,
+                             &strained->damped[first + (size_t)*damped], state, &stiffness);
+        }
+        if (!lists || !(below >> (k + LAR_BLOCK) & 1)) continue;
+        strained->near[first + (size_t)*count] = group->lane[k];
+        strained->stiffness[first + (size_t)(*count)++] = stiffness;
+    }
+    group->count = 0;
 }
 
-/* How fast strained elements of a block have become, entries first to end - 1 of a monitor:
- * (omega dt / 2)^2 of each, if it is not heavier for a while. */
-static void measure(const lar_domain *domain, const lar_hex8_monitor *monitor, int32_t first,
-                    int32_t end, size_t place, const lar_gid *element, unsigned below,
-                    lar_state *state) {
-    for (int32_t i = first; i < end; i++) {
-        int32_t lane = monitor->lane[i] % LAR_BLOCK;
-        lar_gid e = element[lane];
-        size_t at = place + (size_t)lane;
-        if (e < 0) continue;
-        double factor = domain->factor[lar_factor_of(domain->model->element_material[e])];
-        const float *strain = monitor->strain[i];
-        double rate = factor * domain->rate[e].square;
-        double square = rate * lar_hex8_growth(lar_domain_material(domain, e), strain,
-                                               strain[LAR_STRAIN_AREA] / 3.0);
-        if (!(monitor->lane[i] & LAR_LANE_FLAT))
-            square += square_of_barriers(domain, state, e, below >> lane, domain->base[at].volume);
-        double flat = rate * growth_of_flat(domain, state, e, at, strain);
-        if (flat > square) square = flat;
-        double need = 0.25 * domain->time_step * domain->time_step * square;
-        if (!(need >= 0)) need = INFINITY; /* a corner that is a point has no number */
-        if (!(need <= state->need)) state->need = need;
-        if (state->needs && need > domain->burden->least) lar_needs_add(state->needs, e, need);
+/* The same of all that are listed, but not for being flat alone: their corners are far from the
+ * barrier. Where it is known how far nodes can have gone, corners that cannot be near one are not
+ * looked at. */
+static void apply_list(const lar_domain *domain, int32_t r, const int32_t *list, int32_t count,
+                       lar_state *state) {
+    lar_strained *strained = state->strained;
+    const double *sound = strained->sound + LAR_BLOCK * (size_t)domain->run_first[r];
+    strained_group group = {.count = 0};
+    strained->count[r] = 0;
+    for (int32_t i = 0; i < count; i++) {
+        int32_t lane = list[i];
+        if (lane & LAR_LANE_FLAT || !is_there(domain, r, lane)) continue;
+        if (strained->follows && strained->travel < sound[lane]) continue;
+        add_lane(domain, r, lane, i, &group);
+        if (group.count == LAR_BLOCK) apply_group(domain, r, true, &group, state);
     }
+    if (group.count > 0) apply_group(domain, r, true, &group, state);
+}
+
+/* How stiff the barriers are that lanes of a group with a bit in `coming` are coming to in `ahead`
+ * seconds; no less than they are now. */
+static void look_ahead(const lar_domain *domain, const lar_state *state, int32_t r,
+                       const strained_group *group, unsigned coming, const double ahead[LAR_BLOCK],
+                       double stiffness[LAR_BLOCK]) {
+    const lar_hex8_places places = {.stride = state->stride,
+                                    .rest = domain->rest,
+                                    .u = state->u,
+                                    .v = state->v,
+                                    .ahead = ahead};
+    lar_hex8_corner_look look;
+    coming &= domain->kernels->corners(&group->hex8, coming, &places, SHARES, &look);
+    for (; coming; coming &= coming - 1) {
+        int k = __builtin_ctz(coming);
+        unsigned corners = corners_in_mesh(domain, r, group->lane[k], look.at[k]);
+        stiffness[k] =
+            fmax(stiffness[k], barriers_ahead(domain, state, group->element[k], ahead[k], corners));
+    }
+}
+
+/* How fast a strained element has become: (omega dt / 2)^2, if it is not heavier for a while. */
+static void measure(const lar_domain *domain, lar_gid e, size_t place, double stiffness,
+                    double areas, const float strain[LAR_STRAIN_NUMBERS], lar_state *state) {
+    double faster = domain->faster[lar_factor_of(domain->model->element_material[e])];
+    double rate = faster * domain->rate[e].square;
+    double square = rate * lar_hex8_growth(lar_domain_material(domain, e), strain,
+                                           strain[LAR_STRAIN_AREA] / 3.0);
+    square += (1 + 2 * LEAD) * stiffness / domain->rate[e].mass;
+    double flat = rate * growth_of_flat(domain, e, place, areas, strain);
+    if (flat > square) square = flat;
+    double need = 0.25 * domain->time_step * domain->time_step * square;
+    if (!(need >= 0)) need = INFINITY; /* a corner that is a point has no number */
+    if (!(need <= state->need)) state->need = need;
+    if (state->needs && need > domain->burden->least) lar_needs_add(state->needs, e, need);
+}
+
+/* Elements of which more than their strain counts, and what is known of them. */
+typedef struct measured_group {
+    strained_group lanes;
+    unsigned moves, near, may_fold; /* bits: areas and speeds are asked for; a corner is below
+                                       twice START; corners may come near a barrier */
+    double stiffness[LAR_BLOCK];    /* of barriers that are at work [N/m] */
+} measured_group;
+
+static void measure_group(const lar_domain *domain, const lar_hex8_monitor *monitor, int32_t r,
+                          measured_group *group, lar_state *state) {
+    strained_group *lanes = &group->lanes;
+    const lar_hex8_places places = {.stride = state->stride, .rest = domain->rest, .u = state->u};
+    size_t first = LAR_BLOCK * (size_t)domain->run_first[r];
+    double ahead[LAR_BLOCK] __attribute__((aligned(64))) = {0};
+    lar_hex8_motion motion = {{0}, {0}};
+    unsigned coming = 0;
+    fill_up(lanes);
+    if (group->moves)
+        domain->kernels->motion(&lanes->hex8, group->moves, &places, state->v, &motion);
+    for (int k = 0; k < lanes->count; k++) {
+        double volume = domain->base[first + (size_t)lanes->lane[k]].volume;
+        if (group->near >> k & 1)
+            ahead[k] = SEEN_IN_STEPS * domain->time_step;
+        else if (group->may_fold >> k & 1 && is_thrown(domain, state, motion.parting[k], volume))
+            ahead[k] = steps_ahead(domain, state) * domain->time_step;
+        if (ahead[k] > 0) coming |= 1U << k;
+    }
+    if (coming) look_ahead(domain, state, r, lanes, coming, ahead, group->stiffness);
+    for (int k = 0; k < lanes->count; k++)
+        measure(domain, lanes->element[k], first + (size_t)lanes->lane[k], group->stiffness[k],
+                motion.areas[k], monitor->strain[lanes->entry[k]], state);
+    lanes->count = 0;
+    group->moves = group->near = group->may_fold = 0;
+}
+
+/* No corners part faster than this, where it is known [m^2/s^2]. */
+static double parting_max(const lar_state *state) {
+    return state->strained->follows && state->listed ? 12.0001 * state->fastest * state->fastest
+                                                     : INFINITY;
+}
+
+/* Measures all that are listed: most by their strain alone. */
+static void measure_list(const lar_domain *domain, const lar_hex8_monitor *monitor, int32_t r,
+                         lar_state *state) {
+    const lar_strained *strained = state->strained;
+    size_t first = LAR_BLOCK * (size_t)domain->run_first[r];
+    double parting = parting_max(state);
+    measured_group group = {.lanes = {.count = 0}};
+    int32_t met = 0; /* of strained->near */
+    for (int32_t i = 0; i < monitor->count; i++) {
+        int32_t lane = monitor->lane[i] & ~LAR_LANE_FLAT;
+        size_t place = first + (size_t)lane;
+        if (!is_there(domain, r, lane)) continue;
+        bool near = met < strained->count[r] && strained->near[first + (size_t)met] == lane;
+        bool may_fold = !near && lane == monitor->lane[i] &&
+                        is_thrown(domain, state, parting, domain->base[place].volume);
+        bool flat = domain->area_limit && domain->area_limit[place] < LAR_STRAINED_AREA;
+        if (!near && !may_fold && !flat) {
+            measure(domain, element_of(domain, r, lane), place, 0, 0, monitor->strain[i], state);
+            continue;
+        }
+        int k = group.lanes.count;
+        group.stiffness[k] = near ? strained->stiffness[first + (size_t)met++] : 0;
+        group.near |= (unsigned)near << k;
+        group.may_fold |= (unsigned)may_fold << k;
+        group.moves |= (unsigned)(may_fold || flat) << k;
+        add_lane(domain, r, lane, i, &group.lanes);
+        if (group.lanes.count == LAR_BLOCK) measure_group(domain, monitor, r, &group, state);
+    }
+    if (group.lanes.count > 0) measure_group(domain, monitor, r, &group, state);
 }
 
 void lar_guard_select_and_apply(const lar_domain *domain, int32_t r,
                                 const lar_hex8_monitor *monitor, bool measures, lar_state *state) {
-    int32_t *list = monitor->lane, count = 0;
+    lar_strained *strained = state->strained;
     finish_damping(domain, r, state);
-    for (int32_t first = 0, end; first < monitor->count; first = end) {
-        int32_t block;
-        unsigned lanes;
-        end = lanes_of_block(monitor, first, &block, &lanes);
-        size_t at = (size_t)(domain->run_first[r] + block);
-        const lar_gid *element = domain->layout.block[at].element;
-        for (int lane = 0; lane < LAR_BLOCK; lane++)
-            if (element[lane] < 0) lanes &= ~(1u << lane);
-        unsigned below = lanes ? lanes_below(domain, r, block, lanes, state) : 0;
-        if (measures) measure(domain, monitor, first, end, LAR_BLOCK * at, element, below, state);
-        lanes &= below >> LAR_BLOCK;
-        if (lanes) list[count++] = (int32_t)((unsigned)block << LAR_BLOCK | lanes);
-        apply_lanes(domain, r, element, lanes & below, state);
-    }
-    state->strained->count[r] = count;
+    if (!state->listed && strained->travel > 0)
+        memset(strained->sound + LAR_BLOCK * (size_t)domain->run_first[r], 0,
+               LAR_BLOCK * (size_t)domain->run[r].count * sizeof *strained->sound);
+    apply_list(domain, r, monitor->lane, monitor->count, state);
+    if (measures) measure_list(domain, monitor, r, state);
 }
 
 void lar_guard_apply(const lar_domain *domain, int32_t r, lar_state *state) {
-    const int32_t *list = state->strained->lane + LAR_BLOCK * (size_t)domain->run_first[r];
+    const lar_strained *strained = state->strained;
+    const int32_t *near = strained->near + LAR_BLOCK * (size_t)domain->run_first[r];
+    strained_group group = {.count = 0};
     finish_damping(domain, r, state);
-    for (int32_t i = 0; i < state->strained->count[r]; i++) {
-        int32_t block = (int32_t)((uint32_t)list[i] >> LAR_BLOCK);
-        unsigned lanes = (unsigned)list[i] & ALL_LANES;
-        const lar_gid *element = domain->layout.block[domain->run_first[r] + block].element;
-        apply_lanes(domain, r, element, lanes_below(domain, r, block, lanes, state) & ALL_LANES,
-                    state);
+    for (int32_t i = 0; i < strained->count[r]; i++) {
+        add_lane(domain, r, near[i], i, &group);
+        if (group.count == LAR_BLOCK) apply_group(domain, r, false, &group, state);
     }
+    if (group.count > 0) apply_group(domain, r, false, &group, state);
 }
 
 void lar_guard_apply_all(const lar_domain *domain, lar_state *state) {
-    for (lar_gid e = 0; e < domain->model->mesh.element_count; e++) apply(domain, e, NULL, state);
+    for (lar_gid e = 0; e < domain->model->mesh.element_count; e++)
+        apply(domain, e, LAR_ALL_CORNERS, NULL, state, NULL);
 }
 
 double lar_guard_energy(const lar_domain *domain, const lar_state *state, lar_gid e) {

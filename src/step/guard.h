@@ -28,10 +28,15 @@ struct lar_strained {
     int32_t *lane;  /* [8 for each block] what is looked at in every step */
     int32_t *count; /* [run_count] of these, from the first of a run's places on */
     float (*strain)[LAR_STRAIN_NUMBERS]; /* [8 for each block] scratch of a monitor */
-    lar_damped *damped;                  /* [8 for each block] with half of their work to come */
-    int32_t *damped_count;               /* [run_count] of these, as above */
-    double *activation;                  /* [8 for each block] scratch (step/activation.h), */
-    double *active_energy;               /* likewise; NULL where nothing is active */
+    int32_t *near;                       /* [8 for each block] scratch: lanes with a corner below */
+    double *stiffness;                   /* twice START, and of their barriers, likewise [N/m] */
+    bool follows;       /* one thread moves all nodes: it is known how far they can have gone */
+    double travel;      /* that is, along any way [m] */
+    double *sound;      /* [8 for each block] `travel` until which no corner is below twice START */
+    lar_damped *damped; /* [8 for each block] with half of their work to come */
+    int32_t *damped_count; /* [run_count] of these, as above */
+    double *activation;    /* [8 for each block] scratch (step/activation.h), */
+    double *active_energy; /* likewise; NULL where nothing is active */
 };
 
 lar_status lar_strained_create(const lar_domain *domain, lar_strained *strained, lar_error *error);

@@ -68,17 +68,17 @@ static lar_step_room room_of(const lar_domain *whole, const lar_tools *tools) {
     return lar_step_room_of(whole->time_step, whole->stable_step, touched);
 }
 
-/* Parts that stiffer materials need. Elements take s^2 of a step, times their factor, and contact
- * at most what it takes beside elements as they are (mechanics/contact.c): a part of 1/p of a step
- * has room for p^2 of both together. */
-static int32_t base_of(const lar_domain *whole, const lar_settings *settings) {
+/* Parts that stiffer materials need. Elements take s^2 of a step, times what they are faster, and
+ * contact at most what it takes beside elements as they are (mechanics/contact.c): a part of 1/p of
+ * a step has room for p^2 of both together. */
+static int32_t base_of(const lar_domain *whole) {
     static const double CONTACT_MAX = 9.0 / 16, CONTACT_MIN = 0.09;
     double dt = whole->time_step, share = dt / whole->stable_step, elements = share * share;
     double contact = fmax(CONTACT_MIN, fmin(CONTACT_MAX, 1 - elements)), stiff = 0;
     bool stiffer = false;
     for (int i = 0; i < LAR_FACTORS_MAX; i++) {
-        stiffer = stiffer || settings->factor[i] > 1;
-        stiff = fmax(stiff, 0.25 * dt * dt * whole->fastest[i] * settings->factor[i]);
+        stiffer = stiffer || whole->faster[i] > 1;
+        stiff = fmax(stiff, 0.25 * dt * dt * whole->fastest[i] * whole->faster[i]);
     }
     int32_t base = 1;
     while (stiffer && stiff + contact > fmax(1, elements + contact) * base * base) base *= 2;
@@ -160,7 +160,7 @@ bool lar_interval_decide(const lar_domain *whole, uint64_t step, lar_tools *tool
     if (!list) return false;
     if (step % whole->interval != 0 && !lar_division_is_close(division) && !division->due)
         return false;
-    if (division->due) division->base = base_of(whole, &tools->settings);
+    if (division->due) division->base = base_of(whole);
     division->due = 0;
     double seconds = (double)(step - division->decided) * whole->time_step;
     division->decided = step;

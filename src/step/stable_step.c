@@ -7,11 +7,9 @@
 #include "mechanics/hex8_full.h"
 #include "mechanics/hex8_guard.h"
 
-/* The element's own highest frequency [rad/s]; its hex8 form when asked for. */
-static double element_frequency(const lar_model *model, lar_element_kind kind, lar_gid e,
-                                lar_hex8 *hex8) {
+double lar_element_frequency(const lar_model *model, lar_element_kind kind, lar_gid e,
+                             const lar_material *material, lar_hex8 *hex8) {
     double corner[8][3];
-    const lar_material *material = lar_model_material_of(model, e);
     lar_mesh_corners(&model->mesh, e, corner);
     lar_hex8_prepare(corner, material, hex8);
     lar_model_fibres(model, e, hex8->fibre);
@@ -50,7 +48,8 @@ lar_status lar_step_bound_find(const lar_model *model, lar_element_kind kind,
     *bound = (lar_step_bound){0};
     for (lar_gid e = 0; e < model->mesh.element_count; e++) {
         lar_hex8 hex8;
-        double frequency = element_frequency(model, kind, e, &hex8);
+        double frequency =
+            lar_element_frequency(model, kind, e, lar_model_material_of(model, e), &hex8);
         double mass = lar_model_material_of(model, e)->density * hex8.volume / 8;
         double now = lar_model_slowed(model, frequency);
         rate[e] = (lar_element_rate){now * now, mass, 0, 1};

@@ -4,6 +4,7 @@
 #ifndef LAR_STEP_STABLE_STEP_H
 #define LAR_STEP_STABLE_STEP_H
 
+#include "mechanics/hex8.h"
 #include "model/model.h"
 #include "model/settings.h"
 
@@ -21,6 +22,11 @@ typedef struct lar_step_bound {
     lar_gid worst, worst_without;
     double fastest[LAR_FACTORS_MAX]; /* lar_domain.fastest */
 } lar_step_bound;
+
+/* An element's own highest frequency at rest [rad/s] if it were of that material, and its hex8
+ * form. */
+double lar_element_frequency(const lar_model *model, lar_element_kind kind, lar_gid e,
+                             const lar_material *material, lar_hex8 *hex8);
 
 /* Fills rate[elements], with as much mass as that takes (lar_mass_scaling_check). */
 lar_status lar_step_bound_find(const lar_model *model, lar_element_kind kind,

@@ -414,6 +414,8 @@ void lar_step_move(const lar_domain *domain, lar_interactions *interactions,
     state->external += lar_conditions_impose(context, time, &interactions->notes, state);
     lar_tool_contact_stop(&interactions->tool_contact, context, state);
     lar_body_contact_moved(&interactions->body_contact, state, state->fastest * context->time_step);
+    if (state->strained->follows)
+        state->strained->travel += 1.7320508075688774 * state->fastest * context->time_step;
 }
 
 void lar_step_end(const lar_domain *domain, const lar_interactions *interactions,

@@ -63,7 +63,7 @@ static void describe(const lar_arrival *a, lar_error *error) {
 int32_t lar_arrival_end(lar_arrival *a, lar_error *error) {
     if (!a->runs) return 0;
     __atomic_store_n(&a->over, 1, __ATOMIC_RELEASE);
-    pthread_join(a->thread, NULL);
+    lar_thread_join(&a->thread);
     a->runs = false;
     if (a->missing) describe(a, error);
     return a->missing;

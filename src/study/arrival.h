@@ -16,6 +16,7 @@
 #include <stdbool.h>
 #include <sys/types.h>
 
+#include "base/thread.h"
 #include "lariat.h"
 
 typedef struct lar_arrival {
@@ -24,7 +25,7 @@ typedef struct lar_arrival {
     int32_t count;
     int listener; /* of processor zero */
     /* its own */
-    pthread_t thread;
+    lar_thread thread;
     bool runs;
     int over;        /* atomic */
     int32_t missing; /* who has ended; 0: nobody */

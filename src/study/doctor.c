@@ -109,9 +109,9 @@ static void *nothing(void *context) {
 
 /* The system is asked by doing it: limits, capabilities and containers all have a say. */
 static bool may_be_urgent(void) {
-    pthread_t thread;
+    lar_thread thread;
     if (lar_thread_start_urgent(&thread, 1, nothing, NULL) != 0) return false;
-    pthread_join(thread, NULL);
+    lar_thread_join(&thread);
     return true;
 }
 

@@ -262,6 +262,26 @@ fit shear_modulus 1e3 other.csv \
 expect 0 "$LARIAT" fit other.yaml
 says 'shear_modulus: 2'
 
+# One slip among good values is named by its line, and good values are not.
+awk 'BEGIN { print "displacement,force"; for (i = 1; i <= 12; i++) { s = 1 + i * 0.0004 / 0.02
+    print i * 0.0004 "," (i == 7 ? 1.3 : 1 + (i * i % 5 - 2) * 0.002) * 0.2 * (s - 1 / s / s) } }' >slip.csv
+fit shear_modulus 1e3 slip.csv >slip.yaml
+expect 0 "$LARIAT" fit slip.yaml
+says 'slip\.csv:8: this value is off by .* times the deviation of the others'
+sed -i 8d slip.csv
+expect 0 "$LARIAT" fit slip.yaml
+if grep -q 'this value is off' out; then fail "a slip that is none: $(cat out)"; fi
+
+# From the largest way to the smallest; profiles from the rim to the axis have a line in the picture.
+sort -t, -k1,1gr one.csv >falling.csv
+sed -i '$d; 1i displacement,force' falling.csv
+fit shear_modulus 1e3 falling.csv >falling.yaml
+expect 0 "$LARIAT" fit falling.yaml --json
+value_of parameters.0.value | awk '{ exit !($1 > 1960 && $1 < 2040) }' || fail "falling: $(cat falling.csv)"
+profile 'pressure,r,z\n300,0.005,0.001\n300,0,0.001\n600,0.005,0.002\n600,0,0.002\n'
+expect 0 "$LARIAT" fit tube_fit.yaml --out inwards
+[ "$(grep -c 'points="[0-9.]*,[0-9.]* [0-9.]*,' inwards/1_aspiration.svg)" = 2 ] || fail "no lines of profiles"
+
 # A full disk: a message, and the answer all the same.
 if [ -c /dev/full ]; then
     mkdir full

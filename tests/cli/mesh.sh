@@ -66,6 +66,24 @@ grep -q 'law: coupled-neo-hookean, *# a guess' Two_organs/Two_organs.yaml &&
     grep -q '^ *shear_modulus: 2100,$' Two_organs/Two_organs.yaml &&
     grep -q 'lariat fit' Two_organs/Two_organs.yaml || fail "the scene does not say what is a guess"
 
+# Tissue files in place of the table's figures: their lines stand in the scene, and everything that
+# follows from a stiffness follows from theirs.
+printf '# Fitted, 95 %% between 690 and 710.\nlariat-tissue: 1\nname: "gel"\nlaw: neo-hookean\ndensity: 1000\nshear_modulus: 700\nbulk_modulus: 7000\nviscous:\n  part: isochoric\n  terms:\n    - { g: 1, time: 0.5 }\n' >gel.tissue.yaml
+expect 0 "$LARIAT" mesh two.nrrd --label liver --label 7 --elements 300 --title both \
+    --tissue gel.tissue.yaml --json
+[ "$(value_of regions.1.source)" = '"gel.tissue.yaml"' ] && [ "$(value_of regions.1.shear_modulus)" = 1400 ] ||
+    fail "another tissue: $(value_of regions.1.source), $(value_of regions.1.shear_modulus)"
+[ "$(grep -c 'shear_modulus: 700$' both/both.yaml)" = 2 ] &&
+    grep -q '# Fitted, 95 % between 690 and 710' both/both.yaml || fail "the tissue is not in the scene"
+expect 0 "$LARIAT" info both/both.yaml --no-speed --json
+[ "$(value_of materials.1.shear_modulus)" = 700 ] || fail "$(value_of materials.1.shear_modulus) Pa"
+printf 'lariat-tissue: 1\nlaw: neo-hookean\ndensity: 1000\nshear_modulus: 700\nbulk_modulus: 7000\nfibres:\n  law: exp-pow\n  part: isochoric\n  ksi: 500\n  alpha: 1\n  beta: 2\n' >fibrous.yaml
+expect 0 "$LARIAT" mesh two.nrrd --label liver --label 7 --elements 300 --title one \
+    --tissue 'left kidney=fibrous.yaml' --fibres 'axis: [0, 0, 1]' --fibres-in 'left kidney'
+grep -q '^      shear_modulus: 2100,' one/one.yaml && grep -q '^      shear_modulus: 700$' one/one.yaml &&
+    grep -q '^        direction: { axis: \[0, 0, 1\] }$' one/one.yaml || fail "tissues: $(cat one/one.yaml)"
+expect 0 "$LARIAT" run one/one.yaml --time 0.01
+
 # The pull moves the handle alike whatever the mesh; frames hold the embedded surface when asked to.
 furthest() { # the largest mean displacement of the handle in a run's probes
     awk -F, 'NR == 1 { for (c = 1; c <= NF; c++) if ($c ~ /^"*handle/) at[++n] = c; next }

@@ -47,6 +47,16 @@ refused 'the set "away" is unknown' good.nrrd --label 3 --elements 20 \
     --fibres 'path: {from: support, to: away}'
 refused 'fibres are asked for in "left"' good.nrrd --label 3 --elements 20 --fibres 'axis: [0, 0, 1]' \
     --fibres-in left
+printf 'lariat-tissue: 1\nlaw: neo-hookean\ndensity: 1000\nshear_modulus: 700\nbulk_modulus: 7000\n' >soft.yaml
+{ cat soft.yaml; printf 'fibres: { law: exp-pow, part: isochoric, ksi: 500, alpha: 1, beta: 2 }\n'; } >fibrous.yaml
+printf '{ lariat-tissue: 1, law: neo-hookean, density: 1000, shear_modulus: 700, bulk_modulus: 7000 }\n' >braces.yaml
+sed 's/hookean/hokean/' soft.yaml >slip.yaml
+refused 'no.yaml: cannot be opened' good.nrrd --label 3 --elements 20 --tissue no.yaml
+refused 'a tissue file is given for "liver", but the regions are' good.nrrd --label 3 --elements 20 \
+    --tissue liver=soft.yaml
+refused 'slip.yaml:2:6: the law "neo-hokean" is unknown' good.nrrd --label 3 --elements 20 --tissue slip.yaml
+refused 'braces.yaml: write each key on a line' good.nrrd --label 3 --elements 20 --tissue braces.yaml
+refused 'fibrous.yaml: it has fibres; say along what' good.nrrd --label 3 --elements 20 --tissue fibrous.yaml
 expect 2 "$LARIAT" mesh good.nrrd --fibres-in left
 complains 'add --fibres RULE'
 expect 2 "$LARIAT" mesh good.nrrd --size 0.004 --elements 100

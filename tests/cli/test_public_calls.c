@@ -233,6 +233,9 @@ static void tool_calls(void **unused) {
     REFUSED(lar_simulation_set_damping(NULL, 0, &error));
     REFUSED(lar_simulation_set_stiffness(NULL, -1, 1, &error));
     REFUSED(lar_simulation_set_stiffness(simulation, INT32_MAX, 1, &error));
+    REFUSED(lar_simulation_set_parameter(NULL, 0, "shear_modulus", 1, &error));
+    REFUSED(lar_simulation_set_parameter(simulation, INT32_MAX, NULL, 1, &error));
+    REFUSED(lar_session_set_parameter(NULL, 0, "shear_modulus", 1, &error));
     REFUSED(lar_simulation_activate(NULL, -1, 1, &error));
     REFUSED(lar_simulation_activate(simulation, INT32_MAX, 1, &error));
     REFUSED(lar_session_activate(NULL, -1, 1, &error));

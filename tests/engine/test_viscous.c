@@ -6,7 +6,8 @@
 #define PATH LAR_TEST_BUILD "/viscous.checkpoint"
 
 static void make_viscous(lar_material *material, bool isochoric, int terms) {
-    static const double share[] = {0.6, 0.9, 0.3}, time[] = {0.05, 0.008, 0.4};
+    static const double share[LAR_VISCOUS_TERMS] = {0.6, 0.9, 0.3, 0.2, 0.4, 0.1},
+                        time[LAR_VISCOUS_TERMS] = {0.05, 0.008, 0.4, 0.02, 0.1, 2};
     material->viscosity = (lar_viscosity){.terms = terms, .isochoric = isochoric, .rest = 1};
     memcpy(material->viscosity.share, share, sizeof share);
     memcpy(material->viscosity.time, time, sizeof time);

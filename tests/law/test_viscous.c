@@ -17,7 +17,8 @@ static lar_material material_of(lar_law law, bool isochoric, double poisson, int
 }
 
 static const double NOWHERE[3]; /* no fibres */
-static const double TERMS[LAR_VISCOUS_TERMS][2] = {{0.5, 0.01}, {1.2, 0.3}, {0.25, 4}};
+static const double TERMS[LAR_VISCOUS_TERMS][2] = {{0.5, 0.01}, {1.2, 0.3}, {0.25, 4},
+                                                   {0.4, 0.05}, {0.1, 20},  {0.3, 1}};
 
 /* ---- relaxation ----------------------------------------------------------------------------- */
 

@@ -3,6 +3,7 @@
 #include "mechanics_test.h"
 #include "nodes_test.h"
 
+#include "base/vector.h"
 #include "mechanics/hex8_guard.h"
 
 enum { NODES = 8 * LAR_BLOCK + 4 };
@@ -33,8 +34,8 @@ static void forces_are_slopes_of_the_energy(void **state) {
         double rest[8][3], now[8][3], force[8][3] = {{0}}, sum[3] = {0};
         lar_guard guard;
         crooked(&seed, 0.6, rest, now);
-        lar_hex8_guard_force((rows)rest, (rows)now, NULL, &material, (lar_guard_lead){0}, force,
-                             &guard);
+        lar_hex8_guard_force((rows)rest, (rows)now, NULL, &material, (lar_guard_lead){0},
+                             LAR_ALL_CORNERS, force, &guard);
         if (guard.min >= LAR_GUARD_START) {
             assert_true(guard.energy == 0 && guard.stiffness == 0);
             assert_true(largest(&force[0][0], 24) == 0);
@@ -99,8 +100,8 @@ static void long_edges_have_slopes(void **state) {
         crooked(&seed, 0.6, rest, now);
         for (int a = 0; a < 8; a++)
             for (int i = 0; i < 3; i++) now[a][i] *= i == k % 3 ? 1 : 6;
-        lar_hex8_guard_force((rows)rest, (rows)now, NULL, &material, (lar_guard_lead){0}, force,
-                             &guard);
+        lar_hex8_guard_force((rows)rest, (rows)now, NULL, &material, (lar_guard_lead){0},
+                             LAR_ALL_CORNERS, force, &guard);
         if (guard.min >= LAR_GUARD_START) continue;
         guarded++;
         double step = 1e-7 * size, max = largest(&force[0][0], 24);
@@ -129,9 +130,10 @@ static void damping_only_takes(void **state) {
         crooked(&seed, 0.6, rest, now);
         random_fill(&seed, 1, &v[0][0], 24);
         const lar_guard_lead lead = {.closing = 1e-4, .opening = 1e-3};
-        lar_hex8_guard_force((rows)rest, (rows)now, NULL, &material, (lar_guard_lead){0}, still,
-                             &guard);
-        lar_hex8_guard_force((rows)rest, (rows)now, (rows)v, &material, lead, force, &guard);
+        lar_hex8_guard_force((rows)rest, (rows)now, NULL, &material, (lar_guard_lead){0},
+                             LAR_ALL_CORNERS, still, &guard);
+        lar_hex8_guard_force((rows)rest, (rows)now, (rows)v, &material, lead, LAR_ALL_CORNERS,
+                             force, &guard);
         double power = 0, max = 0;
         for (int i = 0; i < 24; i++) {
             double part = (force[i / 3][i % 3] - still[i / 3][i % 3]) * v[i / 3][i % 3];
@@ -150,6 +152,7 @@ static void damping_only_takes(void **state) {
 typedef struct block_nodes {
     double rest[NODES][4] __attribute__((aligned(64)));
     double u[NODES][4] __attribute__((aligned(64)));
+    double v[NODES][4] __attribute__((aligned(64)));
 } block_nodes;
 
 /* Eight loose elements, or a row of eight on four lines of nodes. */
@@ -165,6 +168,7 @@ static void fill(uint64_t *seed, bool row, lar_hex8_block *block, block_nodes *n
                                        (row && i == 0 ? size * n : 0) +
                                        0.1 * size * random_value(seed);
                 nodes->u[node][i] = 0.45 * size * random_value(seed);
+                nodes->v[node][i] = random_value(seed);
             }
             block->head.node[a][n] = node;
         }
@@ -186,39 +190,90 @@ static double min_of(const lar_hex8_block *block, const block_nodes *nodes, int 
     return guard.min;
 }
 
+/* Corners below 0.3 of their volume, one by one. */
+static void corners_are(const lar_hex8_group *group, const block_nodes *nodes, unsigned lanes,
+                        const double *ahead, const uint8_t at[LAR_BLOCK]) {
+    lar_material material = test_material(LAR_LAW_neo_hookean, 2e3, 1e5);
+    for (int lane = 0; lane < LAR_BLOCK; lane++) {
+        double rest[8][3], now[8][3];
+        unsigned below = 0;
+        for (int a = 0; a < 8; a++)
+            for (int i = 0; i < 3; i++) {
+                int node = group->node[a][lane];
+                rest[a][i] = nodes->rest[node][i];
+                now[a][i] = rest[a][i] + nodes->u[node][i];
+                if (ahead) now[a][i] += ahead[lane] * nodes->v[node][i];
+            }
+        for (int a = 0; a < 8; a++) {
+            lar_guard guard;
+            lar_hex8_guard_force((rows)rest, (rows)now, NULL, &material, (lar_guard_lead){0},
+                                 1u << a, NULL, &guard);
+            if (!(guard.min > 0.3)) below |= 1u << a;
+        }
+        assert_int_equal(at[lane], lanes >> lane & 1 ? below : 0);
+    }
+}
+
+/* Areas and the largest square of a speed beside the first corner, to the bit. */
+static void motion_is(const lar_hex8_group *group, const block_nodes *nodes, unsigned lanes,
+                      const lar_hex8_motion *motion) {
+    for (int lane = 0; lane < LAR_BLOCK; lane++) {
+        double now[8][3], most = 0;
+        const double *first = nodes->v[group->node[0][lane]];
+        for (int a = 0; a < 8; a++) {
+            int node = group->node[a][lane];
+            double away[3];
+            for (int i = 0; i < 3; i++) now[a][i] = nodes->rest[node][i] + nodes->u[node][i];
+            lar_minus(nodes->v[node], first, away);
+            most = fmax(most, lar_dot(away, away));
+        }
+        if (!(lanes >> lane & 1)) continue;
+        assert_true(motion->areas[lane] == lar_hex8_areas((rows)now));
+        assert_true(motion->parting[lane] == most);
+    }
+}
+
 static void kernels_see_the_same_corners(void **state) {
     (void)state;
     static const lar_isa wanted[] = {LAR_ISA_C, LAR_ISA_NEON, LAR_ISA_AVX2, LAR_ISA_AVX512};
     static const double share[2] = {0.3, 0.6};
     static lar_hex8_block block;
     static block_nodes nodes;
-    static double rest[3 * TEST_STRIDE], u[3 * TEST_STRIDE];
+    static double ahead[LAR_BLOCK] __attribute__((aligned(64)));
+    for (int lane = 0; lane < LAR_BLOCK; lane++) ahead[lane] = 0.02 * size * lane;
+    static double rest[3 * TEST_STRIDE], u[3 * TEST_STRIDE], v[3 * TEST_STRIDE];
+    lar_hex8_group group;
     uint64_t seed = 13;
     int seen[3] = {0};
     for (int k = 0; k < 400; k++) {
-        bool row = k % 2;
-        fill(&seed, row, &block, &nodes);
-        lar_block_run run = {.shape = LAR_SHAPE_GENERAL,
-                             .rows = row ? LAR_ROWS_EIGHT : LAR_ROWS_NONE,
-                             .count = 1,
-                             .axis_stride = TEST_STRIDE,
-                             .blocks = &block};
+        fill(&seed, k % 2, &block, &nodes);
         test_axes((const double(*)[4])nodes.rest, NODES, rest);
         test_axes((const double(*)[4])nodes.u, NODES, u);
+        test_axes((const double(*)[4])nodes.v, NODES, v);
         unsigned expected = 0;
-        double largest[LAR_BLOCK] __attribute__((aligned(64)));
+        memcpy(group.node, block.head.node, sizeof group.node);
         for (int lane = 0; lane < LAR_BLOCK; lane++) {
-            double min = min_of(&block, &nodes, lane, &largest[lane]);
+            double min = min_of(&block, &nodes, lane, &group.largest[lane]);
             for (int s = 0; s < 2; s++)
                 if (!(min > share[s])) expected |= 1u << (lane + LAR_BLOCK * s);
             seen[min < 0.3 ? 0 : min < 0.6 ? 1 : 2]++;
         }
         for (int i = 0; i < 4; i++) {
             const lar_kernels *kernels;
+            lar_hex8_motion motion;
+            lar_hex8_corner_look look;
             if (lar_kernels_find(wanted[i], &kernels, NULL) != LAR_OK) continue;
             unsigned lanes = 0xffu >> k % 8 << k % 3 & 0xff, both = lanes | lanes << LAR_BLOCK;
-            assert_int_equal(kernels->corners(&run, 0, lanes, largest, rest, u, share),
-                             expected & both);
+            const lar_hex8_places now = {.stride = TEST_STRIDE, .rest = rest, .u = u};
+            assert_int_equal(kernels->corners(&group, lanes, &now, share, &look), expected & both);
+            corners_are(&group, &nodes, lanes, NULL, look.at);
+            kernels->motion(&group, lanes, &now, v, &motion);
+            motion_is(&group, &nodes, lanes, &motion);
+            lar_hex8_places then = now;
+            then.v = v;
+            then.ahead = ahead;
+            kernels->corners(&group, lanes, &then, share, &look);
+            corners_are(&group, &nodes, lanes, ahead, look.at);
         }
     }
     assert_true(seen[0] > 100 && seen[1] > 100 && seen[2] > 100);

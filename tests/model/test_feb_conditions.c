@@ -30,6 +30,24 @@ static void test_supports(void **state) {
     lar_model_destroy(model);
 }
 
+/* A dead load: each node has its share of the area at rest. The face is 1 by 1. */
+static void test_traction(void **state) {
+    (void)state;
+    lar_model *model = read_deck(
+        BASE4 "<Loads><surface_load type=\"traction\" surface=\"end\"><scale lc=\"1\">2</scale>"
+              "<traction>4,0,-8</traction><linear>0</linear></surface_load></Loads>" LINEAR1 TAIL);
+    double sum[3] = {0};
+    for (int l = 0; l < model->load_count; l++) {
+        const lar_nodal_load *load = &model->load[l];
+        assert_true(lar_curve_value(&model->curve[load->curve], 0.5) == 1.0);
+        for (int i = 0; i < 3; i++) sum[i] += load->nodes.count * load->force[i];
+        assert_true(fabs(load->force[0] - 2) < 1e-12 && fabs(load->force[2] + 4) < 1e-12);
+    }
+    assert_int_equal(notices_with(model, "acts on the area at rest"), 1);
+    assert_true(fabs(sum[0] - 8) < 1e-12 && sum[1] == 0 && fabs(sum[2] + 16) < 1e-12);
+    lar_model_destroy(model);
+}
+
 static void test_loads(void **state) {
     (void)state;
     lar_model *model = read_deck(
@@ -94,8 +112,21 @@ static void test_bad_supports(void **state) {
 
 static void test_bad_loads(void **state) {
     (void)state;
-    expect_failure(BASE4 "<Loads>\n<surface_load type=\"traction\" surface=\"end\"/></Loads>" TAIL,
-                   LAR_ERROR_UNSUPPORTED, BC_LINE, "'traction'");
+#define SURFACE_LOAD(type, surface, rest)                                                          \
+    BASE4 "<Loads>\n<surface_load type=\"" type "\" surface=\"" surface "\">" rest                 \
+          "</surface_load></Loads>" LINEAR1 TAIL
+    expect_failure(SURFACE_LOAD("fluidflux", "end", ""), LAR_ERROR_UNSUPPORTED, BC_LINE,
+                   "'fluidflux' is not read and would change the answer; Lariat reads pressure and "
+                   "traction");
+    expect_failure(SURFACE_LOAD("traction", "end", ""), LAR_ERROR_FORMAT, BC_LINE, "no <traction>");
+    expect_failure(SURFACE_LOAD("traction", "end", "<traction>1,2</traction>"), LAR_ERROR_FORMAT,
+                   BC_LINE, "holds 2 values where 3 belong");
+    expect_failure(SURFACE_LOAD("traction", "no", "<traction>1,2,3</traction>"), LAR_ERROR_FORMAT,
+                   BC_LINE, "surface 'no'");
+    expect_failure(SURFACE_LOAD("traction", "end",
+                                "<traction lc=\"1\">1,2,3</traction>"
+                                "<scale lc=\"1\">2</scale>"),
+                   LAR_ERROR_UNSUPPORTED, BC_LINE, "follow a load curve each");
     expect_failure(BASE4 "<Loads>\n<surface_load type=\"pressure\" surface=\"no\"><pressure>1"
                          "</pressure></surface_load></Loads>" TAIL,
                    LAR_ERROR_FORMAT, BC_LINE, "surface 'no'");
@@ -145,6 +176,16 @@ static void test_curves(void **state) {
     const char *jump =
         USE(CURVE("1", "LINEAR", "CONSTANT", "<pt>0,0</pt><pt>1,1</pt><pt>1,5</pt>"));
     assert_true(deck_curve(jump, 2.0) == 5.0);
+    /* beyond the points, up to the end of the run after a second */
+#define BEYOND(how, extend) USE(CURVE("1", how, extend, "<pt>0,0</pt><pt>0.2,1</pt><pt>0.4,3</pt>"))
+    assert_true(fabs(deck_curve(BEYOND("LINEAR", "EXTRAPOLATE"), 0.9) - 8) < 1e-12);
+    assert_true(fabs(deck_curve(BEYOND("LINEAR", "REPEAT"), 0.9) - 0.5) < 1e-12);
+    assert_true(fabs(deck_curve(BEYOND("LINEAR", "REPEAT"), 0.7) - 2) < 1e-12);
+    assert_true(fabs(deck_curve(BEYOND("LINEAR", "REPEAT OFFSET"), 0.9) - 6.5) < 1e-12);
+    assert_true(deck_curve(BEYOND("STEP", "REPEAT"), 0.9) == 1);
+    assert_true(deck_curve(BEYOND("STEP", "REPEAT"), 0.7) == 3);
+    double smooth = deck_curve(BEYOND("SMOOTH", "CONSTANT"), 0.1);
+    assert_true(fabs(deck_curve(BEYOND("SMOOTH", "REPEAT"), 0.5) - smooth) < 1e-12);
     /* the run ends with the curve, so its extension does not matter */
     const char *covered = USE(CURVE("1", "LINEAR", "REPEAT", "<pt>0,0</pt><pt>1,1</pt>"));
     assert_true(deck_curve(covered, 0.5) == 0.5);
@@ -153,8 +194,16 @@ static void test_curves(void **state) {
 static void test_bad_curves(void **state) {
     (void)state;
     enum { LINE = BC_LINE + 1 };
-    expect_failure(USE(CURVE("1", "LINEAR", "REPEAT", "<pt>0,0</pt><pt>0.5,1</pt>")),
+    expect_failure(USE(CURVE("1", "LINEAR", "MIRROR", "<pt>0,0</pt><pt>0.5,1</pt>")),
                    LAR_ERROR_UNSUPPORTED, LINE, "extended beyond");
+    expect_failure(USE(CURVE("1", "SMOOTH", "EXTRAPOLATE", "<pt>0,0</pt><pt>0.5,1</pt>")),
+                   LAR_ERROR_UNSUPPORTED, LINE, "extended beyond");
+    expect_failure(USE(CURVE("1", "LINEAR", "REPEAT", "<pt>0.1,0</pt><pt>0.5,1</pt>")),
+                   LAR_ERROR_UNSUPPORTED, LINE, "extended beyond");
+    expect_failure(USE(CURVE("1", "LINEAR", "REPEAT", "<pt>0,0</pt><pt>1e-9,1</pt>")),
+                   LAR_ERROR_UNSUPPORTED, LINE, "extended beyond");
+    expect_failure(USE(CURVE("1", "LINEAR", "EXTRAPOLATE", "<pt>0,1</pt>")), LAR_ERROR_UNSUPPORTED,
+                   LINE, "extended beyond");
     expect_failure(USE(CURVE("1", "CONTROL POINTS", "CONSTANT", "<pt>0,0</pt>")),
                    LAR_ERROR_UNSUPPORTED, LINE, "interpolation that is not read");
     expect_failure(USE("<load_controller id=\"1\" type=\"math\"><math>t</math></load_controller>"),
@@ -178,9 +227,10 @@ static void test_bad_curves(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_supports),     cmocka_unit_test(test_loads),
-        cmocka_unit_test(test_bad_supports), cmocka_unit_test(test_bad_loads),
-        cmocka_unit_test(test_curves),       cmocka_unit_test(test_bad_curves),
+        cmocka_unit_test(test_supports),   cmocka_unit_test(test_loads),
+        cmocka_unit_test(test_traction),   cmocka_unit_test(test_bad_supports),
+        cmocka_unit_test(test_bad_loads),  cmocka_unit_test(test_curves),
+        cmocka_unit_test(test_bad_curves),
     };
     return cmocka_run_group_tests_name("feb_conditions", tests, NULL, NULL);
 }

@@ -187,8 +187,8 @@ static void test_viscosity(void **state) {
     refused(VISCOUS("", "0.5, 0, 0\n"), LAR_ERROR_MODEL, card + 1, "tau of *VISCOELASTIC is 0");
     refused(VISCOUS("", "0.5, 0, 1\n0.6, 0, 2\n"), LAR_ERROR_MODEL, card,
             "the g of *VISCOELASTIC make up 1.1; they must stay below 1");
-    refused(VISCOUS("", ".1,0,1\n.1,0,2\n.1,0,3\n.1,0,4\n"), LAR_ERROR_UNSUPPORTED, card + 4,
-            "more than 3 terms of *VISCOELASTIC");
+    refused(VISCOUS("", ".1,0,1\n.1,0,2\n.1,0,3\n.1,0,4\n.1,0,5\n.1,0,6\n.1,0,7\n"),
+            LAR_ERROR_UNSUPPORTED, card + 7, "more than 6 terms of *VISCOELASTIC");
     refused(VISCOUS(", MODULI=SOMETIMES", "0.5, 0, 1\n"), LAR_ERROR_FORMAT, AFTER_MESH + 1,
             "MODULI=SOMETIMES is neither LONG TERM nor INSTANTANEOUS");
     refused(MESH "*MATERIAL, NAME=a\n*VISCOELASTIC, TIME=CREEP TEST DATA\n1, 1\n",

@@ -156,7 +156,7 @@ static void test_materials(void **state) {
         {VISCOUS(SOFT, "part: whole"), "4:85", "terms: [{g: 0.5, time: 0.1}]"},
         {VISCOUS(SOFT, "part: shear, terms: [{g: 1, time: 1}]"), "4:92",
          "the parts are: isochoric, whole"},
-        {VISCOUS(SOFT, "part: whole, terms: []"), "4:106", "0 viscous terms; give one to 3"},
+        {VISCOUS(SOFT, "part: whole, terms: []"), "4:106", "0 viscous terms; give one to 6"},
         {VISCOUS(SOFT, "part: whole, terms: [{g: 1, tau: 1}]"), "4:114", "tau"},
         {VISCOUS(SOFT, "part: whole, terms: [{g: -1, time: 1}]"), "4:111", "g is -1"},
         {VISCOUS(SOFT, "part: whole, terms: [{g: .nan, time: 1}]"), "4:111",

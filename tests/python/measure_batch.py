@@ -58,12 +58,13 @@ def pairs(one, other, count=PAIRS, times=1, clock=time.thread_time):
 
 
 def environment(kind):
+    """Both on the same simulation: two of one model differ by some per cent, by where they lie in
+    memory."""
     env, still = kind(), None
     env.reset(seed=0)
     still = numpy.zeros(env.action_space.shape, numpy.float32)
     steps = env._core.control_steps
-    bare = lariat.Simulation(env.simulation.model)
-    bare.load(env._core.start)
+    bare = env.simulation
     place = bare.tool_pose(0)["position"]
 
     def alone():

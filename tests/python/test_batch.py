@@ -238,6 +238,27 @@ class Arrays(unittest.TestCase):
         self.batch.advance(10)
         self.assertEqual([p[0][2] for p in self.batch.tool_poses().tolist()], [0.039, 0.04, 0.039])
 
+    def test_what_learners_see_is_what_there_is(self):
+        nodes = [5, 0, 167]
+        self.batch.set_tool_poses([[pose((0.03, 0.025, 0.036))]] * 2, 60, tools=[0], members=[0, 2])
+        self.batch.advance(100)
+        rows = self.batch.observe(nodes).tolist()
+        for i, row in enumerate(rows):
+            sim, force = self.batch[i], self.batch[i].tool_force(0)
+            places = sim.positions().tolist()
+            self.assertEqual(row, [*sim.tool_pose(0)["position"], sim.tool_pose(0)["opening"],
+                                   *sim.wrench(0), force["held"],
+                                   *(k for n in nodes for k in places[n])])
+        self.assertNotEqual(rows[0][4:7], [0, 0, 0])
+        self.assertEqual(many_shapes(self.batch.observe(())), ((3, 11), "d", True))
+        for wrong in ([-1], [10**6], [[1, 2]], "abc", 5):
+            with self.assertRaises((ValueError, TypeError)):
+                self.batch.observe(wrong)
+        bare = {**SCENE, "tools": []}
+        arrays = block_arrays()
+        with self.assertRaisesRegex(ValueError, "no tool"):
+            lariat.Batch(lariat.Model.from_arrays(*arrays[:2], bare, sets=arrays[2]), 1).observe([0])
+
     def test_hands_take_hold(self):
         top = [0.03, 0.02, 0.03]
         self.batch.set_tool_poses([[pose(top)]] * 2, tools=[1], openings=[[0.0]] * 2, members=[0, 2])

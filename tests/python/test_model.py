@@ -165,6 +165,7 @@ class Arrays(unittest.TestCase):
         self.refuses(ValueError, "tags: expected one row for each of 90", tags=[1, 2])
         self.refuses(TypeError, "sets: expected a dict", sets=[1])
         self.refuses(TypeError, "names as keys", sets={3: [1]})
+        self.refuses(ValueError, "character 0", sets={"a\0b": [1]})
         self.refuses(ValueError, "fibres: expected one row", fibres=[[1, 0, 0]])
         self.refuses(ValueError, "fibres2: expected one row", fibres2=[[1, 0, 0]])
         self.refuses(TypeError, "scene: expected a str", scene=5)

@@ -83,6 +83,7 @@ class Sessions(unittest.TestCase):
         self.session.set_support("top", axes="xy")
         self.session.set_support(167, False)
         self.session.set_stiffness(2.0, "soft")
+        self.session.set_parameter("soft", "shear_modulus", 1500.0)
         added = self.session.add_tool("sphere", 0.008)
         self.session.remove_tool(added)
         self.session.save(saved)

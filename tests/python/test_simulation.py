@@ -226,6 +226,11 @@ class Changes(unittest.TestCase):
         self.assertEqual(sim.stiffness(0), 2)
         sim.set_stiffness(0.5)
         self.assertEqual(sim.stiffness("soft"), 0.5)
+        usual = sim.parameter("soft", "shear_modulus")
+        sim.set_parameter("soft", "shear_modulus", 1.5 * usual)
+        self.assertEqual(sim.parameter(0, "shear_modulus"), 1.5 * usual)
+        sim.set_parameter(0)
+        self.assertEqual(sim.parameter(0, "shear_modulus"), usual)
         sim.set_force("top", (0, 0, 0.01))
         sim.set_force(167, (0.5, 0, 0))
         self.assertEqual(sim.force(167), (0.5, 0, 0.01))
@@ -273,11 +278,21 @@ class Changes(unittest.TestCase):
                             (lambda: sim.set_stiffness(9), "4"),
                             (lambda: sim.set_stiffness(1, "hard"), "none called 'hard'"),
                             (lambda: sim.stiffness(7), "no material"),
+                            (lambda: sim.parameter(7, "c1"), "no material"),
+                            (lambda: sim.set_parameter(None, "c1", 1), "no material None"),
+                            (lambda: sim.set_parameter(0, "c1", 1), "shear_modulus, bulk_modulus"),
+                            (lambda: sim.set_parameter(0, "bulk_modulus", 1e12), "divided"),
+                            (lambda: sim.set_parameter(0, "bulk_modulus"), "neither"),
+                            (lambda: sim.set_parameter(0, value=5), "neither"),
+                            (lambda: sim.set_parameter(0, "bulk_modulus", -1), "positive"),
                             (lambda: sim.set_force("nowhere", (1, 0, 0)), "nowhere"),
                             (lambda: sim.set_force(99999, (1, 0, 0)), "99999"),
                             (lambda: sim.set_force(0, (1, 0)), "3 finite numbers"),
                             (lambda: sim.set_force(0, (1, 0, float("inf"))), "finite"),
                             (lambda: sim.force(-1), "no node"),
+                            (lambda: sim.set_force("top\0", (1, 0, 0)), "character 0"),
+                            (lambda: sim.set_stiffness(2, "soft\0"), "character 0"),
+                            (lambda: sim.tool_pose("probe\0"), "character 0"),
                             (lambda: sim.support(99999), "no node 99999"),
                             (lambda: sim.set_support("nowhere"), "nowhere"),
                             (lambda: sim.set_support(99999), "99999"),
@@ -292,6 +307,7 @@ class Changes(unittest.TestCase):
         for call in (lambda: setattr(sim, "damping", "x"), lambda: setattr(sim, "gravity", 5),
                      lambda: delattr(sim, "damping"), lambda: sim.set_force(0.5, (0, 0, 1)),
                      lambda: sim.set_support(0.5), lambda: sim.set_support(0, True, 7),
+                     lambda: sim.set_parameter(0, 7, 1), lambda: sim.set_parameter(0, "c1", "x"),
                      lambda: sim.set_stiffness(None)):
             with self.assertRaises(TypeError):
                 call()

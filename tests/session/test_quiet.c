@@ -43,7 +43,7 @@ static void ticks_are_quiet(void **unused) {
     uint64_t last = 0;
     DONE(lar_snapshot_create(b.session, &snapshot, &failure));
     DONE(lar_session_start(b.session, &failure));
-    engine = b.session->thread;
+    engine = b.session->thread.own;
     uint64_t begin = await(&b, LAR_SESSION_PLAYING, 100).step; /* warm */
     __atomic_store_n(&counting, true, __ATOMIC_RELEASE);
     /* Long enough for a state that is kept, one every half second. */

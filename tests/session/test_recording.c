@@ -156,6 +156,7 @@ static void settings_are_played(void **unused) {
     options.record = PATH;
     options.hash_every = 50;
     bench b = open_bench("2x1x1", 1, &options);
+    const double bulk = 0.8 * lar_simulation_parameter(b.simulation, 0, "bulk_modulus");
     const double gravity[3] = {0.5, 0, -3};
     double now[3];
     DONE(lar_session_start(b.session, &failure));
@@ -164,6 +165,7 @@ static void settings_are_played(void **unused) {
     lead(&b, 100);
     DONE(lar_session_set_stiffness(b.session, -1, 3, &failure));
     DONE(lar_session_set_damping(b.session, 7, &failure));
+    DONE(lar_session_set_parameter(b.session, 0, "bulk_modulus", bulk, &failure));
     lead(&b, 200);
     lar_session_gravity(b.session, now);
     assert_memory_equal(now, gravity, sizeof now);
@@ -171,9 +173,12 @@ static void settings_are_played(void **unused) {
     assert_true(lar_session_stiffness(b.session, 0) == 3);
     assert_true(lar_session_stiffness(b.session, 1) == 0);
     assert_int_equal(lar_session_set_stiffness(b.session, 0, 9, &failure), LAR_ERROR_ARGUMENT);
+    assert_int_equal(lar_session_set_parameter(b.session, 0, "ksi", 9, &failure),
+                     LAR_ERROR_ARGUMENT);
     lar_session_pause(b.session);
     await(&b, LAR_SESSION_PAUSED, 0);
     DONE(lar_session_set_gravity(b.session, NULL, &failure));
+    DONE(lar_session_set_parameter(b.session, 0, NULL, 0, &failure));
     lar_session_play(b.session);
     lead(&b, 100);
     DONE(lar_session_reset(b.session, &failure));
@@ -206,10 +211,11 @@ static void settings_are_played(void **unused) {
         const char *why;
     } forged[] = {{1, LAR_SETTING_KINDS, "sets what cannot be set"},
                   {1, LAR_SETTING_SUPPORT, "there is no node -1 to support"},
+                  {1, LAR_SETTING_PARAMETER, "of material -1"},
                   {2, (uint64_t)-2, "sets what cannot be set"},
                   {2, 1, "there is no material 1"},
                   {3, 0x7ff8000000000000, "sets what cannot be: "}};
-    for (int i = 0; i < 5; i++) {
+    for (int i = 0; i < 6; i++) {
         reload();
         *word_at(find(LAR_RECORD_SET, 1) + 16 + 8 * (size_t)forged[i].word) = forged[i].value;
         sign();

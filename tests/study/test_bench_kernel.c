@@ -109,7 +109,7 @@ static void materials_of_laws_compare(void **state) {
         for (int k = 0; k < lar_law_table[material.law].count; k++)
             assert_true(material.parameter[k] != 0);
     }
-    assert_int_equal(count, LAR_LAW_COUNT + LAR_FIBRE_LAWS + LAR_VISCOUS_TERMS + 1);
+    assert_int_equal(count, LAR_LAW_COUNT + LAR_FIBRE_LAWS + LAR_BENCH_TERMS + 1);
     assert_int_equal(lar_bench_law_material("active+exp-linear", &material, &error), LAR_OK);
     assert_true(material.fibre.along > 0 && material.fibre.law == LAR_FIBRE_EXP_LINEAR);
     assert_int_equal(lar_bench_law_material("active+active", &material, &error),

@@ -17,6 +17,9 @@ typedef struct implicit {
     double *mass, *tangent; /* [freedoms][band + 1] */
     double *u, *v, *a, *next, *weight, *force, *inertia, *change, *guess;
     bool *fixed;
+    double part; /* of the step, where the balance is: 1 or 1/2 */
+    int *motion; /* one more than the index in model->move of what moves a freedom; 0: nothing */
+    double time;
 } implicit;
 
 static double *entry(const implicit *body, double *matrix, int i, int j) {
@@ -74,14 +77,17 @@ static bool element_force(const implicit *body, lar_gid e, const double u[24], d
                                (double(*)[3])force) > 0;
 }
 
-/* Internal forces and their tangent at `next`. */
+/* Internal forces between `u` and `next`, and their tangent. */
 static bool assemble_forces(implicit *body) {
     const double step = 1e-6;
     clear(body, body->tangent);
     memset(body->force, 0, (size_t)body->freedoms * sizeof *body->force);
     for (lar_gid e = 0; e < body->model->mesh.element_count; e++) {
         double u[24], force[24], above[24], below[24], element[24][24];
-        for (int k = 0; k < 24; k++) u[k] = body->next[freedom(body, e, k)];
+        for (int k = 0; k < 24; k++) {
+            int i = freedom(body, e, k);
+            u[k] = body->u[i] + body->part * (body->next[i] - body->u[i]);
+        }
         if (!element_force(body, e, u, force)) return false;
         for (int k = 0; k < 24; k++) body->force[freedom(body, e, k)] += force[k];
         for (int q = 0; q < 24; q++) {
@@ -134,21 +140,44 @@ static bool solve(const implicit *body, double *matrix, double *b) {
     return true;
 }
 
+/* What gravity does at that time. */
+static void weigh(implicit *body) {
+    double gravity[3];
+    lar_gravity_at(body->model, NULL, body->time, gravity);
+    for (int i = 0; i < body->freedoms; i++) body->guess[i] = gravity[i % 3];
+    times_mass(body, body->guess, body->weight);
+}
+
+/* Puts moved supports where they are after the step. */
+static void move_supports(implicit *body) {
+    for (int i = 0; i < body->freedoms; i++) {
+        if (!body->motion[i]) continue;
+        const lar_move *move = &body->model->move[body->motion[i] - 1];
+        body->next[i] = move->by * lar_curve_value(&body->model->curve[move->curve], body->time);
+    }
+}
+
 /* One step: Newton's method for `next`. */
 static bool step(implicit *body, double dt) {
     int count = body->freedoms;
     size_t entries = (size_t)count * ((size_t)body->band + 1);
     double first = 0, change = INFINITY;
     memcpy(body->next, body->u, (size_t)count * sizeof *body->u);
+    body->time += dt;
+    weigh(body);
+    move_supports(body);
     for (int n = 0; n < 30 && change > 1e-20 * first; n++) {
         if (!assemble_forces(body)) return false;
         for (int i = 0; i < count; i++)
             body->guess[i] =
-                (body->next[i] - body->u[i] - dt * body->v[i]) * 4 / (dt * dt) - body->a[i];
+                body->part *
+                    ((body->next[i] - body->u[i] - dt * body->v[i]) * 4 / (dt * dt) - body->a[i]) +
+                (1 - body->part) * body->a[i];
         times_mass(body, body->guess, body->inertia);
         for (int i = 0; i < count; i++)
             body->change[i] = body->weight[i] - body->force[i] - body->inertia[i];
-        for (size_t k = 0; k < entries; k++) body->tangent[k] += 4 / (dt * dt) * body->mass[k];
+        for (size_t k = 0; k < entries; k++)
+            body->tangent[k] = body->part * (body->tangent[k] + 4 / (dt * dt) * body->mass[k]);
         if (!solve(body, body->tangent, body->change)) return false;
         change = 0;
         for (int i = 0; i < count; i++) {
@@ -159,7 +188,7 @@ static bool step(implicit *body, double dt) {
     }
     for (int i = 0; i < count; i++) {
         double ahead =
-            body->fixed[i]
+            body->fixed[i] && !body->motion[i]
                 ? 0
                 : (body->next[i] - body->u[i] - dt * body->v[i]) * 4 / (dt * dt) - body->a[i];
         body->v[i] += dt / 2 * (body->a[i] + ahead);
@@ -184,7 +213,8 @@ static bool allocate(implicit *body) {
     body->mass = lar_calloc(entries, sizeof *body->mass);
     body->tangent = lar_calloc(entries, sizeof *body->tangent);
     body->fixed = lar_calloc(count, sizeof *body->fixed);
-    bool enough = body->mass && body->tangent && body->fixed;
+    body->motion = lar_calloc(count, sizeof *body->motion);
+    bool enough = body->mass && body->tangent && body->fixed && body->motion;
     for (size_t k = 0; k < sizeof vector / sizeof vector[0]; k++)
         enough = (*vector[k] = lar_calloc(count, sizeof(double))) != NULL && enough;
     return enough;
@@ -196,29 +226,35 @@ static void release(implicit *body) {
                      body->inertia, body->change,  body->guess};
     for (size_t k = 0; k < sizeof all / sizeof all[0]; k++) free(all[k]);
     free(body->fixed);
+    free(body->motion);
 }
 
 /* At rest, with the accelerations that weight alone gives. */
 static bool begin(implicit *body, newmark_mass kind) {
     const lar_model *model = body->model;
-    double gravity[3];
-    lar_gravity_at(model, NULL, 0, gravity);
     for (int f = 0; f < model->fix_count; f++)
         for (int32_t n = 0; n < model->fix[f].nodes.count; n++)
             for (int i = 0; i < 3; i++)
                 if (model->fix[f].axes >> i & 1)
                     body->fixed[3 * model->fix[f].nodes.node[n] + i] = true;
+    for (int m = 0; m < model->move_count; m++)
+        for (int32_t n = 0; n < model->move[m].nodes.count; n++)
+            for (int i = 0; i < 3; i++)
+                if (model->move[m].axes >> i & 1) {
+                    body->fixed[3 * model->move[m].nodes.node[n] + i] = true;
+                    body->motion[3 * model->move[m].nodes.node[n] + i] = m + 1;
+                }
     assemble_mass(body, kind);
-    for (int i = 0; i < body->freedoms; i++) body->guess[i] = gravity[i % 3];
-    times_mass(body, body->guess, body->weight);
+    weigh(body);
     memcpy(body->tangent, body->mass,
            (size_t)body->freedoms * ((size_t)body->band + 1) * sizeof *body->mass);
     memcpy(body->a, body->weight, (size_t)body->freedoms * sizeof *body->a);
     return solve(body, body->tangent, body->a);
 }
 
-bool newmark_run(const lar_model *model, newmark_mass mass, double dt, int steps, double *u) {
-    implicit body = {.model = model};
+bool newmark_run(const lar_model *model, newmark_mass mass, newmark_rule rule, double dt, int steps,
+                 double *u) {
+    implicit body = {.model = model, .part = rule == NEWMARK_MIDPOINT ? 0.5 : 1};
     bool good = allocate(&body) && begin(&body, mass);
     for (int n = 0; good && n < steps; n++) good = step(&body, dt);
     if (good) memcpy(u, body.u, (size_t)body.freedoms * sizeof *u);

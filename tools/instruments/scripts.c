@@ -126,11 +126,12 @@ static lar_status tick(lar_scripts *s, double time, lar_error *error) {
 
 /* The fastest node, and the fastest within `reach` of a place. */
 static double fastest_node(const lar_scripts *s, const double place[3], double reach) {
-    const double *v = s->simulation->state.v;
     double max = 0;
     for (int32_t n = 0; n < s->body.nodes; n++) {
+        double v[3];
         if (place && lar_apart(s->body.x[n], place) > reach) continue;
-        max = fmax(max, lar_length(v + 4 * s->simulation->domain.layout.local[n]));
+        lar_state_velocity(&s->simulation->state, s->simulation->domain.layout.local[n], v);
+        max = fmax(max, lar_length(v));
     }
     return max;
 }

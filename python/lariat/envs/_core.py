@@ -83,17 +83,13 @@ class Core:
         self.home = np.array([*pose["position"], *pose["orientation"]])
         self.home_opening = pose["opening"]
         self.control_steps = max(1, round(task.control / first.time_step))
-        n, watched = len(self.batch), np.asarray(task.watched, np.int64)
+        n, watched = len(self.batch), np.asarray(task.watched, np.int32)
         if len(watched) and not 0 <= watched.min() <= watched.max() < self.model.node_count:
             raise lariat.ArgumentError(f"model: it has {self.model.node_count} nodes, and the task "
                                        f"watches node {watched.max()}")
         self.watched = watched
         self.low, self.high = np.asarray(task.low, float), np.asarray(task.high, float)
-        self._places = np.empty((n, self.model.node_count, 3))
-        self._poses = np.empty((n, self.batch.tool_count, 7))
-        self._openings = np.empty((n, self.batch.tool_count))
-        self._wrenches = np.empty((n, self.batch.tool_count, 6))
-        self._held = np.empty((n, self.batch.tool_count), np.int32)
+        self._seen = np.empty((n, 11 + 3 * len(watched)))
 
     def __getstate__(self):
         state = {key: value for key, value in self.__dict__.items() if not key.startswith("_")}
@@ -107,19 +103,12 @@ class Core:
 
     def observe(self, unsound=()):
         """Fills the observations; what has become unstable keeps its last one."""
-        batch, seen = self.batch, self.observations
-        batch.positions(self._places)
-        batch.tool_poses(self._poses)
-        batch.tool_openings(self._openings)
-        batch.wrenches(self._wrenches)
-        batch.held(self._held)
+        seen = self.observations
         kept = {i: seen[i].copy() for i in unsound}
-        seen[:, 0:3] = self._poses[:, 0, :3]
-        seen[:, 3] = self._openings[:, 0]
-        seen[:, 4:10] = self._wrenches[:, 0]
-        seen[:, 10] = self._held[:, 0]
+        self.batch.observe(self.watched, self._seen)
+        seen[:, :11] = self._seen[:, :11]
         seen[:, 11:14] = self.goals
-        seen[:, 14:] = self._places[:, self.watched].reshape(len(seen), -1)
+        seen[:, 14:] = self._seen[:, 11:]
         for i, row in kept.items():
             seen[i] = row
 

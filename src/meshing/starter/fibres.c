@@ -2,7 +2,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/text.h"
 #include "meshing/meshing.h"
 #include "model/scene/scene.h"
 
@@ -13,17 +12,10 @@ bool lar_starter_fibrous(const lar_meshing *m, const lar_region_info *region) {
 
 /* Nothing that could have fibres: the name is none, or all is bone. */
 static lar_status no_region(const lar_meshing *m, lar_error *error) {
-    const char *name[20];
-    char list[300] = "";
-    int count = 0;
-    for (int32_t r = 0; r < m->info.regions && count < 20; r++) name[count++] = m->region[r].name;
-    lar_text_list(name, count, list, sizeof list);
-    if (!m->fibre_region)
-        return lar_fail(error, LAR_ERROR_MODEL,
-                        "all regions are bone, which has no fibres unless its region is named");
+    if (m->fibre_region)
+        return lar_starter_no_region(m, "fibres are asked for in", m->fibre_region, error);
     return lar_fail(error, LAR_ERROR_MODEL,
-                    "fibres are asked for in \"%.80s\", but the regions are %s%s; name one of them",
-                    m->fibre_region, list, m->info.regions > count ? ", ..." : "");
+                    "all regions are bone, which has no fibres unless its region is named");
 }
 
 lar_status lar_starter_lay_fibres(lar_meshing *m, lar_error *error) {

@@ -165,20 +165,66 @@ static void put_motion(const lar_meshing *m, FILE *f) {
         damping(m), settling(m), duration(m));
 }
 
+static void put_direction(const lar_meshing *m, FILE *f) {
+    fprintf(f, *m->fibres == '{' ? "direction: %s" : "direction: { %s }", m->fibres);
+}
+
 /* 4 ksi more along the fibres than E = 3 G of what is incompressible. */
 static void put_fibres(const lar_meshing *m, const lar_region_info *region, FILE *f) {
-    const bool braced = *m->fibres == '{';
     fprintf(
         f,
         "      # The mesh shows them as cell array \"fibre\", a run as its own model has them.\n"
         "      fibres: { law: exp-pow, part: isochoric,\n"
         "        ksi: %g, alpha: 1, beta: 2,   # a guess: twice as stiff along as across\n"
-        "        direction: %s%s%s } }\n",
-        0.75 * region->shear_modulus, braced ? "" : "{ ", m->fibres, braced ? "" : " }");
+        "        ",
+        0.75 * region->shear_modulus);
+    put_direction(m, f);
+    fputs(" }", f);
+}
+
+/* One line of a tissue file, but for its own version and name; fibres get their direction. */
+static void put_given_line(const lar_meshing *m, lar_span line, FILE *f) {
+    lar_span key, value;
+    bool here = lar_span_split(line, ':', &key, &value);
+    if (lar_span_equal(line, "---") || lar_span_equal(key, "lariat-tissue") ||
+        lar_span_equal(key, "name"))
+        return;
+    bool fibres = here && lar_span_equal(key, "fibres");
+    value = lar_span_trim(value);
+    if (fibres && value.length > 0 && *value.at == '{') {
+        fputs("      fibres: { ", f);
+        put_direction(m, f);
+        fprintf(f, ", %.*s\n", (int)value.length - 1, value.at + 1);
+        return;
+    }
+    fprintf(f, "      %.*s\n", (int)line.length, line.at);
+    if (!fibres) return;
+    fputs("        ", f);
+    put_direction(m, f);
+    fputc('\n', f);
+}
+
+static void put_given(const lar_meshing *m, const lar_region_info *region, FILE *f) {
+    const lar_given_tissue *given = &m->given[region - m->region];
+    lar_text text = lar_text_from(&given->text);
+    lar_span line;
+    fputs("  # From ", f);
+    put(f, given->path, false);
+    fputs(":\n  -   name: ", f);
+    put(f, region->name, true);
+    fprintf(f, "\n      cells: %" PRId32 "\n", region->tag);
+    while (lar_text_line(&text, &line)) put_given_line(m, line, f);
+    if (given->fibres || !lar_starter_fibrous(m, region)) return;
+    put_fibres(m, region, f);
+    fputc('\n', f);
 }
 
 /* Beside each number stands whose it is, or that it is a guess. */
 static void put_material(const lar_meshing *m, const lar_region_info *region, FILE *f) {
+    if (m->given[region - m->region].path) {
+        put_given(m, region, f);
+        return;
+    }
     const bool guess = lar_tissue_find(region->name)->guess,
                fibres = lar_starter_fibrous(m, region);
     fprintf(f, "  # As %s. Shear modulus: %s.\n", region->tissue, region->source);
@@ -194,7 +240,9 @@ static void put_material(const lar_meshing *m, const lar_region_info *region, FI
             : guess      ? "   # a guess: measure it, lariat fit"
                          : "",
             region->bulk_modulus, fibres ? "," : " }");
-    if (fibres) put_fibres(m, region, f);
+    if (!fibres) return;
+    put_fibres(m, region, f);
+    fputs(" }\n", f);
 }
 
 static void put_materials(const lar_meshing *m, FILE *f) {

@@ -46,24 +46,25 @@ static const lar_tissue tissue[] = {
      "stomach gastr esophag oesophag duoden bowel intestin colon rectum jejun ileum bladder "
      "urinary_bladder gallbladder gall",
      3e3, 0.45, 1040, 20e-3, false, true,
-     "a guess: between the organ pressed in place with its content (Lim et al., Surg Endosc "
-     "23:1298, "
-     "2009) and its wall stretched alone, far stiffer (Egorov et al., J Biomech 35:1417, 2002)"},
-    {"prostate", "prostat", 2.8e3, 0.45, 1040, 1e-3, false, false,
-     "Kemper et al., Rofo 176:1094 (2004): 2.2 kPa in the middle, 3.3 kPa outside"},
-    {"uterus", "uterus uteri uterin cervix ovar", 2.6e3, 0.45, 1050, 20e-3, false, false,
-     "Jiang et al., Eur Radiol 24:3025 (2014): 2.6 kPa"},
+     "a guess: between the wall of living bowel by ultrasound (Young's modulus 3.8 kPa: Zhao et "
+     "al., Quant Imaging Med Surg, measured in 2020) and walls stretched, far stiffer (Egorov et "
+     "al., J Biomech 35:1417, 2002)"},
+    {"prostate", "prostat", 2.8e3, 0.45, 1040, 1e-3, false, true,
+     "a guess: softer than enlarged ones, 4.4 kPa (Aphinives et al., Egypt J Radiol Nucl Med, "
+     "2021, doi 10.1186/s43055-021-00679-8)"},
+    {"uterus", "uterus uteri uterin cervix ovar", 2.7e3, 0.45, 1050, 20e-3, false, false,
+     "Karakas et al., Front Med (2026), doi 10.3389/fmed.2026.1743585: 2.7 kPa, 48 women"},
     {"brain",
      "brain cerebr cerebell cortex hippocamp thalam putamen caudate pallid amygdal "
      "grey_matter gray_matter white_matter spinal_cord brodmann",
-     0.6e3, 0.45, 1040, 3e-3, false, false,
-     "Budday et al., J Mech Behav Biomed Mater 46:318 (2015): Young's modulus 1.4 (grey) and "
-     "1.9 kPa (white), cattle, indentation"},
+     0.9e3, 0.45, 1040, 3e-3, false, false,
+     "Aurand et al., J Funct Biomater 3:839 (2012), table 1: 0.74 kPa (grey) and 1.03 kPa (white), "
+     "pigs, indentation"},
     {"lung", "lung pulmon", 1.8e3, 0.45, 260, 15e-3, false, false,
      "Mariappan et al., J Magn Reson Imaging 33:1351 (2011): 1.1 kPa breathed out, 1.8 kPa "
      "breathed in"},
-    {"fat", "fat adipos breast mamma", 1.1e3, 0.45, 950, 100e-3, false, false,
-     "Samani et al., Phys Med Biol 52:1565 (2007): Young's modulus 3.2 kPa, breast, indentation"},
+    {"fat", "fat adipos breast mamma", 1e3, 0.45, 950, 100e-3, false, false,
+     "Briot et al., Clin Biomech (2022): Young's modulus 3.0 kPa, breast under its skin, suction"},
     {"skin", "skin cutis dermis", 19e3, 0.45, 1090, 20e-3, false, false,
      "Briot et al., Clin Biomech (2022): Young's modulus 56 kPa, suction"},
     {"cartilage", "cartilage costal_cart meniscus disc disk", 170e3, 0.45, 1100, 2e-3, false, false,
@@ -72,13 +73,11 @@ static const lar_tissue tissue[] = {
      "bone vertebra rib skull crani femur femora hip pelvis sacrum humerus scapula clavic sternum "
      "tibia fibula patella ulna radius mandib maxilla spine tooth teeth",
      3e3, 0.45, 1920, 20e-3, true, true,
-     "a guess: it is held where it is, so that its stiffness plays no part; the real one, 20 GPa "
-     "(Rho et al., Med "
-     "Eng Phys 20:92, 1998), has steps of nanoseconds"},
+     "a guess: it is held where it is, so that its stiffness plays no part; the real one, 7 to 25 "
+     "GPa (Zysset et al., J Biomech 32:1005, 1999), has steps of nanoseconds"},
     {"soft tissue", "", 3e3, 0.45, 1050, 0, false, true,
-     "a guess: no tissue is known by this name; most healthy organs lie between 1 and 5 kPa: "
-     "Mariappan et "
-     "al., Clin Anat 23:497 (2010)"}};
+     "a guess: no tissue is known by this name; livers have 2.1 kPa (Venkatesh et al., 2014), "
+     "kidneys 4.9 kPa (Rouviere et al., 2011)"}};
 enum { TISSUES = sizeof tissue / sizeof tissue[0] };
 
 /* "_" in a word stands for whatever separates words in a name. */

@@ -165,13 +165,15 @@ lar_status lar_scene_select_nodes(lar_scene *scene, const lar_yaml *node, lar_no
  * scene_surface.c ---------------------------------------------------------------------------- */
 
 lar_status lar_scene_read_materials(lar_scene *scene, const lar_yaml *node);
-/* Law, density, stiffness and viscosity from keys of a mapping: reads all of `material` but its
- * cells, name and fibres. */
-typedef lar_status lar_scene_material_reader(const lar_scene *scene, const lar_yaml *node,
-                                             lar_material *material);
-/* The same from the file that the key `tissue` of a material names, by `read`. */
-lar_status lar_scene_read_tissue(lar_scene *scene, const lar_yaml *entry,
-                                 lar_scene_material_reader *read, lar_material *material);
+/* Law, density, stiffness and viscosity from keys of a mapping, an entry of a scene or a tissue
+ * file: reads all of `material` but its cells, name and fibres. */
+lar_status lar_scene_read_material(const lar_scene *scene, const lar_yaml *node,
+                                   lar_material *material);
+/* The same from the file that the key `tissue` of a material names. */
+lar_status lar_scene_read_tissue(lar_scene *scene, const lar_yaml *entry, lar_material *material);
+/* And from a tissue file itself, whose text is `bytes`. */
+lar_status lar_tissue_read(const char *path, const lar_bytes *bytes, lar_material *material,
+                           lar_error *error);
 /* Whether it is a tissue file that is read. */
 bool lar_scene_is_tissue(const lar_scene *scene);
 /* The fibres of a material; and, when all elements have their materials, the directions of those of

@@ -231,9 +231,8 @@ static lar_status check_keys(const lar_scene *scene, const lar_yaml *node) {
     return lar_scene_keys(scene, node, "a tissue file", key + OF_SCENES - 1);
 }
 
-/* lar_scene_material_reader: of a scene's entry, or of a tissue file. */
-static lar_status read_tissue(const lar_scene *scene, const lar_yaml *node,
-                              lar_material *material) {
+lar_status lar_scene_read_material(const lar_scene *scene, const lar_yaml *node,
+                                   lar_material *material) {
     const lar_yaml *law = NULL, *density = NULL, *viscous = lar_yaml_get(node, "viscous");
     const char *const what = scene->root == node ? "a tissue file" : "a material";
     lar_status status = check_keys(scene, node);
@@ -277,9 +276,9 @@ static lar_status read_material(lar_scene *scene, const lar_yaml *node) {
     if (!material) return lar_scene_no_memory(scene, sizeof *material);
     status = read_name(scene, lar_yaml_get(node, "name"), material);
     if (!status && apart)
-        status = lar_scene_read_tissue(scene, node, read_tissue, material);
+        status = lar_scene_read_tissue(scene, node, material);
     else if (!status)
-        status = read_tissue(scene, node, material);
+        status = lar_scene_read_material(scene, node, material);
     if (!status && apart) status = read_fibres_beside(scene, node, material);
     if (status) return status;
     char where[512];

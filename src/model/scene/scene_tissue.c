@@ -26,12 +26,22 @@ static lar_status check_version(const lar_scene *file) {
                           "lariat-tissue: expected 1, the version that this program reads");
 }
 
-lar_status lar_scene_read_tissue(lar_scene *scene, const lar_yaml *entry,
-                                 lar_scene_material_reader *read, lar_material *material) {
+lar_status lar_tissue_read(const char *path, const lar_bytes *bytes, lar_material *material,
+                           lar_error *error) {
+    lar_yaml_tree tree;
+    lar_status status = lar_yaml_parse(path, bytes, &tree, error);
+    if (status) return status;
+    lar_scene file = {.path = path, .root = tree.root, .error = error};
+    status = check_version(&file);
+    if (!status) status = lar_scene_read_material(&file, tree.root, material);
+    lar_yaml_clear(&tree);
+    return status;
+}
+
+lar_status lar_scene_read_tissue(lar_scene *scene, const lar_yaml *entry, lar_material *material) {
     const lar_yaml *at = lar_yaml_get(entry, "tissue");
     const char *name;
     lar_bytes bytes;
-    lar_yaml_tree tree;
     lar_error own = {0};
     lar_status status = check_entry(scene, entry);
     if (!status) status = lar_scene_text(scene, at, "the name of a tissue file (.yaml)", &name);
@@ -44,14 +54,8 @@ lar_status lar_scene_read_tissue(lar_scene *scene, const lar_yaml *entry,
     if (!path) return lar_scene_no_memory(scene, strlen(name));
     status = lar_bytes_read(path, &bytes, &own);
     if (!status) {
-        status = lar_yaml_parse(path, &bytes, &tree, &own);
+        status = lar_tissue_read(path, &bytes, material, &own);
         lar_bytes_free(&bytes);
-    }
-    if (!status) {
-        lar_scene file = {.path = path, .root = tree.root, .error = &own};
-        status = check_version(&file);
-        if (!status) status = read(&file, tree.root, material);
-        lar_yaml_clear(&tree);
     }
     free(path);
     return status ? lar_scene_fail(scene, at, status, "%s", own.message) : LAR_OK;

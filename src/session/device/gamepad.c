@@ -93,7 +93,7 @@ typedef struct gamepad_sample {
 
 typedef struct gamepad_state {
     SDL_GameController *controller;
-    pthread_t thread;
+    lar_thread thread;
     bool started, initialised;
     _Atomic bool ended;
     gamepad_sample sample;
@@ -142,7 +142,7 @@ static void gamepad_close(void *data) {
     gamepad_state *state = data;
     if (state->started) {
         atomic_store(&state->ended, true);
-        pthread_join(state->thread, NULL);
+        lar_thread_join(&state->thread);
     }
     pthread_mutex_lock(&sdl_lock);
     if (state->controller) {

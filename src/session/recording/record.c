@@ -27,7 +27,7 @@ struct lar_recorder {
     bool finish;                 /* under the lock */
     pthread_mutex_t lock;
     pthread_cond_t wake;
-    pthread_t thread;
+    lar_thread thread;
     place *ring; /* [RING] */
 };
 
@@ -114,7 +114,7 @@ lar_status lar_recorder_close(lar_recorder *recorder, lar_error *error) {
     recorder->finish = true;
     pthread_cond_signal(&recorder->wake);
     pthread_mutex_unlock(&recorder->lock);
-    pthread_join(recorder->thread, NULL);
+    lar_thread_join(&recorder->thread);
     drain(recorder);
     lar_status status = lar_recording_finish(&recorder->writer, error);
     if (!status && recorder->over.status)

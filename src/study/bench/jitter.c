@@ -96,7 +96,7 @@ static void *keep_time(void *context) {
 
 static lar_status take_turn(bench *b, int k, lar_error *error) {
     turn *t = &b->turn;
-    pthread_t thread;
+    lar_thread thread;
     int cause = lar_thread_start_urgent(&thread, b->options->priority, keep_time, t);
     if (cause && b->options->priority > 0)
         return lar_fail(error, LAR_ERROR_UNSUPPORTED,
@@ -104,7 +104,7 @@ static lar_status take_turn(bench *b, int k, lar_error *error) {
                         "(ulimit -r, root), or leave --priority out",
                         b->options->priority, strerror(cause));
     if (cause) return lar_fail_thread(error, cause, "the clock");
-    pthread_join(thread, NULL);
+    lar_thread_join(&thread);
     lar_histogram_merge(&b->late, &t->late);
     lar_histogram_merge(&b->done, &t->done);
     b->late_p50[k] = 1e-3 * lar_histogram_quantile(&t->late, 0.5);

@@ -10,7 +10,7 @@
 /* ---- words ------------------------------------------------------------------------------ */
 
 static const char *const viscous[] = {"viscous", "viscous-2", "viscous-3"};
-_Static_assert(sizeof viscous / sizeof *viscous == LAR_VISCOUS_TERMS, "a word for each");
+_Static_assert(sizeof viscous / sizeof *viscous == LAR_BENCH_TERMS, "a word for each");
 
 const char *lar_bench_law_words(int index) {
     if (index < LAR_LAW_COUNT) return lar_law_name[index];
@@ -18,8 +18,8 @@ const char *lar_bench_law_words(int index) {
     if (index < LAR_FIBRE_LAWS - 1) return lar_fibre_law_name[index + 1];
     index -= LAR_FIBRE_LAWS - 1;
     if (index == 0) return "hgo-pair";
-    if (index <= LAR_VISCOUS_TERMS) return viscous[index - 1];
-    return index == LAR_VISCOUS_TERMS + 1 ? "active" : NULL;
+    if (index <= LAR_BENCH_TERMS) return viscous[index - 1];
+    return index == LAR_BENCH_TERMS + 1 ? "active" : NULL;
 }
 
 /* Gives the constants that moduli leave zero a quarter of the first one, and takes from that what
@@ -62,7 +62,7 @@ static void set_viscosity(lar_material *material, int terms) {
     }
 }
 
-enum { ACTIVE = LAR_LAW_COUNT + LAR_FIBRE_LAWS + LAR_VISCOUS_TERMS };
+enum { ACTIVE = LAR_LAW_COUNT + LAR_FIBRE_LAWS + LAR_BENCH_TERMS };
 
 /* One of the words by its place in "all". */
 static void set_word(lar_material *material, int word) {

@@ -29,6 +29,9 @@ typedef struct lar_bench_law_row {
     const char *isa;
 } lar_bench_law_row;
 
+/* Viscosity of one, two and three terms is measured; each further one costs as much as the third. */
+enum { LAR_BENCH_TERMS = 3 };
+
 /* The words that "all" stands for, one after the other: each law, each law of fibres, so many
  * viscous terms and what is active alone; NULL beyond. */
 const char *lar_bench_law_words(int index);

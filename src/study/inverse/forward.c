@@ -179,8 +179,7 @@ static lar_status suck(forward *f, double *model) {
     if (!u) return lar_fail_memory(f->error, nodes * sizeof *u, e->scene);
     lar_status status = LAR_OK;
     for (int32_t i = 0; i < e->rows && !status; i++) {
-        bool next = i == 0 || (e->in_time ? e->time[i] != e->time[i - 1]
-                                          : suction[i][1] != suction[i - 1][1]);
+        bool next = lar_inverse_new_moment(e, i);
         if (next && e->in_time)
             status = advance(f, steps_to(f, e->time[i]));
         else if (next)

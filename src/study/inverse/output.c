@@ -158,9 +158,10 @@ static void draw_axes(const axes *a, const char *title, const char *x, const cha
             "<text x=\"%d\" y=\"%d\" text-anchor=\"middle\">%s</text>\n"
             "<text x=\"16\" y=\"%d\" transform=\"rotate(-90 16 %d)\" "
             "text-anchor=\"middle\">%s</text>\n"
-            "<text x=\"%d\" y=\"%d\" fill=\"#555\">dots: measured, line: model</text>\n",
-            LEFT + WIDTH / 2, TOP + HEIGHT + 38, x, TOP + HEIGHT / 2, TOP + HEIGHT / 2, y, LEFT + 8,
-            TOP + 16);
+            "<text x=\"%d\" y=\"22\" text-anchor=\"end\" fill=\"#555\">dots: measured, line: "
+            "model</text>\n",
+            LEFT + WIDTH / 2, TOP + HEIGHT + 38, x, TOP + HEIGHT / 2, TOP + HEIGHT / 2, y,
+            LEFT + WIDTH);
 }
 
 /* Over the way, the time where there is none or it stands still, or the number of the value. */
@@ -187,8 +188,7 @@ static const char *y_title(const lar_inverse_experiment *e) {
 /* One line, of profiles one for each moment. */
 static void draw_model(const axes *a, const lar_inverse_experiment *e, const double *model) {
     for (int32_t i = 0; i < e->values; i++) {
-        bool next = i == 0 || (e->kind == LAR_INVERSE_ASPIRATION && e->along[i] <= e->along[i - 1]);
-        if (next)
+        if (i == 0 || (e->kind == LAR_INVERSE_ASPIRATION && lar_inverse_new_moment(e, i)))
             fprintf(a->out,
                     "%s<polyline fill=\"none\" stroke=\"#2b5fb5\" stroke-width=\"1.5\" "
                     "points=\"",

@@ -9,8 +9,9 @@
 static const char *const modulus_name[] = {"shear_modulus", "bulk_modulus", "youngs_modulus",
                                            "poisson_ratio"};
 enum { SHEAR, BULK, YOUNG, POISSON, MODULI };
-static const char *const share_name[LAR_VISCOUS_TERMS] = {"g1", "g2", "g3"};
-static const char *const time_name[LAR_VISCOUS_TERMS] = {"time1", "time2", "time3"};
+static const char *const share_name[LAR_VISCOUS_TERMS] = {"g1", "g2", "g3", "g4", "g5", "g6"};
+static const char *const time_name[LAR_VISCOUS_TERMS] = {"time1", "time2", "time3",
+                                                         "time4", "time5", "time6"};
 static const char FIBRES[] = "fibres."; /* laws have parameters of the same names */
 
 /* Whether two moduli say all that the law has: then they can be set through them. */

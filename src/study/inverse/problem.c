@@ -31,6 +31,12 @@ void lar_inverse_problem_clear(lar_inverse_problem *p) {
     *p = (lar_inverse_problem){0};
 }
 
+bool lar_inverse_new_moment(const lar_inverse_experiment *e, int32_t i) {
+    const double(*suction)[2] = (const double(*)[2])e->aspiration.suction;
+    if (i == 0) return true;
+    return e->in_time ? e->time[i] != e->time[i - 1] : suction[i][1] != suction[i - 1][1];
+}
+
 int32_t lar_inverse_problem_values(const lar_inverse_problem *p) {
     int32_t values = 0;
     for (int k = 0; k < p->experiments; k++) values += p->experiment[k].values;

@@ -80,6 +80,10 @@ typedef struct lar_inverse_problem {
 
 void lar_inverse_problem_clear(lar_inverse_problem *problem); /* idempotent */
 
+/* Whether row i of profiles is of another moment than the row before it: of another time, or at
+ * rest of another pressure. */
+bool lar_inverse_new_moment(const lar_inverse_experiment *e, int32_t i);
+
 /* Measured numbers of all experiments together. */
 int32_t lar_inverse_problem_values(const lar_inverse_problem *problem);
 

@@ -1,6 +1,9 @@
 #include "study/inverse/residuals.h"
 
 #include <math.h>
+#include <stdlib.h>
+
+#include "base/memory.h"
 
 /* Residuals of less than this, of the largest measured number, are the mesh's or the run's. */
 static const double TINY = 5e-4;
@@ -114,6 +117,49 @@ static void look_at_points(const lar_inverse_experiment *e, lar_inverse_residual
                      e->name, (int)e->rows, r->lag, 1e3 * r->rms);
 }
 
+/* ---- single values ------------------------------------------------------------------------------
+ */
+
+static int by_size(const void *a, const void *b) {
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* The deviation of normal numbers with this median in size, in which a slip hardly counts
+ * (Rousseeuw and Croux, Journal of the American Statistical Association 88:1273, 1993). of[n] gets
+ * sorted. */
+static double robust_deviation(double *of, int n) {
+    static const double OF_MEDIAN = 1.4826;
+    qsort(of, (size_t)n, sizeof *of, by_size);
+    return OF_MEDIAN * 0.5 * (of[(n - 1) / 2] + of[n / 2]);
+}
+
+/* Values that are off by far more than the others: slips of a person, or of a machine, which least
+ * squares follow and no interval knows of. By chance one of 300 tables of eight values has one, and
+ * fewer of longer tables. More than a tenth are no slips, but a law that does not fit. */
+static void look_for_slips(const lar_inverse_experiment *e, const double *left,
+                           lar_inverse_result *result) {
+    static const double FAR = 7;
+    const int n = e->values;
+    int far = 0, worst = 0;
+    double *off = n < ENOUGH ? NULL : lar_calloc(2 * (size_t)n, sizeof *off);
+    if (!off) return;
+    double *sorted = off + n;
+    for (int i = 0; i < n; i++) sorted[i] = off[i] = fabs(left[i]) / (e->error ? e->error[i] : 1);
+    const double deviation = robust_deviation(sorted, n);
+    for (int i = 0; i < n; i++) {
+        far += off[i] > FAR * deviation && fabs(left[i]) > TINY * e->largest;
+        if (off[i] > off[worst]) worst = i;
+    }
+    if (far > 0 && far <= (n + 9) / 10)
+        lar_inverse_note(result,
+                         "%s:%d: this value is off by %.2g times the deviation of the others, and "
+                         "%s; look for slips, and fit again without such rows (# in front of them)",
+                         e->data, e->row_line[worst * e->rows / n], off[worst] / deviation,
+                         far == 1 ? "no other one is off so far" : "a few are off like that");
+    free(off);
+}
+
 void lar_inverse_look_at_residuals(const lar_inverse_problem *problem, lar_inverse_result *result) {
     double *model = result->model; /* becomes what is left, and the model again */
     for (int k = 0; k < problem->experiments; model += problem->experiment[k++].values) {
@@ -128,6 +174,7 @@ void lar_inverse_look_at_residuals(const lar_inverse_problem *problem, lar_inver
         r->rms = sqrt(squares / n);
         r->relative = r->rms / e->largest;
         test_runs(r, model, n);
+        look_for_slips(e, model, result);
         if (e->kind >= LAR_INVERSE_MARKERS) {
             look_at_points(e, r, model, result);
         } else {

@@ -344,8 +344,6 @@ typedef struct lar_kernels {
     int64_t (*recover)(const lar_block_run *run, const float *u, int64_t *force,
                        const lar_hex8_limits *limits, lar_hex8_monitor *monitor);
     void (*expand)(const lar_block_run *run, int32_t b, lar_hex8_block *whole);
-    uint64_t (*corners)(const lar_block_run *run, int32_t b, uint64_t lanes, const float *largest,
-                        const float *rest, const float *u, const float share[2]);
     bool (*update)(const lar_leapfrog *leapfrog, int32_t first, int32_t end, size_t stride,
                    float *u, float *v, int64_t *force, const float *push, const float *mass,
                    float *damped, float *fastest);

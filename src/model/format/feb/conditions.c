@@ -7,8 +7,11 @@
  */
 #include "model/format/feb/feb.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "base/vector.h"
 
 /* The child that every condition of this kind must have. */
 static lar_status need_child(lar_feb *feb, const xmlNode *parent, const char *name,
@@ -85,7 +88,7 @@ static lar_status read_axis_list(lar_feb *feb, const xmlNode *dofs, unsigned *ax
 }
 
 static lar_status read_fix(lar_feb *feb, const xmlNode *at) {
-    static const char *const known[] = {"dofs", "x_dof", "y_dof", "z_dof", NULL};
+    static const char known[] = "dofs x_dof y_dof z_dof";
     const xmlNode *dofs = lar_feb_child(at, "dofs");
     unsigned axes;
     lar_status status = dofs ? read_axis_list(feb, dofs, &axes) : read_axis_flags(feb, at, &axes);
@@ -109,7 +112,7 @@ static lar_status read_fix(lar_feb *feb, const xmlNode *at) {
 
 /* Its size stands in <value> in version 4, in <scale> in version 3. */
 static lar_status read_move(lar_feb *feb, const xmlNode *at) {
-    static const char *const known[] = {"dof", "value", "scale", "relative", "shell_bottom", NULL};
+    static const char known[] = "dof value scale relative shell_bottom";
     const xmlNode *dof, *value = lar_feb_child(at, "value");
     int axis = 0, curve = 0;
     double by = 0.0;
@@ -185,7 +188,7 @@ static lar_status read_nodal_force(lar_feb *feb, const xmlNode *at, const char *
 }
 
 static lar_status read_nodal_load(lar_feb *feb, const xmlNode *at) {
-    static const char *const known[] = {"value", "dof", "scale", "relative", "shell_bottom", NULL};
+    static const char known[] = "value dof scale relative shell_bottom";
     const char *type;
     lar_status status = lar_feb_need_attribute(feb, at, "type", &type);
     if (status) return status;
@@ -257,15 +260,18 @@ static lar_status add_pressure(lar_feb *feb, const int32_t *face, int32_t count,
     return LAR_OK;
 }
 
+static lar_status no_surface(lar_feb *feb, const xmlNode *at, const char *name) {
+    return lar_feb_fail(feb, at, LAR_ERROR_FORMAT,
+                        "<surface_load> names the surface '%.100s', which the mesh does not "
+                        "define; define it or correct the name",
+                        name);
+}
+
 static lar_status add_pressures(lar_feb *feb, const xmlNode *at, const char *name, double pressure,
                                 int curve) {
     const lar_set *set = lar_mesh_find_set(feb->mesh, name, LAR_SET_FACES);
     const xmlNode *surface = lar_feb_find_surface(feb, name);
-    if (!set || !surface)
-        return lar_feb_fail(feb, at, LAR_ERROR_FORMAT,
-                            "<surface_load> names the surface '%.100s', which the mesh does not "
-                            "define; define it or correct the name",
-                            name);
+    if (!set || !surface) return no_surface(feb, at, name);
     int32_t *face = lar_calloc((size_t)set->count, sizeof *face), outward = 0;
     if (!face) return lar_feb_no_memory(feb, "the pressures");
     lar_status status = split_by_winding(feb, surface, set, face, &outward);
@@ -280,18 +286,13 @@ static lar_status add_pressures(lar_feb *feb, const xmlNode *at, const char *nam
     return status;
 }
 
-static lar_status read_surface_load(lar_feb *feb, const xmlNode *at) {
-    static const char *const known[] = {"pressure", "linear", "symmetric_stiffness", "shell_bottom",
-                                        NULL};
-    const char *type, *surface;
+static lar_status read_pressure(lar_feb *feb, const xmlNode *at, const char *surface) {
+    static const char known[] = "pressure linear symmetric_stiffness shell_bottom";
     const xmlNode *value;
     int curve = 0;
     double pressure = 0.0;
     bool linear = false;
-    lar_status status = lar_feb_need_attribute(feb, at, "type", &type);
-    if (!status && strcmp(type, "pressure") != 0) return refuse_type(feb, at, "pressure");
-    if (!status) status = lar_feb_need_attribute(feb, at, "surface", &surface);
-    if (!status) status = need_child(feb, at, "pressure", &value);
+    lar_status status = need_child(feb, at, "pressure", &value);
     if (!status) status = lar_feb_curve_of(feb, value, &curve);
     if (!status) status = lar_feb_doubles(feb, value, &pressure, 1);
     if (!status) status = refuse_flag(feb, at, "shell_bottom");
@@ -301,6 +302,97 @@ static lar_status read_surface_load(lar_feb *feb, const xmlNode *at) {
         status = lar_feb_notice(feb, lar_feb_child(at, "linear"),
                                 "<linear> is left out: the pressure follows the deformed faces");
     return status ? status : add_pressures(feb, at, surface, pressure, curve);
+}
+
+/* A face's area at rest, shared among its corners as by the element's shape functions: two by two
+ * Gauss points are exact where the face is flat. */
+static void share_area(const lar_mesh *mesh, int32_t face, double *area) {
+    static const double at[2] = {-0.57735026918962576, 0.57735026918962576};
+    static const int sign[4][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
+    const int32_t *element = mesh->element[face / 6];
+    for (int point = 0; point < 4; point++) {
+        double r = at[point % 2], s = at[point / 2], along[2][3] = {{0}}, normal[3];
+        for (int a = 0; a < 4; a++)
+            for (int i = 0; i < 3; i++) {
+                double x = 0.25 * mesh->position[element[lar_face_node[face % 6][a]]][i];
+                along[0][i] += sign[a][0] * (1 + sign[a][1] * s) * x;
+                along[1][i] += sign[a][1] * (1 + sign[a][0] * r) * x;
+            }
+        lar_cross(along[0], along[1], normal);
+        for (int a = 0; a < 4; a++)
+            area[element[lar_face_node[face % 6][a]]] +=
+                0.25 * (1 + sign[a][0] * r) * (1 + sign[a][1] * s) * sqrt(lar_dot(normal, normal));
+    }
+}
+
+static lar_status add_node_load(lar_feb *feb, int32_t node, double area, const double traction[3],
+                                int curve) {
+    int32_t *only = lar_calloc(1, sizeof *only);
+    lar_nodal_load *load = only ? LAR_MODEL_APPEND(feb->model, load) : NULL;
+    if (!load) {
+        free(only);
+        return lar_feb_no_memory(feb, "the loads");
+    }
+    *only = node;
+    *load = (lar_nodal_load){.nodes = {1, only}, .curve = curve};
+    for (int i = 0; i < 3; i++) load->force[i] = area * traction[i];
+    return LAR_OK;
+}
+
+static lar_status add_traction(lar_feb *feb, const xmlNode *at, const char *name,
+                               const double traction[3], int curve) {
+    const lar_mesh *mesh = feb->mesh;
+    const lar_set *set = lar_mesh_find_set(mesh, name, LAR_SET_FACES);
+    if (!set) return no_surface(feb, at, name);
+    double *area = lar_calloc((size_t)mesh->node_count, sizeof *area);
+    if (!area) return lar_feb_no_memory(feb, "the loads");
+    lar_status status = LAR_OK;
+    for (int32_t i = 0; i < set->count; i++) share_area(mesh, set->index[i], area);
+    for (int32_t n = 0; n < mesh->node_count && !status; n++)
+        if (area[n] > 0) status = add_node_load(feb, n, area[n], traction, curve);
+    free(area);
+    return status;
+}
+
+/* A dead load per area at rest, `traction` times `scale`: FEBio's with `linear`. */
+static lar_status read_traction(lar_feb *feb, const xmlNode *at, const char *surface) {
+    static const char known[] = "traction scale linear shell_bottom";
+    const xmlNode *value, *scale = lar_feb_child(at, "scale");
+    double traction[3], factor = 1;
+    int curve = 0;
+    bool linear;
+    lar_status status = lar_feb_flag(feb, at, "linear", false, &linear);
+    if (!status && !linear)
+        status = lar_feb_notice(feb, at,
+                                "the traction acts on the area at rest, as with <linear>1</linear>;"
+                                " FEBio's goes with the area of the deformed faces");
+    if (!status) status = need_child(feb, at, "traction", &value);
+    if (!status) status = lar_feb_doubles(feb, value, traction, 3);
+    if (!status && scale) status = lar_feb_doubles(feb, scale, &factor, 1);
+    if (!status && scale && lar_feb_attribute(feb, scale, "lc")) {
+        if (lar_feb_attribute(feb, value, "lc"))
+            return lar_feb_fail(feb, scale, LAR_ERROR_UNSUPPORTED,
+                                "<scale> and <traction> follow a load curve each; Lariat's loads "
+                                "have one, join the two");
+        value = scale;
+    }
+    if (!status) status = lar_feb_curve_of(feb, value, &curve);
+    if (!status) status = refuse_flag(feb, at, "shell_bottom");
+    if (!status) status = lar_feb_notice_others(feb, at, known);
+    for (int i = 0; i < 3; i++) traction[i] *= factor;
+    return status ? status : add_traction(feb, at, surface, traction, curve);
+}
+
+static lar_status read_surface_load(lar_feb *feb, const xmlNode *at) {
+    const char *type, *surface;
+    lar_status status = lar_feb_need_attribute(feb, at, "type", &type);
+    if (status) return status;
+    bool pressure = strcmp(type, "pressure") == 0;
+    if (!pressure && strcmp(type, "traction") != 0)
+        return refuse_type(feb, at, "pressure and traction");
+    status = lar_feb_need_attribute(feb, at, "surface", &surface);
+    if (status) return status;
+    return pressure ? read_pressure(feb, at, surface) : read_traction(feb, at, surface);
 }
 
 /* Adds an acceleration -value on one axis. */
@@ -347,7 +439,7 @@ static lar_status read_body_values(lar_feb *feb, const xmlNode *at) {
 }
 
 static lar_status read_body_load(lar_feb *feb, const xmlNode *at) {
-    static const char *const known[] = {"x", "y", "z", "force", NULL};
+    static const char known[] = "x y z force";
     const char *type, *part = lar_feb_attribute(feb, at, "elem_set");
     bool whole = true;
     lar_status status = lar_feb_need_attribute(feb, at, "type", &type);
@@ -386,7 +478,7 @@ lar_status lar_feb_read_loads(lar_feb *feb, const xmlNode *section) {
 /* ---- initial --------------------------------------------------------------------------------- */
 
 static lar_status read_ic(lar_feb *feb, const xmlNode *ic) {
-    static const char *const known[] = {"value", NULL};
+    static const char known[] = "value";
     const char *type;
     lar_status status = lar_feb_need_attribute(feb, ic, "type", &type);
     if (status) return status;

@@ -6,6 +6,7 @@
  *   SMOOTH       two points: straight; more: parabolas through three neighbours, blended over
  *                each interval                           -> sampled finely, LAR_CURVE_LINEAR
  *   SMOOTH STEP  6 w^5 - 15 w^4 + 10 w^3 per interval    -> sampled finely, LAR_CURVE_LINEAR
+ * What goes on beyond its points gets more of them, up to the end of the run.
  */
 #include "model/format/feb/feb.h"
 
@@ -65,6 +66,32 @@ static bool sample(points *list, interpolation how) {
     return true;
 }
 
+static bool append(points *list, double time, double value) {
+    if (!LAR_GROW(list->at, list->room, list->count)) return false;
+    list->at[list->count][0] = time;
+    list->at[list->count++][1] = value;
+    return true;
+}
+
+/* The points once more from the last one's time on, until `end`; `rise` more in each round. */
+static bool repeat(points *list, interpolation how, double end, double rise) {
+    const int count = list->count;
+    const double period = list->at[count - 1][0] - list->at[0][0];
+    const bool joined = how == STEP || list->at[count - 1][1] == list->at[0][1] + rise;
+    for (int round = 1; list->at[list->count - 1][0] < end; round++)
+        for (int i = joined ? 1 : 0; i < count; i++)
+            if (!append(list, list->at[i][0] + round * period, list->at[i][1] + round * rise))
+                return false;
+    return true;
+}
+
+/* Straight on from the last two points until `end`. */
+static bool extrapolate(points *list, double end) {
+    const double *last = list->at[list->count - 1], *before = list->at[list->count - 2];
+    double slope = (last[1] - before[1]) / (last[0] - before[0]);
+    return append(list, end, last[1] + slope * (end - last[0]));
+}
+
 /* Reads the points of a load curve; times may repeat (a jump) but not go back. */
 static lar_status read_points(lar_feb *feb, const xmlNode *controller, points *list) {
     const xmlNode *holder = lar_feb_child(controller, "points");
@@ -114,12 +141,32 @@ static bool find_interpolation(lar_feb *feb, const xmlNode *controller, interpol
     return false;
 }
 
-/* True when the curve is held outside of its points, or the run never goes there. */
-static bool is_held(lar_feb *feb, const xmlNode *controller, const points *list) {
+/* How a curve goes on beyond its points: CONSTANT where the run never goes there. */
+static lar_span extension(lar_feb *feb, const xmlNode *controller, const points *list) {
     const xmlNode *node = lar_feb_child(controller, "extend");
-    if (!node || lar_span_equal_nocase(lar_feb_text(feb, node), "CONSTANT")) return true;
-    return feb->model->duration > 0.0 && list->at[0][0] <= 0.0 &&
-           list->at[list->count - 1][0] >= feb->model->duration;
+    const lar_span held = {"CONSTANT", 8};
+    if (!node || (feb->model->duration > 0.0 && list->at[0][0] <= 0.0 &&
+                  list->at[list->count - 1][0] >= feb->model->duration))
+        return held;
+    return lar_feb_text(feb, node);
+}
+
+/* False for what is not read: what begins behind time 0, and more points than anybody means. */
+static bool extend(lar_feb *feb, lar_span how, interpolation between, points *list, bool *enough) {
+    const double end = feb->model->duration, from = list->at[0][0];
+    const double period = list->at[list->count - 1][0] - from;
+    const bool offset = lar_span_equal_nocase(how, "REPEAT OFFSET");
+    if (lar_span_equal_nocase(how, "CONSTANT")) return true;
+    if (!(end > 0) || from > 0 || !(end / period * list->count < 1e6)) return false;
+    if (offset || lar_span_equal_nocase(how, "REPEAT"))
+        *enough =
+            repeat(list, between, end, offset ? list->at[list->count - 1][1] - list->at[0][1] : 0);
+    else if (lar_span_equal_nocase(how, "EXTRAPOLATE") && between == LINEAR &&
+             list->at[list->count - 2][0] < list->at[list->count - 1][0])
+        *enough = extrapolate(list, end);
+    else
+        return false;
+    return true;
 }
 
 /* Jumps have no parabola through them. */
@@ -137,17 +184,21 @@ static lar_status make_curve(lar_feb *feb, lar_feb_controller *entry, points *li
                          "STEP are)";
         return LAR_OK;
     }
-    if (!is_held(feb, entry->node, list)) {
-        entry->problem = "is extended beyond its points by other means than CONSTANT; add points "
-                         "up to the end of the run";
-        return LAR_OK;
-    }
     if (how != LINEAR && has_jump(list)) {
         entry->problem = "has two points at the same time, which only LINEAR allows";
         return LAR_OK;
     }
+    const lar_span beyond = extension(feb, entry->node, list);
+    bool enough = true;
     if ((how == SMOOTH && list->count > 2) || (how == SMOOTH_STEP && list->count > 1))
-        if (!sample(list, how)) return lar_feb_no_memory(feb, "a load curve");
+        enough = sample(list, how);
+    if (enough && !extend(feb, beyond, how, list, &enough)) {
+        entry->problem = "is extended beyond its points in a way that is not read (CONSTANT is; "
+                         "from time 0 on REPEAT and REPEAT OFFSET, and EXTRAPOLATE of LINEAR); add "
+                         "points up to the end of the run";
+        return LAR_OK;
+    }
+    if (!enough) return lar_feb_no_memory(feb, "a load curve");
     int index = feb->model->curve_count;
     lar_curve *curve = LAR_MODEL_APPEND(feb->model, curve);
     if (!curve) return lar_feb_no_memory(feb, "a load curve");

@@ -78,11 +78,8 @@ static lar_status notice_solver_damping(lar_feb *feb, const xmlNode *control) {
 
 /* Sections that are read elsewhere, or whose content does not change the answer. */
 static bool is_harmless(const xmlNode *section) {
-    static const char *const names[] = {"Module",   "Control", "Globals",     "Material", "Mesh",
-                                        "LoadData", "Output",  "MeshDomains", "Step"};
-    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++)
-        if (lar_feb_is(section, names[i])) return true;
-    return false;
+    return lar_feb_is_any(section, "Module Control Globals Material Mesh LoadData Output "
+                                   "MeshDomains Step");
 }
 
 /* Sections that change the answer as soon as something stands in them. */

@@ -1,4 +1,4 @@
-/* FEBio decks (.feb, format versions 3.0 and 4.0): what the parts of the reader share.
+/* FEBio decks (.feb, format versions 2.5, 3.0 and 4.0): what the parts of the reader share.
  *
  *     bytes --libxml2--> tree --feb_mesh--> lar_mesh          lar_feb_parse_mesh stops here
  *                         |---feb_material, feb_curve, feb_conditions--> lar_model
@@ -62,14 +62,16 @@ typedef struct lar_feb {
 lar_status lar_feb_open(lar_feb *feb, const char *path, const lar_bytes *bytes, lar_error *error);
 void lar_feb_clear(lar_feb *feb);
 
+/* old.c: a tree of version 2.5 in the words of 4.0. */
+lar_status lar_feb_renew(lar_feb *feb);
+
 /* A failure and a notice that begin with FILE:LINE: of an element. */
 lar_status lar_feb_fail(const lar_feb *feb, const xmlNode *at, lar_status status,
                         const char *format, ...) __attribute__((format(printf, 4, 5)));
 lar_status lar_feb_notice(const lar_feb *feb, const xmlNode *at, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
-/* A notice for every child of `parent` whose name is not in `known`, which ends with NULL. */
-lar_status lar_feb_notice_others(const lar_feb *feb, const xmlNode *parent,
-                                 const char *const *known);
+/* A notice for every child of `parent` whose name is not among `known`, with spaces in between. */
+lar_status lar_feb_notice_others(const lar_feb *feb, const xmlNode *parent, const char *known);
 lar_status lar_feb_no_memory(const lar_feb *feb, const char *what);
 int lar_feb_line(const xmlNode *at);
 
@@ -78,6 +80,7 @@ xmlNode *lar_feb_first(const xmlNode *parent);
 xmlNode *lar_feb_next(const xmlNode *element);
 xmlNode *lar_feb_child(const xmlNode *parent, const char *name);
 bool lar_feb_is(const xmlNode *element, const char *name);
+bool lar_feb_is_any(const xmlNode *element, const char *names); /* with spaces in between */
 
 /* Value of an attribute, NULL when it is missing. Lives as long as `feb`. */
 const char *lar_feb_attribute(lar_feb *feb, const xmlNode *element, const char *name);

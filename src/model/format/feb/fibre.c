@@ -17,10 +17,10 @@
 
 /* Types of FEBio and their parameters, in the order of lar_fibre.parameter. */
 static const struct fibre_type {
-    const char *type;
+    char type[28];
     lar_fibre_law law;
     bool isochoric;
-    const char *name[LAR_FIBRE_PARAMETERS];
+    char name[LAR_FIBRE_PARAMETERS][8]; /* "": none further */
 } fibre_types[] = {
     {"fiber-exp-pow", LAR_FIBRE_EXP_POW, false, {"ksi", "alpha", "beta"}},
     {"fiber-exp-pow-uncoupled", LAR_FIBRE_EXP_POW, true, {"ksi", "alpha", "beta"}},
@@ -46,7 +46,7 @@ bool lar_feb_is_fibre(const char *type) {
 
 /* Types that contract by T0, along fibres and across them. */
 static const struct active_type {
-    const char *type;
+    char type[52];
     double along, across;
 } active_types[] = {
     {"prescribed uniaxial active contraction", 1, 0},
@@ -70,8 +70,7 @@ bool lar_feb_is_active(const char *type) {
 /* The same total stress in both forms: FEBio's uncoupled one is no deviator. */
 lar_status lar_feb_read_active(lar_feb *feb, const xmlNode *node, const char *type,
                                lar_fibre *fibre) {
-    static const char *const known[] = {"density",  "k", "pressure_model", "T0", "fiber",
-                                        "mat_axis", NULL};
+    static const char known[] = "density k pressure_model T0 fiber mat_axis";
     const struct active_type *active = find_active(type);
     const xmlNode *value = lar_feb_child(node, "T0");
     double stress = 0;
@@ -146,16 +145,37 @@ lar_status lar_feb_read_activation(lar_feb *feb) {
     return status;
 }
 
-/* What would change the answer and is not read. */
-static lar_status refuse_children(lar_feb *feb, const xmlNode *node, const char *const *names,
-                                  int count) {
-    for (int i = 0; i < count; i++) {
-        const xmlNode *child = lar_feb_child(node, names[i]);
-        if (child)
-            return lar_feb_fail(feb, child, LAR_ERROR_UNSUPPORTED,
-                                "<%s> of a material with fibres is not read; remove it", names[i]);
-    }
-    return LAR_OK;
+/* A parameter that only its default leaves without an effect. */
+static lar_status refuse_unless(lar_feb *feb, const xmlNode *node, const char *name,
+                                double fallback) {
+    double value = fallback;
+    lar_status status = lar_feb_parameter(feb, node, name, false, &value);
+    if (status || value == fallback) return status;
+    return lar_feb_fail(feb, lar_feb_child(node, name), LAR_ERROR_UNSUPPORTED,
+                        "<%s> of fibres is %g, which is not read; give it %g or remove it", name,
+                        value, fallback);
+}
+
+static lar_status refuse_angles(lar_feb *feb, const xmlNode *node) {
+    const xmlNode *angle = lar_feb_child(node, "theta");
+    if (!angle) angle = lar_feb_child(node, "phi");
+    if (!angle) return LAR_OK;
+    return lar_feb_fail(feb, angle, LAR_ERROR_UNSUPPORTED,
+                        "<%s> of fibres is not read; say along what they run as <fiber>",
+                        (const char *)angle->name);
+}
+
+/* Calcium and sarcomeres; without a scale nothing contracts. */
+static lar_status refuse_calcium(lar_feb *feb, const xmlNode *node) {
+    const xmlNode *muscle = lar_feb_child(node, "active_contraction");
+    const xmlNode *scale = muscle && lar_feb_first(muscle) ? lar_feb_child(muscle, "ascl") : NULL;
+    double value = 0;
+    lar_status status = scale ? lar_feb_doubles(feb, scale, &value, 1) : LAR_OK;
+    if (status || value == 0) return status;
+    return lar_feb_fail(feb, muscle, LAR_ERROR_UNSUPPORTED,
+                        "<active_contraction>, which follows calcium and the length of sarcomeres, "
+                        "is not read; take a prescribed active contraction in a mixture, or give "
+                        "<ascl> 0");
 }
 
 static lar_status read_numbers(lar_feb *feb, const xmlNode *node, const struct fibre_type *type,
@@ -165,7 +185,7 @@ static lar_status read_numbers(lar_feb *feb, const xmlNode *node, const struct f
     fibre->isochoric = type->isochoric;
     fibre->line = lar_feb_line(node);
     for (int k = 0; k < LAR_FIBRE_PARAMETERS && !status; k++)
-        if (type->name[k])
+        if (*type->name[k])
             status = lar_feb_parameter(feb, node, type->name[k], true, &fibre->parameter[k]);
     /* FEBio then takes the one with which the slope goes on as c5. */
     double *p = fibre->parameter;
@@ -176,21 +196,19 @@ static lar_status read_numbers(lar_feb *feb, const xmlNode *node, const struct f
 
 lar_status lar_feb_read_fibre(lar_feb *feb, const xmlNode *node, const char *type,
                               lar_fibre *fibre) {
-    static const char *const refused[] = {"theta", "phi", "mu", "lam0"};
     const struct fibre_type *own = find_type(type);
+    static const char known[] =
+        "density k pressure_model ksi alpha beta c3 c4 c5 lambda fiber mat_axis E lam0 mu";
+    lar_status status = refuse_angles(feb, node);
+    if (!status) status = refuse_unless(feb, node, "mu", 0);
     /* Of a power law that goes on straight, lam0 is where it does; of others fibres begin there. */
-    const bool straight = own->law == LAR_FIBRE_POW_LINEAR;
-    static const char *const known[] = {
-        "density", "k",      "pressure_model", "ksi",      "alpha", "beta", "c3", "c4",
-        "c5",      "lambda", "fiber",          "mat_axis", "E",     "lam0", NULL};
-    lar_status status = refuse_children(feb, node, refused, straight ? 3 : 4);
+    if (!status && own->law != LAR_FIBRE_POW_LINEAR) status = refuse_unless(feb, node, "lam0", 1);
     if (!status) status = read_numbers(feb, node, own, fibre);
     return status ? status : lar_feb_notice_others(feb, node, known);
 }
 
 lar_status lar_feb_read_trans_iso(lar_feb *feb, const xmlNode *node, lar_fibre *fibre) {
-    static const char *const refused[] = {"active_contraction"};
-    lar_status status = refuse_children(feb, node, refused, 1);
+    lar_status status = refuse_calcium(feb, node);
     return status ? status : read_numbers(feb, node, &trans_iso, fibre);
 }
 
@@ -254,6 +272,50 @@ static lar_status read_corners(lar_feb *feb, const xmlNode *rule, int corner[2])
     return LAR_OK;
 }
 
+/* "spherical" and "cylindrical": `vector`, turned as the x axis is to the ray from the centre, or
+ * from the axis, to an element. */
+typedef struct round_rule {
+    double center[3], axis[3], vector[3]; /* axis 0: spherical */
+} round_rule;
+
+static lar_status read_round(lar_feb *feb, const xmlNode *rule, bool cylindrical, round_rule *to) {
+    *to = (round_rule){.axis = {0, 0, cylindrical}, .vector = {1, 0, 0}};
+    const xmlNode *center = lar_feb_child(rule, "center"), *axis = lar_feb_child(rule, "axis"),
+                  *vector = lar_feb_child(rule, "vector");
+    if (!center && lar_feb_text(feb, rule).length) center = rule; /* version 2.5 */
+    lar_status status = center ? lar_feb_doubles(feb, center, to->center, 3) : LAR_OK;
+    if (!status && axis && cylindrical) status = lar_feb_doubles(feb, axis, to->axis, 3);
+    if (!status && vector) status = lar_feb_doubles(feb, vector, to->vector, 3);
+    double length = lar_length(to->axis);
+    if (!status && cylindrical && !(length > 0))
+        return lar_feb_fail(feb, rule, LAR_ERROR_FORMAT,
+                            "the axis of a cylindrical direction has no length; correct it");
+    for (int i = 0; i < 3 && cylindrical; i++) to->axis[i] /= length;
+    return status;
+}
+
+/* What the shortest turn from the x axis to `ray` makes of the vector; 0 without a ray. */
+static void lay_round(const round_rule *rule, const double at[3], double out[3]) {
+    double ray[3], turn[3], across[3];
+    lar_minus(at, rule->center, ray);
+    double along = lar_dot(ray, rule->axis);
+    for (int i = 0; i < 3; i++) ray[i] -= along * rule->axis[i];
+    double length = lar_length(ray);
+    if (!(length > 0)) return;
+    for (int i = 0; i < 3; i++) ray[i] /= length;
+    lar_cross((const double[]){1, 0, 0}, ray, turn);
+    lar_cross(turn, rule->vector, across);
+    double bend = 1 + ray[0], share = bend > 0 ? lar_dot(turn, rule->vector) / bend : 0;
+    for (int i = 0; i < 3; i++) out[i] = ray[0] * rule->vector[i] + across[i] + share * turn[i];
+}
+
+static void centre_of(const lar_mesh *mesh, int32_t e, double centre[3]) {
+    for (int i = 0; i < 3; i++) {
+        centre[i] = 0;
+        for (int a = 0; a < 8; a++) centre[i] += 0.125 * mesh->position[mesh->element[e][a]][i];
+    }
+}
+
 static lar_status need_directions(lar_feb *feb) {
     lar_mesh *mesh = feb->mesh;
     bool paired = false;
@@ -273,19 +335,27 @@ static lar_status lay(lar_feb *feb, const xmlNode *rule, int material) {
     const char *type = lar_feb_attribute(feb, rule, "type");
     double a[3] = {0};
     int corner[2];
+    round_rule around;
     bool local = type && strcmp(type, "local") == 0;
+    bool cylindrical = type && strcmp(type, "cylindrical") == 0;
+    bool round = cylindrical || (type && strcmp(type, "spherical") == 0);
     if (type && (strcmp(type, "user") == 0 || strcmp(type, "map") == 0)) return LAR_OK;
-    if (!type || (!local && strcmp(type, "vector") != 0 && strcmp(type, "angles") != 0))
+    if (!type || (!local && !round && strcmp(type, "vector") != 0 && strcmp(type, "angles") != 0))
         return lar_feb_fail(feb, rule, LAR_ERROR_UNSUPPORTED,
-                            "a direction of type '%.40s' is not read; vector, local, angles and "
-                            "user are",
+                            "a direction of type '%.40s' is not read; vector, local, angles, "
+                            "spherical, cylindrical and user are",
                             type ? type : "");
     lar_status status = need_directions(feb);
     if (!status)
-        status = local ? read_corners(feb, rule, corner) : read_constant(feb, rule, type, a);
+        status = local   ? read_corners(feb, rule, corner)
+                 : round ? read_round(feb, rule, cylindrical, &around)
+                         : read_constant(feb, rule, type, a);
     for (int32_t e = 0; e < mesh->element_count && !status; e++) {
         if (feb->model->element_material[e] != material) continue;
-        if (local)
+        if (round) {
+            centre_of(mesh, e, a);
+            lay_round(&around, a, mesh->fibre[e]);
+        } else if (local)
             lar_minus(mesh->position[mesh->element[e][corner[1]]],
                       mesh->position[mesh->element[e][corner[0]]], mesh->fibre[e]);
         else

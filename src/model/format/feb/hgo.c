@@ -44,8 +44,7 @@ static lar_status choose_law(lar_feb *feb, const xmlNode *node, lar_law *law) {
 }
 
 lar_status lar_feb_read_hgo(lar_feb *feb, const xmlNode *node, lar_material *material) {
-    static const char *const known[] = {
-        "density", "c", "k1", "k2", "kappa", "gamma", "mat_axis", "pressure_model", "k", NULL};
+    static const char known[] = "density c k1 k2 kappa gamma mat_axis pressure_model k";
     static const char *const name[] = {"k1", "k2", "kappa"};
     lar_fibre *fibre = &material->fibre;
     double shear = 0, bulk = 0, gamma = 0;

@@ -141,9 +141,10 @@ static lar_status check_value(lar_feb *feb, const xmlNode *node, const lar_law_r
 static lar_status read_law(lar_feb *feb, const xmlNode *node, const xmlNode *outer, lar_law law,
                            bool trans_iso, lar_material *material) {
     const lar_law_dialect *dialect = lar_law_table[law].febio;
-    static const char *const fibres[] = {"c3", "c4", "c5", "lam_max", "fiber", "mat_axis"};
-    enum { FIBRES = sizeof fibres / sizeof *fibres }; /* of "trans iso" types: read apart */
-    const char *known[LAR_LAW_GIVEN + 3 + FIBRES] = {"density"};
+    char known[200];
+    int length =
+        snprintf(known, sizeof known, "density%s%s", dialect->volume ? " pressure_model" : "",
+                 trans_iso ? " c3 c4 c5 lam_max fiber mat_axis active_contraction" : "");
     double given[LAR_LAW_GIVEN] = {0};
     material->law = law;
     lar_status status = check_pressure_model(feb, node, dialect);
@@ -151,16 +152,13 @@ static lar_status read_law(lar_feb *feb, const xmlNode *node, const xmlNode *out
         const lar_law_parameter *of = &dialect->parameter[i];
         bool needed = !lar_law_may_miss(dialect->parameter, i);
         bool outside = outer && strcmp(of->name, "k") == 0;
-        known[1 + i] = of->name;
+        length += snprintf(known + length, sizeof known - (size_t)length, " %s", of->name);
         status = lar_feb_parameter(feb, outside ? outer : node, of->name, needed, &given[i]);
     }
     for (int i = 0; i < dialect->count && !status; i++)
         status = check_value(feb, node, &lar_law_table[law], &dialect->parameter[i], given[i]);
     if (status) return status;
     dialect->read(given, material->parameter);
-    int count = 1 + dialect->count;
-    if (dialect->volume) known[count++] = "pressure_model";
-    for (int i = 0; i < FIBRES && trans_iso; i++) known[count++] = fibres[i];
     return lar_feb_notice_others(feb, node, known);
 }
 
@@ -201,9 +199,29 @@ static lar_law trans_iso_law(const char *type) {
     return law == LAR_LAW_mooney_rivlin || law == LAR_LAW_veronda_westmann ? law : LAR_LAW_COUNT;
 }
 
-static bool is_mixture(const char *type, bool *isochoric) {
-    *isochoric = strcmp(type, "uncoupled solid mixture") == 0;
-    return *isochoric || strcmp(type, "solid mixture") == 0;
+/* A law, or one with fibres built in; `outer` as for read_law. */
+static lar_status read_law_part(lar_feb *feb, const xmlNode *node, const xmlNode *outer,
+                                const char *type, lar_material *material) {
+    lar_law law = trans_iso_law(type);
+    bool fibres = law != LAR_LAW_COUNT;
+    if (!fibres) law = find_law(type);
+    if (law == LAR_LAW_COUNT) return refuse_type(feb, node, type);
+    lar_status status = outer ? check_pressure_model(feb, outer, lar_law_table[law].febio) : LAR_OK;
+    if (!status) status = read_law(feb, node, outer, law, fibres, material);
+    return status || !fibres ? status : lar_feb_read_trans_iso(feb, node, &material->fibre);
+}
+
+static bool is_mixture(const char *type) {
+    return strcmp(type, "uncoupled solid mixture") == 0 || strcmp(type, "solid mixture") == 0;
+}
+
+static bool is_viscous(const char *type) {
+    return strcmp(type, "uncoupled viscoelastic") == 0 || strcmp(type, "viscoelastic") == 0;
+}
+
+/* Where the bulk modulus of what is within stands: the outermost uncoupled material. */
+static const xmlNode *outermost(const xmlNode *node, const char *type, const xmlNode *outer) {
+    return outer || strncmp(type, "uncoupled ", 10) != 0 ? outer : node;
 }
 
 /* Parts that only one of can be. */
@@ -214,12 +232,34 @@ static lar_status refuse_second(lar_feb *feb, const xmlNode *node, const char *w
                         what);
 }
 
+static lar_status read_viscous(lar_feb *feb, const xmlNode *node, const xmlNode *outer,
+                               const char *type, lar_material *material);
+
+static bool is_body(const char *type) {
+    return is_viscous(type) || find_law(type) != LAR_LAW_COUNT ||
+           trans_iso_law(type) != LAR_LAW_COUNT;
+}
+
+/* A part of a mixture that is no fibres and nothing active: of one only the law. */
+static lar_status read_body(lar_feb *feb, const xmlNode *solid, const xmlNode *outer,
+                            const char *type, lar_material *material) {
+    const bool fibrous = material->fibre.law != LAR_FIBRE_NONE;
+    if (!is_viscous(type)) {
+        if (fibrous && trans_iso_law(type) != LAR_LAW_COUNT)
+            return refuse_second(feb, solid, "family of fibres");
+        return read_law_part(feb, solid, outer, type, material);
+    }
+    if (!fibrous) return read_viscous(feb, solid, outer, type, material);
+    return lar_feb_fail(feb, solid, LAR_ERROR_UNSUPPORTED,
+                        "fibres beside a viscous solid; in Lariat they relax with it, put them "
+                        "into it, in a mixture of its own");
+}
+
 /* One law, with the bulk modulus of the mixture where that is uncoupled, and fibres. */
-static lar_status read_mixture(lar_feb *feb, const xmlNode *node, bool isochoric,
+static lar_status read_mixture(lar_feb *feb, const xmlNode *node, const xmlNode *outer,
                                lar_material *material) {
-    static const char *const known[] = {"density", "solid",          "mat_axis",
-                                        "k",       "pressure_model", NULL};
-    bool has_law = false;
+    static const char known[] = "density solid mat_axis k pressure_model";
+    const xmlNode *body = NULL;
     lar_status status = LAR_OK;
     for (xmlNode *solid = lar_feb_first(node); solid && !status; solid = lar_feb_next(solid)) {
         const char *type;
@@ -230,53 +270,37 @@ static lar_status read_mixture(lar_feb *feb, const xmlNode *node, bool isochoric
             if (material->fibre.law != LAR_FIBRE_NONE)
                 return refuse_second(feb, solid, "family of fibres");
             status = lar_feb_read_fibre(feb, solid, type, &material->fibre);
-            continue;
-        }
-        if (lar_feb_is_active(type)) {
+        } else if (lar_feb_is_active(type)) {
             if (lar_fibre_active(&material->fibre))
                 return refuse_second(feb, solid, "active contraction");
             status = lar_feb_read_active(feb, solid, type, &material->fibre);
-            continue;
+        } else if (body) {
+            return is_body(type) ? refuse_second(feb, solid, "law") : refuse_type(feb, solid, type);
+        } else {
+            body = solid; /* behind the fibres: read_body looks at them */
         }
-        lar_law law = find_law(type);
-        if (law == LAR_LAW_COUNT) return refuse_type(feb, solid, type);
-        if (has_law) return refuse_second(feb, solid, "law");
-        has_law = true;
-        if (isochoric) status = check_pressure_model(feb, node, lar_law_table[law].febio);
-        if (!status) status = read_law(feb, solid, isochoric ? node : NULL, law, false, material);
     }
-    if (!status && !has_law)
+    if (!status && !body)
         return lar_feb_fail(feb, node, LAR_ERROR_UNSUPPORTED,
                             "the mixture has no law besides its fibres; add one as <solid>");
+    if (!status)
+        status = read_body(feb, body, outer, lar_feb_attribute(feb, body, "type"), material);
     return status ? status : lar_feb_notice_others(feb, node, known);
 }
 
-static lar_status read_trans_iso(lar_feb *feb, const xmlNode *node, lar_law law,
-                                 lar_material *material) {
-    lar_status status = read_law(feb, node, NULL, law, true, material);
-    return status ? status : lar_feb_read_trans_iso(feb, node, &material->fibre);
-}
-
 /* ---- viscosity ------------------------------------------------------------------------------- */
-
-enum { FEB_TERMS = 6 }; /* that FEBio has */
 
 /* Terms without a share do nothing, whatever their times are. */
 static lar_status read_terms(lar_feb *feb, const xmlNode *node, lar_viscosity *v) {
     v->rest = 1;
     lar_status status = lar_feb_parameter(feb, node, "g0", false, &v->rest);
-    for (int i = 1; i <= FEB_TERMS && !status; i++) {
+    for (int i = 1; i <= LAR_VISCOUS_TERMS && !status; i++) {
         const char share_name[] = {'g', (char)('0' + i), '\0'};
         const char time_name[] = {'t', (char)('0' + i), '\0'};
         double share = 0, time = 1;
         status = lar_feb_parameter(feb, node, share_name, false, &share);
         if (!status) status = lar_feb_parameter(feb, node, time_name, share != 0, &time);
         if (status || share == 0) continue;
-        if (v->terms == LAR_VISCOUS_TERMS)
-            return lar_feb_fail(feb, node, LAR_ERROR_UNSUPPORTED,
-                                "more than %d terms of relaxation; Lariat has %d at most, give the "
-                                "others a share of 0",
-                                LAR_VISCOUS_TERMS, LAR_VISCOUS_TERMS);
         v->share[v->terms] = share;
         v->time[v->terms++] = time;
     }
@@ -288,39 +312,32 @@ static lar_status read_terms(lar_feb *feb, const xmlNode *node, lar_viscosity *v
     return status;
 }
 
-/* Returns whether the type is viscous; *part: whether only the isochoric part relaxes. */
-static bool is_viscous(const char *type, bool *isochoric) {
-    *isochoric = strcmp(type, "uncoupled viscoelastic") == 0;
-    return *isochoric || strcmp(type, "viscoelastic") == 0;
-}
-
-/* The law inside a viscous material. */
-static lar_status read_viscous(lar_feb *feb, const xmlNode *node, lar_material *material) {
-    static const char *const known[] = {"density", "elastic", "g0", "g1", "g2", "g3", "g4", "g5",
-                                        "g6",      "t1",      "t2", "t3", "t4", "t5", "t6", NULL};
-    static const char *const known_apart[] = {"density", "elastic", "k",  "pressure_model",
-                                              "g0",      "g1",      "g2", "g3",
-                                              "g4",      "g5",      "g6", "t1",
-                                              "t2",      "t3",      "t4", "t5",
-                                              "t6",      NULL};
+/* The law inside a viscous material, with fibres or without. */
+static lar_status read_viscous(lar_feb *feb, const xmlNode *node, const xmlNode *outer,
+                               const char *of, lar_material *material) {
+    static const char known[] =
+        "k pressure_model density elastic g0 g1 g2 g3 g4 g5 g6 t1 t2 t3 t4 t5 t6";
     lar_viscosity *v = &material->viscosity;
     const xmlNode *inner = lar_feb_child(node, "elastic");
     const char *type;
-    if (!inner)
+    if (!inner || v->line)
         return lar_feb_fail(feb, node, LAR_ERROR_FORMAT,
-                            "the viscous material has no <elastic> inside; add it");
+                            inner ? "a viscous material within another one; keep one of them"
+                                  : "the viscous material has no <elastic> inside; add it");
+    v->line = lar_feb_line(node);
+    v->isochoric = strcmp(of, "uncoupled viscoelastic") == 0;
     lar_status status = lar_feb_need_attribute(feb, inner, "type", &type);
     if (status) return status;
-    lar_law law = trans_iso_law(type);
-    bool fibres = law != LAR_LAW_COUNT;
-    if (!fibres) law = find_law(type);
-    if (law == LAR_LAW_COUNT) return refuse_type(feb, inner, type);
-    if (v->isochoric) status = check_pressure_model(feb, node, lar_law_table[law].febio);
-    if (!status) status = read_law(feb, inner, v->isochoric ? node : NULL, law, fibres, material);
-    if (!status && fibres) status = lar_feb_read_trans_iso(feb, inner, &material->fibre);
+    const bool active = lar_fibre_active(&material->fibre);
+    outer = outermost(node, of, outer);
+    status = is_mixture(type) ? read_mixture(feb, inner, outer, material)
+                              : read_law_part(feb, inner, outer, type, material);
+    if (!status && lar_fibre_active(&material->fibre) != active)
+        return lar_feb_fail(feb, inner, LAR_ERROR_UNSUPPORTED,
+                            "an active contraction within a viscous material; Lariat's does not "
+                            "relax, put it beside, in a mixture of the two");
     if (!status) status = read_terms(feb, node, v);
-    v->line = lar_feb_line(node);
-    return status ? status : lar_feb_notice_others(feb, node, v->isochoric ? known_apart : known);
+    return status ? status : lar_feb_notice_others(feb, node, v->isochoric ? known : known + 17);
 }
 
 static lar_status read_material(lar_feb *feb, lar_feb_material *entry) {
@@ -334,20 +351,15 @@ static lar_status read_material(lar_feb *feb, lar_feb_material *entry) {
     if (!material->name) return lar_feb_no_memory(feb, "the materials");
     status = read_density(feb, entry->node, material);
     if (status) return status;
-    lar_law law = find_law(type), within = trans_iso_law(type);
-    bool isochoric;
-    if (is_viscous(type, &material->viscosity.isochoric))
-        status = read_viscous(feb, entry->node, material);
-    else if (is_mixture(type, &isochoric))
-        status = read_mixture(feb, entry->node, isochoric, material);
+    const xmlNode *outer = outermost(entry->node, type, NULL);
+    if (is_viscous(type))
+        status = read_viscous(feb, entry->node, NULL, type, material);
+    else if (is_mixture(type))
+        status = read_mixture(feb, entry->node, outer, material);
     else if (lar_feb_is_hgo(type))
         status = lar_feb_read_hgo(feb, entry->node, material);
-    else if (within != LAR_LAW_COUNT)
-        status = read_trans_iso(feb, entry->node, within, material);
-    else if (law == LAR_LAW_COUNT)
-        status = refuse_type(feb, entry->node, type);
     else
-        status = read_law(feb, entry->node, NULL, law, false, material);
+        status = read_law_part(feb, entry->node, NULL, type, material);
     if (status) return status;
     char where[300];
     snprintf(where, sizeof where, "%.200s:%d", feb->path, lar_feb_line(entry->node));

@@ -18,10 +18,6 @@ typedef struct mesh_reader {
     xmlHashTable *names; /* "kind" + name of what is defined already */
 } mesh_reader;
 
-static bool is_any(const xmlNode *element, const char *one, const char *other) {
-    return lar_feb_is(element, one) || lar_feb_is(element, other);
-}
-
 /* Refuses a second definition of a name. `kind` sorts the names into spaces of their own. */
 static lar_status define_name(mesh_reader *reader, const xmlNode *at, const char *kind,
                               const char *name) {
@@ -41,7 +37,7 @@ static lar_status read_nodes(mesh_reader *reader, const xmlNode *block) {
     lar_status status = LAR_OK;
     if (named) status = lar_mesh_builder_set(reader->builder, name, LAR_SET_NODES, feb->error);
     for (xmlNode *node = lar_feb_first(block); node && !status; node = lar_feb_next(node)) {
-        if (!is_any(node, "node", "n"))
+        if (!lar_feb_is_any(node, "node n"))
             return lar_feb_fail(feb, node, LAR_ERROR_FORMAT,
                                 "<%s> stands among the nodes; only <node id=\"...\">x,y,z</node> "
                                 "belongs there",
@@ -122,7 +118,7 @@ static lar_status read_elements(mesh_reader *reader, const xmlNode *block) {
         status = lar_mesh_builder_set(reader->builder, name, LAR_SET_ELEMENTS, feb->error);
     for (xmlNode *element = lar_feb_first(block); element && !status;
          element = lar_feb_next(element)) {
-        if (!is_any(element, "elem", "e"))
+        if (!lar_feb_is_any(element, "elem e"))
             return lar_feb_fail(feb, element, LAR_ERROR_FORMAT,
                                 "<%s> stands among the elements; only <elem id=\"...\"> belongs "
                                 "there",
@@ -145,15 +141,14 @@ static lar_status read_elements(mesh_reader *reader, const xmlNode *block) {
 }
 
 /* Ids of a set: children with an id (3.0), or a list in the text (4.0). */
-static lar_status read_set_ids(mesh_reader *reader, const xmlNode *set, const char *longer,
-                               const char *shorter) {
+static lar_status read_set_ids(mesh_reader *reader, const xmlNode *set, const char *names) {
     lar_feb *feb = reader->feb;
     lar_status status = LAR_OK;
     int64_t id;
     xmlNode *child = lar_feb_first(set);
     if (child) {
         for (; child && !status; child = lar_feb_next(child)) {
-            if (!is_any(child, longer, shorter))
+            if (!lar_feb_is_any(child, names))
                 return lar_feb_fail(feb, child, LAR_ERROR_UNSUPPORTED,
                                     "<%s> in a set is not read; list the ids themselves",
                                     (const char *)child->name);
@@ -205,24 +200,21 @@ static lar_status read_set(mesh_reader *reader, const xmlNode *set, const char *
     if (!status && kind != LAR_SET_NODES) status = define_name(reader, set, kind_name, name);
     if (!status) status = lar_mesh_builder_set(reader->builder, name, kind, feb->error);
     if (status) return status;
-    if (kind == LAR_SET_NODES) return read_set_ids(reader, set, "node", "n");
-    if (kind == LAR_SET_ELEMENTS) return read_set_ids(reader, set, "elem", "e");
+    if (kind == LAR_SET_NODES) return read_set_ids(reader, set, "node n");
+    if (kind == LAR_SET_ELEMENTS) return read_set_ids(reader, set, "elem e");
     return read_surface(reader, set);
 }
 
 static lar_status read_block(mesh_reader *reader, const xmlNode *block) {
     /* Only conditions use these, and those that do are refused where they stand; a part list is
      * looked up when something names it. */
-    static const char *const harmless[] = {"SurfacePair", "PartList", "DiscreteSet", "Edge",
-                                           "NodeSetPair"};
     if (lar_feb_is(block, "Nodes")) return read_nodes(reader, block);
     if (lar_feb_is(block, "Elements")) return read_elements(reader, block);
     if (lar_feb_is(block, "NodeSet")) return read_set(reader, block, "node set", LAR_SET_NODES);
     if (lar_feb_is(block, "ElementSet"))
         return read_set(reader, block, "element set", LAR_SET_ELEMENTS);
     if (lar_feb_is(block, "Surface")) return read_set(reader, block, "surface", LAR_SET_FACES);
-    for (size_t i = 0; i < sizeof harmless / sizeof harmless[0]; i++)
-        if (lar_feb_is(block, harmless[i])) return LAR_OK;
+    if (lar_feb_is_any(block, "SurfacePair PartList DiscreteSet Edge NodeSetPair")) return LAR_OK;
     return lar_feb_notice(reader->feb, block, "<%s> in the mesh is not known and was left out",
                           (const char *)block->name);
 }

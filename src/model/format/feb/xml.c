@@ -59,9 +59,10 @@ static lar_status check_version(lar_feb *feb) {
     lar_status status = lar_feb_need_attribute(feb, feb->root, "version", &version);
     if (status) return status;
     if (strcmp(version, "3.0") == 0 || strcmp(version, "4.0") == 0) return LAR_OK;
+    if (strcmp(version, "2.5") == 0) return lar_feb_renew(feb);
     return lar_feb_fail(feb, feb->root, LAR_ERROR_UNSUPPORTED,
                         "format version %.20s of FEBio decks is not read; open the model in FEBio "
-                        "Studio and save it as version 3.0 or 4.0",
+                        "Studio and save it as version 4.0",
                         version);
 }
 
@@ -150,13 +151,19 @@ bool lar_feb_is(const xmlNode *element, const char *name) {
     return strcmp((const char *)element->name, name) == 0;
 }
 
-lar_status lar_feb_notice_others(const lar_feb *feb, const xmlNode *parent,
-                                 const char *const *known) {
+bool lar_feb_is_any(const xmlNode *element, const char *names) {
+    lar_span rest = {names, strlen(names)}, name;
+    for (bool more = true; more;) {
+        more = lar_span_split(rest, ' ', &name, &rest);
+        if (lar_span_equal(name, (const char *)element->name)) return true;
+    }
+    return false;
+}
+
+lar_status lar_feb_notice_others(const lar_feb *feb, const xmlNode *parent, const char *known) {
     lar_status status = LAR_OK;
     for (xmlNode *child = lar_feb_first(parent); child && !status; child = lar_feb_next(child)) {
-        const char *const *name = known;
-        while (*name && !lar_feb_is(child, *name)) name++;
-        if (!*name)
+        if (!lar_feb_is_any(child, known))
             status = lar_feb_notice(feb, child, "<%s> in <%s> is not known and was left out",
                                     (const char *)child->name, (const char *)parent->name);
     }

@@ -1,0 +1,111 @@
+/* Parameters of materials while a simulation runs, as the public header has them. The work that a
+ * change does is that of stiffness (simulation_settings.c). */
+#include <math.h>
+#include <string.h>
+
+#include "model/parameters.h"
+#include "simulation/simulation.h"
+#include "step/stable_step.h"
+
+lar_status lar_simulation_parameter_index(const lar_model *model, int32_t material,
+                                          const char *name, int *index, lar_error *error) {
+    char names[256];
+    if (material < 0 || material >= model->material_count)
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "there is no material %ld; the model has %ld, counted from 0",
+                        (long)material, (long)model->material_count);
+    const lar_material *m = &model->material[material];
+    *index = name ? lar_parameter_find(m, name) : -1;
+    if (!name || *index >= 0) return LAR_OK;
+    lar_parameter_names(m, names, sizeof names);
+    return lar_fail(error, LAR_ERROR_ARGUMENT,
+                    "this material has no parameter '%.60s'; of its law, %s, these can be set: %s",
+                    name, lar_law_table[m->law].name, names);
+}
+
+/* How many times the squares of frequencies are what they are with the model's parameters. Where
+ * the step leaves room a little counts as nothing, as it does when steps are divided
+ * (lar_step_room_of): the shear modulus of what hardly changes its volume is hardly felt there. */
+static double faster_with(const lar_domain *domain, int32_t material, const lar_material *made) {
+    const lar_model *model = domain->model;
+    double most = 0;
+    for (lar_gid e = 0; e < model->mesh.element_count; e++) {
+        lar_hex8 hex8;
+        if (model->element_material[e] != material) continue;
+        double now = lar_element_frequency(model, domain->kind, e, made, &hex8);
+        const lar_element_rate *rate = &domain->rate[e];
+        double usual = rate->square * rate->mass / (rate->mass - rate->added);
+        double square = now * now / usual;
+        most = square <= most ? most : square; /* what is no number, too */
+    }
+    static const double LITTLE = 1.02, ROOM = 0.9;
+    double dt = domain->time_step, fastest = domain->fastest[lar_factor_of(material)];
+    bool roomy = most <= LITTLE && 0.25 * dt * dt * fastest * most <= ROOM;
+    if (most > 1 && roomy) return 1;
+    return most > 0 ? most : 1; /* nothing is made of it */
+}
+
+static lar_status check_value(const lar_material *made, int index, double value, lar_error *error) {
+    const lar_law_row *law = &lar_law_table[made->law];
+    bool modulus = index < law->count && law->parameter[index].value == LAR_VALUE_MODULUS;
+    if (modulus && !(value > 0))
+        return lar_fail(error, LAR_ERROR_ARGUMENT, "%s of %g Pa; it must be positive",
+                        law->parameter[index].name, value);
+    lar_error why;
+    if (!lar_material_check(made, "with this parameter", &why)) return LAR_OK;
+    return lar_fail(error, LAR_ERROR_ARGUMENT, "%.900s", why.message);
+}
+
+lar_status lar_simulation_set_parameter_at(lar_simulation *simulation, int32_t material, int index,
+                                           double value, lar_error *error) {
+    const lar_model *model = simulation->domain.model;
+    if (material < 0 || material >= model->material_count || index >= LAR_PARAMETER_VALUES)
+        return lar_fail(error, LAR_ERROR_ARGUMENT, "there is no parameter %d of material %ld",
+                        index, (long)material);
+    lar_parameters wanted = simulation->tools.parameters;
+    lar_parameter_entry entry = lar_parameters_of_model(model, material);
+    if (index >= 0) {
+        entry = lar_parameters_at(&wanted, model, material);
+        entry.value[index] = value + 0.0; /* no -0 */
+        const lar_material made = lar_parameters_give(model, &entry);
+        lar_status status = check_value(&made, index, value, error);
+        if (status) return status;
+        entry.faster = faster_with(&simulation->domain, material, &made);
+        double factor = simulation->tools.settings.factor[lar_factor_of(material)];
+        if (!(entry.faster * factor <= LAR_STIFFNESS_MAX))
+            return lar_fail(error, LAR_ERROR_ARGUMENT,
+                            "%g for %s asks for steps %.3g times as short as the model's "
+                            "materials, with the stiffness that is set; they are divided for that "
+                            "down to half: take a softer value, or one in the model",
+                            value, lar_parameter_name(&made, index), sqrt(entry.faster * factor));
+    }
+    if (!lar_parameters_put(&wanted, model, &entry))
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "%d materials have other parameters than the model's already; give one of "
+                        "them the model's again, with NULL for the name",
+                        LAR_MATERIALS_SET_MAX);
+    if (memcmp(&wanted, &simulation->tools.parameters, sizeof wanted) == 0) return LAR_OK;
+    return lar_simulation_change_materials(simulation, &simulation->tools.settings, &wanted, error);
+}
+
+lar_status lar_simulation_set_parameter(lar_simulation *simulation, int32_t material,
+                                        const char *name, double value, lar_error *error) {
+    int index;
+    lar_status status =
+        lar_simulation_check_change(simulation, "lar_simulation_set_parameter", error);
+    if (!status)
+        status =
+            lar_simulation_parameter_index(simulation->domain.model, material, name, &index, error);
+    if (status) return status;
+    return lar_simulation_set_parameter_at(simulation, material, index, value, error);
+}
+
+double lar_simulation_parameter(const lar_simulation *simulation, int32_t material,
+                                const char *name) {
+    int index;
+    if (!simulation || !name ||
+        lar_simulation_parameter_index(simulation->domain.model, material, name, &index, NULL))
+        return 0;
+    return lar_parameters_at(&simulation->tools.parameters, simulation->domain.model, material)
+        .value[index];
+}

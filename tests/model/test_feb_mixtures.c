@@ -1,0 +1,197 @@
+/* Materials of FEBio decks that hold others, directions that turn about a point or a line, and
+ * decks of format version 2.5. */
+#include "model/feb_deck.h"
+
+#include "law/fibre.h"
+
+#define DECK(type, material)                                                                       \
+    HEAD4 CONTROL("DYNAMIC") "<Material><material id=\"7\" name=\"soft\" type=\"" type             \
+                             "\"><density>1000</density>" material                                 \
+                             "</material></Material>\n" MESH4 DOMAINS TAIL
+
+#define TERM   "<t1>0.1</t1><g1>0.5</g1>"
+#define SOLID  "<solid type=\"neo-Hookean\"><E>3000</E><v>0.25</v></solid>"
+#define MOONEY "<solid type=\"Mooney-Rivlin\"><c1>500</c1><c2>0</c2><k>0</k></solid>"
+#define ALONG  "<fiber type=\"vector\">0,0,2</fiber>"
+#define FIBRES(type)                                                                               \
+    "<solid type=\"" type "\"><ksi>300</ksi><alpha>1.5</alpha><beta>2.5</beta>" ALONG "</solid>"
+#define PULLS "<solid type=\"prescribed uniaxial active contraction\"><T0>200</T0>" ALONG "</solid>"
+#define TRANS_ISO                                                                                  \
+    "<k>0</k><c1>500</c1><c2>0</c2><c3>40</c3><c4>12</c4><c5>3e3</c5><lam_max>1.2</lam_max>"
+
+static void expect(const char *deck, lar_law law, int terms, lar_fibre_law fibres, double along) {
+    lar_model *model = read_deck(deck);
+    const lar_material *m = &model->material[0];
+    assert_int_equal(m->law, law);
+    assert_int_equal(m->viscosity.terms, terms);
+    assert_int_equal(m->fibre.law, fibres);
+    assert_true(m->fibre.along == along);
+    if (law == LAR_LAW_mooney_rivlin) assert_true(lar_material_bulk(m) == 9e4);
+    if (fibres) assert_true(lar_model_fibre(model, 1)[2] == 1);
+    lar_model_destroy(model);
+}
+
+/* Whatever is within relaxes; what contracts stands beside. */
+static void mixtures_may_be_viscous(void **state) {
+    (void)state;
+    expect(DECK("viscoelastic",
+                TERM "<elastic type=\"solid mixture\">" SOLID FIBRES("fiber-exp-pow") "</elastic>"),
+           LAR_LAW_coupled_neo_hookean, 1, LAR_FIBRE_EXP_POW, 0);
+    expect(DECK("uncoupled viscoelastic",
+                "<k>9e4</k>" TERM
+                "<elastic type=\"uncoupled solid mixture\"><k>0</k>" MOONEY FIBRES(
+                    "uncoupled fiber-exp-pow") "</elastic>"),
+           LAR_LAW_mooney_rivlin, 1, LAR_FIBRE_EXP_POW, 0);
+    expect(DECK("uncoupled solid mixture",
+                "<k>9e4</k><solid type=\"uncoupled viscoelastic\">" TERM
+                "<elastic type=\"trans iso Mooney-Rivlin\">" TRANS_ISO ALONG "</elastic></solid>"),
+           LAR_LAW_mooney_rivlin, 1, LAR_FIBRE_EXP_LINEAR, 0);
+    expect(DECK("solid mixture", PULLS "<solid type=\"viscoelastic\">" TERM
+                                       "<elastic type=\"neo-Hookean\"><E>3000</E><v>0.25</v>"
+                                       "</elastic></solid>"),
+           LAR_LAW_coupled_neo_hookean, 1, LAR_FIBRE_NONE, 200);
+    expect(DECK("uncoupled solid mixture",
+                "<k>9e4</k><solid type=\"trans iso Mooney-Rivlin\">" TRANS_ISO ALONG "</solid>"
+                "<solid type=\"uncoupled prescribed isotropic active contraction\"><T0>50</T0>"
+                "</solid>"),
+           LAR_LAW_mooney_rivlin, 0, LAR_FIBRE_EXP_LINEAR, 50);
+}
+
+/* What would be another model is refused. */
+static void mixtures_that_are_refused(void **state) {
+    (void)state;
+    expect_failure(
+        DECK("viscoelastic", TERM "<elastic type=\"solid mixture\">" SOLID PULLS "</elastic>"),
+        LAR_ERROR_UNSUPPORTED, 5, "an active contraction within a viscous material");
+    expect_failure(
+        DECK("solid mixture",
+             FIBRES("fiber-exp-pow") "<solid type=\"viscoelastic\">" TERM
+                                     "<elastic type=\"neo-Hookean\"><E>3000</E><v>0.25</v>"
+                                     "</elastic></solid>"),
+        LAR_ERROR_UNSUPPORTED, 5, "fibres beside a viscous solid");
+    expect_failure(DECK("viscoelastic",
+                        TERM "<elastic type=\"solid mixture\"><solid type=\"viscoelastic\">" TERM
+                             "<elastic type=\"neo-Hookean\"/></solid></elastic>"),
+                   LAR_ERROR_FORMAT, 5, "a viscous material within another one");
+    expect_failure(DECK("viscoelastic", TERM "<elastic type=\"viscoelastic\"/>"),
+                   LAR_ERROR_UNSUPPORTED, 5, "material type 'viscoelastic' is not read");
+    expect_failure(DECK("uncoupled solid mixture",
+                        "<k>9e4</k>" FIBRES("uncoupled fiber-exp-pow") "<solid type=\"trans iso "
+                                                                       "Mooney-Rivlin\">" TRANS_ISO
+                                                                       "</solid>"),
+                   LAR_ERROR_UNSUPPORTED, 5, "a second family of fibres");
+}
+
+/* The second element's centre is at 1.5, 0.5, 0.5. */
+static void expect_direction(const char *rule, double x, double y, double z) {
+    char deck[6000];
+    snprintf(deck, sizeof deck, "%s%s%s",
+             HEAD4 CONTROL(
+                 "DYNAMIC") "<Material><material id=\"7\" "
+                            "name=\"soft\" type=\"trans iso Mooney-Rivlin\"><density>1</density>"
+                            "<c1>500</c1><c2>0</c2><c3>40</c3><c4>12</c4><c5>3e3</c5><lam_max>1.2</"
+                            "lam_max>"
+                            "<k>9e4</k>",
+             rule, "</material></Material>\n" MESH4 DOMAINS TAIL);
+    lar_model *model = read_deck(deck);
+    const double *a = lar_model_fibre(model, 1), want[3] = {x, y, z};
+    for (int i = 0; i < 3; i++)
+        if (fabs(a[i] - want[i]) > 1e-12) fail_msg("%s: %g %g %g", rule, a[0], a[1], a[2]);
+    lar_model_destroy(model);
+}
+
+static void directions_turn(void **state) {
+    (void)state;
+    const double third = 1 / sqrt(3), half = sqrt(0.5);
+    expect_direction("<fiber type=\"spherical\"><center>0.5,-0.5,-0.5</center>"
+                     "<vector>3,0,0</vector></fiber>",
+                     third, third, third);
+    expect_direction("<fiber type=\"spherical\"><center>2.5,0.5,0.5</center></fiber>", -1, 0, 0);
+    expect_direction("<fiber type=\"spherical\"><center>1.5,-1,0.5</center>"
+                     "<vector>0,1,0</vector></fiber>",
+                     -1, 0, 0);
+    expect_direction("<fiber type=\"cylindrical\"><center>0.5,-0.5,9</center></fiber>", half, half,
+                     0);
+    expect_direction("<fiber type=\"cylindrical\"><center>0.5,-0.5,9</center><axis>0,0,-3</axis>"
+                     "<vector>0,1,0</vector></fiber>",
+                     -half, half, 0);
+    expect_direction("<mat_axis type=\"cylindrical\"><center>7,0.5,2.5</center><axis>1,0,0</axis>"
+                     "<vector>0,1,0</vector></mat_axis>",
+                     0, 1, 0);
+    /* a parameter that means nothing at its default, and a muscle that is never active */
+    expect_direction(ALONG "<active_contraction><ascl>0</ascl><Tmax>1</Tmax></active_contraction>",
+                     0, 0, 1);
+}
+
+static void rays_that_are_none(void **state) {
+    (void)state;
+    expect_failure(DECK("trans iso Mooney-Rivlin",
+                        "<k>9</k><c1>1</c1><c3>1</c3><c4>1</c4><c5>1</c5><lam_max>1.1</lam_max>"
+                        "<fiber type=\"cylindrical\"><axis>0,0,0</axis></fiber>"),
+                   LAR_ERROR_FORMAT, 5, "has no length");
+    expect_failure(DECK("trans iso Mooney-Rivlin",
+                        "<k>9</k><c1>1</c1><c3>1</c3><c4>1</c4><c5>1</c5><lam_max>1.1</lam_max>"
+                        "<fiber type=\"spherical\"><center>0.5,0.5,0.5</center></fiber>"),
+                   LAR_ERROR_MODEL, 0, "their direction is 0, 0, 0");
+}
+
+/* ---- version 2.5 ----------------------------------------------------------------------------- */
+
+#define OLD(boundary, rest)                                                                        \
+    "<?xml version=\"1.0\"?>\n<febio_spec version=\"2.5\">\n<Material><material id=\"1\" "         \
+    "type=\"neo-Hookean\"><density>1</density><E>3</E><v>0.2</v></material></Material>\n"          \
+    "<Geometry>\n" NODES "<Elements type=\"hex8\" mat=\"1\"><elem id=\"1\">1,2,3,4,5,6,7,8</elem>" \
+    "<elem id=\"2\">2,9,10,3,6,11,12,7</elem></Elements>\n<NodeSet name=\"wall\"><node id=\"1\"/>" \
+    "<node id=\"4\"/></NodeSet>\n<NodeSet name=\"tip\"><node id=\"9\"/></NodeSet></Geometry>\n"    \
+    "<Boundary>\n" boundary "</Boundary>\n" rest TAIL
+#define OLD_CONTROL                                                                                \
+    "<Control><time_steps>10</time_steps><step_size>0.1</step_size><analysis type=\"dynamic\"/>"   \
+    "</Control>\n"
+#define OLD_STEP                                                                                   \
+    "<Step name=\"one\">" OLD_CONTROL "<Boundary><prescribe bc=\"x\" node_set=\"tip\">"            \
+    "<scale lc=\"1\">-2</scale></prescribe></Boundary></Step>"
+#define OLD_CURVE                                                                                  \
+    "<LoadData><loadcurve id=\"1\" type=\"linear\" extend=\"extrapolate\"><point>0,0</point>"      \
+    "<loadpoint>0.5,3</loadpoint></loadcurve></LoadData>"
+
+static void old_decks_are_read(void **state) {
+    (void)state;
+    lar_model *model =
+        read_deck(OLD("<fix bc=\"x,z\" node_set=\"wall\"/>",
+                      "<Loads><nodal_load bc=\"y\" node_set=\"tip\"><scale lc=\"1\">4</scale>"
+                      "</nodal_load></Loads>\n" OLD_STEP OLD_CURVE));
+    assert_true(model->duration == 1 && model->damping == 0 && model->mesh.element_count == 2);
+    assert_true(model->fix_count == 1 && model->fix[0].axes == (LAR_AXIS_X | LAR_AXIS_Z));
+    assert_true(model->fix[0].nodes.count == 2);
+    assert_true(model->move_count == 1 && model->move[0].by == -2 &&
+                model->move[0].axes == LAR_AXIS_X);
+    assert_true(model->load_count == 1 && model->load[0].force[1] == 4);
+    const lar_curve *curve = &model->curve[model->load[0].curve];
+    assert_true(fabs(lar_curve_value(curve, 0.25) - 1.5) < 1e-12);
+    assert_true(fabs(lar_curve_value(curve, 1) - 6) < 1e-12);
+    assert_int_equal(model->notice_count, 1); /* a node that nothing uses */
+    lar_model_destroy(model);
+}
+
+/* Lines stay those of the file. */
+static void old_decks_that_are_refused(void **state) {
+    (void)state;
+    expect_failure(OLD("\n<fix bc=\"q\" node_set=\"wall\"/>", OLD_CONTROL), LAR_ERROR_UNSUPPORTED,
+                   13, "the degree of freedom 'q'");
+    expect_failure(OLD("<prescribe bc=\"x\" node_set=\"tip\"><scale lc=\"7\">1</scale></prescribe>",
+                       OLD_CONTROL),
+                   LAR_ERROR_FORMAT, 12, "names the load controller 7");
+    expect_failure(OLD("<rigid rb=\"2\" node_set=\"tip\"/>", OLD_CONTROL), LAR_ERROR_UNSUPPORTED,
+                   12, "<rigid> in <Boundary>");
+    expect_failure(OLD("", OLD_STEP "\n" OLD_STEP), LAR_ERROR_UNSUPPORTED, 0, "second <Step>");
+    expect_failure("<febio_spec version=\"2.5\"/>", LAR_ERROR_FORMAT, 0, "");
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(mixtures_may_be_viscous), cmocka_unit_test(mixtures_that_are_refused),
+        cmocka_unit_test(directions_turn),         cmocka_unit_test(rays_that_are_none),
+        cmocka_unit_test(old_decks_are_read),      cmocka_unit_test(old_decks_that_are_refused),
+    };
+    return cmocka_run_group_tests_name("feb_mixtures", tests, NULL, NULL);
+}
