@@ -578,11 +578,10 @@ lar_status lar_checkpoint_parse(const char *path, const lar_bytes *bytes, const 
 
 void lar_checkpoint_take(const lar_checkpoint *checkpoint, const lar_domain *whole,
                          lar_state *state, lar_tools *tools) {
-    size_t values = 3 * state->stride;
-    memset(state->u, 0, values * sizeof *state->u);
-    memset(state->v, 0, values * sizeof *state->v);
+    memset(state->u, 0, 3 * state->stride * sizeof *state->u);
+    memset(state->v, 0, 3 * state->stride * sizeof *state->v);
     memset(state->level, 0, state->stride * sizeof *state->level);
-    memset(state->force, 0, values * sizeof *state->force);
+    memset(state->force, 0, 3 * state->stride * sizeof *state->force);
     for (lar_gid g = 0; g < whole->model->mesh.node_count; g++) {
         double value[LAR_NODE_VALUES];
         lar_checkpoint_get(checkpoint->rows, (size_t)whole->model->mesh.node_count, (size_t)g,
