@@ -1,10 +1,11 @@
 /* The guard of strained elements (mechanics/hex8_guard.h), within the step.
  *
  * In the last step of an interval the kernels list the elements that are strained. These are looked
- * at one by one: how fast they have become, for the division of steps, and how close a corner is to
- * where its barrier begins. Those that are close stay in the list, which is gone through in every
- * step until the next one is made. A force is added only where a barrier is at work, so which
- * elements are listed besides does not matter.
+ * at, eight side by side: how fast they have become, for the division of steps, and how close a
+ * corner is to where its barrier begins. Those that are close are gone through in every step until
+ * the next list is made. A force is added only where a barrier is at work, so which elements are
+ * listed besides does not matter; and corners with volume to spare are not looked at again before
+ * the fastest node can have used it up.
  */
 #ifndef LAR_STEP_GUARD_H
 #define LAR_STEP_GUARD_H
@@ -47,7 +48,7 @@ void lar_guard_apply(const lar_domain *domain, int32_t r, lar_state *state);
 
 /* The same in a step in which the kernel has listed the strained elements of run r: what is close
  * of these is what is looked at from now on. `measures`: how fast they are counts for
- * state->need. Both in one go, for looking at the corners of a block is what takes the time. */
+ * state->need. Both in one go, for looking at corners is what takes the time. */
 void lar_guard_select_and_apply(const lar_domain *domain, int32_t r,
                                 const lar_hex8_monitor *monitor, bool measures, lar_state *state);
 

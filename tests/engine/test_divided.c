@@ -162,6 +162,26 @@ static void grids_and_sizes_of_advances_change_nothing(void **unused) {
     lar_model_destroy(model);
 }
 
+/* What is sound is left alone until nodes can have gone far enough (step/guard.c): a bound, and
+ * no estimate. */
+static void looking_at_all_that_is_strained_changes_nothing(void **unused) {
+    (void)unused;
+    lar_model *model = organ();
+    course c = plain(model);
+    lar_options options = setting(NULL, 0);
+    options.search_always = 1;
+    lar_simulation *simulation = start_with(model, options);
+    assert_false(simulation->strained.follows);
+    expect("looking at all", run(simulation, 7), c);
+    lar_simulation_destroy(simulation);
+    simulation = start_with(model, setting(NULL, 0));
+    assert_true(simulation->strained.follows);
+    go(simulation, STEPS, 10);
+    assert_true(simulation->strained.travel > 0 && hash_of(simulation) == c.end);
+    lar_simulation_destroy(simulation);
+    lar_model_destroy(model);
+}
+
 static void processes_change_nothing(void **unused) {
     (void)unused;
     lar_model *model = organ();
@@ -389,6 +409,7 @@ int main(int count, char **argument) {
     strained_share = count > 1 ? atof(argument[1]) : 0;
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(grids_and_sizes_of_advances_change_nothing),
+        cmocka_unit_test(looking_at_all_that_is_strained_changes_nothing),
         cmocka_unit_test(processes_change_nothing),
         cmocka_unit_test(processes_know_what_is_strained),
         cmocka_unit_test(instruction_sets_change_nothing),
