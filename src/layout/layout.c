@@ -8,8 +8,8 @@
 #include "layout/row_plan.h"
 #include "layout/rows.h"
 
-/* Local nodes are addressed by 32-bit offsets, four values each, and faces by 32-bit numbers, six
- * of an element. A line of five and more nodes may need a spare one before it, so a quarter of the
+/* Places of nodes in packets are 32-bit offsets, four values each, and faces 32-bit numbers, six of
+ * an element. A line of five and more nodes may need a spare one before it, so a quarter of the
  * nodes at most is added to those of the model. */
 enum { NODES_MAX = 1 << 28, ELEMENTS_MAX = INT32_MAX / 6 };
 

@@ -13,7 +13,7 @@
 #define BETA  0.25
 
 /* One time-step's vectors are [rows], row 3 n + i being axis i of node n; state.u and state.force
- * have four values per node, as the engine's. */
+ * are the engine's, axis by axis. */
 struct lar_implicit {
     const lar_model *model;
     lar_implicit_options options;

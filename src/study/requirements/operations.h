@@ -23,8 +23,7 @@ extern const char *const lar_kernel_kind_name[LAR_KERNEL_KINDS];
 
 /* Per element, for the law (lar_law) of its material. */
 lar_operations lar_operations_of_element(lar_kernel_kind kind, int law);
-/* Per node that is moved, without what conditions and contact do. All four values of a node are
- * counted, the last of which is always 0. */
+/* Per node that is moved, without what conditions and contact do. */
 lar_operations lar_operations_of_node(void);
 
 /* Bytes that a step reads and writes at least, when they come from memory. */
