@@ -26,7 +26,8 @@ if command -v ninja >/dev/null && [ -e "$build/build.ninja" ]; then
     grep -q 'cli/main.c' "$scratch/commands" || fail "lariat is not built"
     ! grep -q ' [^ ]*/tests/[^ ]*\.c' "$scratch/commands" || fail "tests are built for the demo"
     steps=$(grep -c . "$scratch/commands")
-    [ "$steps" -lt 450 ] || fail "the demo takes $steps steps"
+    # Each source of the command is a step; with the tests there would be a thousand.
+    [ "$steps" -lt 500 ] || fail "the demo takes $steps steps"
 fi
 
 # ---- progress ----
