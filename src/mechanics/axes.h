@@ -25,9 +25,10 @@ static inline int lar_axes_collide(size_t distance) {
     return (distance + NEAR) % PAGE < 2 * NEAR;
 }
 
-/* For so many nodes, a multiple of LAR_NODES_TOGETHER. */
+/* For so many nodes, a multiple of LAR_NODES_TOGETHER, and as many behind them that nobody moves:
+ * lanes without an element read them whenever they are looked at. */
 static inline size_t lar_axis_stride(size_t nodes) {
-    size_t stride = nodes;
+    size_t stride = nodes + LAR_NODES_TOGETHER;
     while (lar_axes_collide(stride) || lar_axes_collide(2 * stride)) stride += LAR_NODES_TOGETHER;
     return stride;
 }

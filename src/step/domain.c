@@ -216,7 +216,7 @@ static bool fill_block(lar_domain *domain, int32_t r, int32_t b, void *memory, d
         }
         if (run->rest) ((lar_lean_block *)memory)->volume[lane] = LAR_LEAN_NOTHING;
         for (int a = 0; a < 8; a++)
-            ((lar_block_head *)memory)->node[a][lane] = domain->layout.node_padded - 1;
+            ((lar_block_head *)memory)->node[a][lane] = domain->layout.node_padded;
     }
     return !run->rest || same_numbers(domain, run, b, lanes, whole);
 }
