@@ -60,7 +60,8 @@ typedef struct lar_step_division {
     int32_t parts;   /* of a step: 1, 2, 3, 4, 6, 8, 12, ... (lar_more_parts) */
     int32_t before;  /* as many until `since` */
     uint64_t since;  /* step */
-    double hardness; /* how many times as stiff tools are as at rest, at most parts^2 */
+    double hardness; /* how many times as stiff tools are as at rest, at most parts^2 or, where
+                        elements may be heavier, twice that */
     double need;   /* of the last interval: (omega dt / 2)^2 of the fastest element, dt undivided */
     double lately; /* the largest `need`, fading */
     uint64_t decided;  /* the step when it was decided last */
@@ -93,7 +94,7 @@ typedef struct lar_heavy_list {
 typedef struct lar_heavy_now {
     int32_t count, padding;
     int32_t element[LAR_HEAVIER_MAX];
-    uint8_t quarters[LAR_HEAVIER_MAX]; /* of their mass */
+    uint8_t eighths[LAR_HEAVIER_MAX]; /* of their mass */
 } lar_heavy_now;
 
 /* The next larger number of parts that there is: powers of two, and three halves of them. */
@@ -107,9 +108,10 @@ static inline double lar_division_need(const lar_step_division *division) {
 }
 
 /* Whether it must be decided in every step: elements are strained so that they may soon be too fast
- * for it. */
+ * for it, or must be heavier where tools begin to press. */
 static inline bool lar_division_is_close(const lar_step_division *division) {
-    return lar_division_need(division) > 0.7;
+    return lar_division_need(division) > 0.7 ||
+           division->hardness > (double)division->parts * division->parts;
 }
 
 /* Nothing presses on the body any more, so barriers of corners (mechanics/hex8_guard.h) are not

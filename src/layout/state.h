@@ -68,6 +68,8 @@ typedef struct lar_state {
     double past;     /* since the forces before [s], as the step was entered; no state */
     lar_strained *strained; /* the list, lent; no state */
     lar_needs *needs;       /* whose `need` that is, lent; NULL: nobody asks. No state */
+    double hardness;        /* of tools: lar_step_division; no state */
+    uint8_t *pressed;       /* elements that tools press on (step/mass/pressed.h), lent; no state */
     int32_t node_count;
     size_t stride;        /* from one axis of a node to the next */
     size_t history_count; /* values; 0: nothing is viscous */

@@ -341,8 +341,12 @@ static lar_status create_burden(lar_domain *domain, lar_error *error) {
     size_t nodes = (size_t)domain->layout.node_padded;
     if (!(domain->model->strained_share > 0) || domain->kind != LAR_ELEMENT_HEX8) return LAR_OK;
     lar_step_room room = lar_step_room_of(domain->time_step, domain->stable_step, true);
-    domain->burden = lar_burden_create(domain->mass, domain->added, nodes, room.least);
-    if (domain->burden) domain->burden->most = lar_burden_most(domain->model, domain->rate);
+    domain->burden = lar_burden_create(domain->mass, domain->added, nodes);
+    if (domain->burden) {
+        domain->burden->most = lar_burden_most(domain->model, domain->rate);
+        domain->burden->room = room.max;
+        domain->burden->springs = room.springs;
+    }
     if (!domain->added) domain->added = lar_calloc_aligned(nodes, sizeof *domain->added);
     if (domain->burden && domain->added) return LAR_OK;
     return lar_fail_memory(error, 24 * nodes, "the masses");

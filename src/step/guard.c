@@ -7,6 +7,7 @@
 #include "base/vector.h"
 #include "mechanics/hex8_guard.h"
 #include "step/mass/heavier.h"
+#include "step/mass/pressed.h"
 
 /* Elements are listed when a corner is no farther from its barrier than twice START. That no corner
  * comes there before the next list is made is no theorem: in fast pushes with tools at 1.6 m/s the
@@ -29,13 +30,18 @@ lar_status lar_strained_create(const lar_domain *domain, lar_strained *strained,
                                .damped_count = lar_calloc(runs, sizeof *strained->damped_count)};
     strained->follows = domain->layout.thread_count == 1;
     bool active = lar_model_active(domain->model) != NULL;
+    bool heavier = domain->burden != NULL;
+    if (heavier)
+        strained->pressed =
+            lar_calloc((size_t)domain->model->mesh.element_count, sizeof *strained->pressed);
     if (active) {
         strained->activation = lar_calloc_aligned(lanes, sizeof *strained->activation);
         strained->active_energy = lar_calloc_aligned(lanes, sizeof *strained->active_energy);
     }
     if (strained->lane && strained->count && strained->strain && strained->near &&
         strained->stiffness && strained->sound && strained->damped && strained->damped_count &&
-        (!active || (strained->activation && strained->active_energy)))
+        (!active || (strained->activation && strained->active_energy)) &&
+        (!heavier || strained->pressed))
         return LAR_OK;
     lar_strained_destroy(strained);
     size_t each = 2 * sizeof *strained->lane + sizeof *strained->strain +
@@ -54,6 +60,7 @@ void lar_strained_destroy(lar_strained *strained) {
     free(strained->damped_count);
     free(strained->activation);
     free(strained->active_energy);
+    free(strained->pressed);
     *strained = (lar_strained){0};
 }
 
@@ -360,7 +367,9 @@ static void measure(const lar_domain *domain, lar_gid e, size_t place, double st
     double need = 0.25 * domain->time_step * domain->time_step * square;
     if (!(need >= 0)) need = INFINITY; /* a corner that is a point has no number */
     if (!(need <= state->need)) state->need = need;
-    if (state->needs && need > domain->burden->least) lar_needs_add(state->needs, e, need);
+    if (!state->needs) return;
+    need += lar_pressed_takes(domain, e, state);
+    if (need > domain->burden->room) lar_needs_add(state->needs, e, need);
 }
 
 /* Elements of which more than their strain counts, and what is known of them. */

@@ -38,6 +38,7 @@ struct lar_strained {
     int32_t *damped_count; /* [run_count] of these, as above */
     double *activation;    /* [8 for each block] scratch (step/activation.h), */
     double *active_energy; /* likewise; NULL where nothing is active */
+    uint8_t *pressed;      /* [elements of the model] step/mass/pressed.h; NULL: none is heavier */
 };
 
 lar_status lar_strained_create(const lar_domain *domain, lar_strained *strained, lar_error *error);

@@ -85,14 +85,27 @@ static int32_t base_of(const lar_domain *whole) {
     return base;
 }
 
+/* Elements that tools press on have reported what that takes of a step (step/mass/pressed.h); what
+ * tools have become harder since counts beside all. */
+static lar_heavy_room room_beside(const lar_tools *tools, const lar_step_room *room,
+                                  double hardness, int32_t parts) {
+    double more = fmax(0, hardness - tools->division.hardness);
+    return (lar_heavy_room){.max = room->max * parts * parts, .springs = room->springs * more};
+}
+
 /* Whether so many parts bear elements as they have been lately, and springs; where elements may be
- * heavier, with what they may. */
+ * heavier, with what they may. Tools that are harder than parts of steps bear beside any element
+ * need these to be known, which they are once tools have been harder for a step. */
 static bool bears(const lar_domain *whole, const lar_tools *tools, const lar_step_room *room,
                   double hardness, int32_t parts) {
-    double max = room->max * parts * parts, springs = room->springs * hardness;
-    if (hardness > parts * parts) return false;
-    if (tools->division.lately + springs <= max) return true;
-    return whole->burden && lar_heavier_bears(whole, &tools->strained, max - springs);
+    static const double HARDER = 2;
+    const lar_step_division *division = &tools->division;
+    const lar_heavy_room beside = room_beside(tools, room, hardness, parts);
+    double harder = hardness / (parts * parts);
+    if (!whole->burden)
+        return harder <= 1 && division->lately + room->springs * hardness <= beside.max;
+    if (harder > 1 && !(division->hardness > 1 && harder <= HARDER)) return false;
+    return lar_heavier_bears(whole, &tools->strained, &beside);
 }
 
 /* Whether anything but tools may hold elements in the shape that they have. */
@@ -142,8 +155,8 @@ bool lar_interval_divide(const lar_domain *whole, uint64_t step, double seconds,
     bool changed = hardness != d->hardness || wanted != d->parts ||
                    close != lar_division_is_close(d) || let_go != lar_division_lets_go(d);
     if (whole->burden) {
-        double left = room.max * wanted * wanted - room.springs * hardness;
-        lar_heavier_settle(whole, left, fading, &tools->strained);
+        const lar_heavy_room beside = room_beside(tools, &room, hardness, wanted);
+        lar_heavier_settle(whole, &beside, fading, &tools->strained);
         changed = lar_heavier_name(&tools->strained, &tools->heavier) || changed;
     }
     d->hardness = hardness;

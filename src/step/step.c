@@ -7,6 +7,7 @@
 #include "contact/tool_friction.h"
 #include "step/activation.h"
 #include "step/guard.h"
+#include "step/mass/pressed.h"
 #include "step/viscous_history.h"
 #include "mechanics/hex8_full.h"
 #include "mechanics/hex8_matrix.h"
@@ -191,6 +192,8 @@ void lar_step_enter(const lar_domain *domain, const lar_interactions *interactio
         interactions->tool_contact.tools ? &interactions->tool_contact.tools->forces : NULL;
     context->hardness = division->hardness;
     context->held = interactions->notes.mark;
+    state->hardness = division->hardness;
+    state->pressed = state->strained ? state->strained->pressed : NULL;
     state->close = lar_division_is_close(division);
     state->lets_go = lar_division_lets_go(division);
     context->shares = LAR_STEP_SHARES / state->parts;
@@ -399,6 +402,7 @@ void lar_step_forces(const lar_domain *domain, lar_interactions *scratch, lar_st
 void lar_step_begin(const lar_domain *domain, lar_interactions *interactions,
                     const lar_condition_context *context, lar_state *state, lar_fault *fault) {
     act(domain, interactions, context, state, fault);
+    if (interval_ends(domain, state->close, state)) lar_pressed_mark(domain, interactions, state);
     add_half_work(domain, interactions, context, state);
 }
 
@@ -426,6 +430,7 @@ void lar_step_end(const lar_domain *domain, const lar_interactions *interactions
     if (!isfinite(state->external) && !fault->kind)
         *fault = (lar_fault){
             .kind = LAR_FAULT_SPEED, .element = -1, .step = state->step, .part = state->part};
+    if (interval_ends(domain, state->close, state)) lar_pressed_list(domain, interactions, state);
     state->round++;
     state->listed = true;
     if (++state->part < state->parts) return;

@@ -5,9 +5,10 @@
 
 #include "contact/tool_body.h"
 
-/* Beyond this steps are divided: what is four times as heavy swings half as fast. */
-static const double FACTOR_MAX = 4;
-static const double NEARLY = 1.0625; /* that is not held any more */
+/* Beyond this steps are divided: what is eight times as heavy swings nearly three times as slowly.
+ */
+static const double FACTOR_MAX = 8;
+static const double NEARLY = 1.03125; /* that is not held any more */
 
 /* ---- who is heavier ------------------------------------------------------------------------- */
 
@@ -76,13 +77,15 @@ void lar_heavier_fade(double fading, lar_heavy_list *list) {
     sort(list->of, list->count, by_element);
 }
 
-/* In quarters, and no less than asked for. */
+/* In eighths, and no less than asked for. */
 static double stepped(double factor) {
-    return 0.25 * ceil(4 * factor);
+    return 0.125 * ceil(8 * factor);
 }
 
-static double factor_for(const lar_heavy *heavy, double room) {
-    return heavy->lately > room ? stepped(heavy->lately / room) : 1;
+/* Springs of tools are fitted to masses without what is more, so that counts for both. */
+static double factor_for(const lar_heavy *heavy, const lar_heavy_room *room) {
+    double takes = heavy->lately + room->springs;
+    return takes > room->max ? stepped(takes / room->max) : 1;
 }
 
 /* All corners together [kg]. */
@@ -90,9 +93,10 @@ static double mass_of(const lar_domain *whole, lar_gid e) {
     return 8 * whole->rate[e].mass;
 }
 
-bool lar_heavier_bears(const lar_domain *whole, const lar_heavy_list *list, double room) {
+bool lar_heavier_bears(const lar_domain *whole, const lar_heavy_list *list,
+                       const lar_heavy_room *room) {
     double added = 0;
-    if (!(room > 0) || list->beyond > room) return false;
+    if (list->beyond + room->springs > room->max) return false;
     for (int32_t i = 0; i < list->count; i++) {
         double factor = factor_for(&list->of[i], room);
         if (factor > FACTOR_MAX) return false;
@@ -102,7 +106,8 @@ bool lar_heavier_bears(const lar_domain *whole, const lar_heavy_list *list, doub
 }
 
 /* Where more is held than may be, what fades goes at once. */
-void lar_heavier_settle(const lar_domain *whole, double room, double fading, lar_heavy_list *list) {
+void lar_heavier_settle(const lar_domain *whole, const lar_heavy_room *room, double fading,
+                        lar_heavy_list *list) {
     bool bears = lar_heavier_bears(whole, list, room);
     double wanted[LAR_HEAVIER_MAX], added = 0;
     for (int32_t i = 0; i < list->count; i++) {
@@ -115,10 +120,10 @@ void lar_heavier_settle(const lar_domain *whole, double room, double fading, lar
     for (int32_t i = 0; i < list->count; i++) {
         lar_heavy heavy = list->of[i];
         if (added > whole->burden->most) heavy.held = wanted[i];
-        /* Nearly nothing is nothing, or a quarter would be held for ever. */
+        /* Nearly nothing is nothing, or an eighth would be held for ever. */
         if (heavy.held < NEARLY) heavy.held = 1;
         heavy.factor = stepped(heavy.held);
-        if (heavy.factor > 1 || heavy.lately > whole->burden->least) list->of[kept++] = heavy;
+        if (heavy.factor > 1 || heavy.lately > whole->burden->room) list->of[kept++] = heavy;
     }
     cut(list, kept);
 }
@@ -128,7 +133,7 @@ bool lar_heavier_name(const lar_heavy_list *list, lar_heavy_now *now) {
     for (int32_t i = 0; i < list->count; i++) {
         if (!(list->of[i].factor > 1)) continue;
         made.element[made.count] = list->of[i].element;
-        made.quarters[made.count++] = (uint8_t)(4 * list->of[i].factor);
+        made.eighths[made.count++] = (uint8_t)(8 * list->of[i].factor);
     }
     bool changed = memcmp(&made, now, sizeof made) != 0;
     *now = made;
@@ -138,7 +143,7 @@ bool lar_heavier_name(const lar_heavy_list *list, lar_heavy_now *now) {
 double lar_heavier_added(const lar_domain *whole, const lar_heavy_now *now) {
     double added = 0;
     for (int32_t i = 0; i < now->count; i++)
-        added += (0.25 * now->quarters[i] - 1) * mass_of(whole, now->element[i]);
+        added += (0.125 * now->eighths[i] - 1) * mass_of(whole, now->element[i]);
     return added;
 }
 
@@ -146,7 +151,7 @@ bool lar_heavier_now_good(const lar_domain *whole, const lar_heavy_now *now) {
     bool good = now->count >= 0 && now->count <= LAR_HEAVIER_MAX && now->padding == 0;
     for (int32_t i = 0, last = -1; good && i < now->count; i++) {
         good = now->element[i] > last && now->element[i] < whole->model->mesh.element_count &&
-               now->quarters[i] > 4 && now->quarters[i] <= 4 * FACTOR_MAX;
+               now->eighths[i] > 8 && now->eighths[i] <= 8 * FACTOR_MAX;
         last = now->element[i];
     }
     if (!whole->burden) return good && now->count == 0;
@@ -201,7 +206,7 @@ static void list_nodes(lar_domain *domain, double *more) {
     burden->node_count = 0;
     for (int32_t i = 0; i < burden->now.count; i++) {
         lar_gid e = burden->now.element[i];
-        double own = (0.25 * burden->now.quarters[i] - 1) * domain->rate[e].mass;
+        double own = (0.125 * burden->now.eighths[i] - 1) * domain->rate[e].mass;
         for (int a = 0; a < 8; a++) {
             lar_lid n = domain->layout.local[mesh->element[e][a]];
             int32_t k = 0;
@@ -235,6 +240,6 @@ bool lar_burden_take(lar_domain *domain, const lar_heavy_now *now, lar_state *st
 double lar_burden_factor(const lar_domain *domain, lar_gid e) {
     const lar_burden *burden = domain->burden;
     for (int32_t i = 0; burden && i < burden->now.count; i++)
-        if (burden->now.element[i] == e) return 0.25 * burden->now.quarters[i];
+        if (burden->now.element[i] == e) return 0.125 * burden->now.eighths[i];
     return 1;
 }

@@ -1,7 +1,7 @@
 /* Strained elements that are heavier for a while, in place of steps in parts.
  *
- *     need n of an element, (w dt / 2)^2      dt / p bears it      p^2 as much
- *                                             f times its mass     f as much
+ *     need n of an element, (w dt / 2)^2,     dt / p bears it      p^2 as much
+ *     and of springs at its corners           f times its mass     f as much
  *
  * A few squeezed elements divide the steps of the whole body. Where the scene lets them
  * (mass_scaling: {strained: SHARE}), those that need most move with up to FACTOR_MAX times their
@@ -11,7 +11,7 @@
  *
  * Decided where steps are divided (step/interval.h), from what every processor reports
  * (step/mass/needs.h). A factor rises at once and fades like the memory of what was needed, in
- * quarters, so that it changes seldom. Velocities stay when mass changes, and what that does to the
+ * eighths, so that it changes seldom. Velocities stay when mass changes, and what that does to the
  * kinetic energy is work from outside, to the last joule (docs/theory.md). What has been added
  * moves and has no weight; springs of contact are fitted to masses without it.
  */
@@ -31,12 +31,19 @@ void lar_heavier_harvest(const lar_needs *needs, lar_heavy_list *list);
  * need most stay. */
 void lar_heavier_fade(double fading, lar_heavy_list *list);
 
-/* Whether the elements bear a step, or parts of one, that has room for (omega dt / 2)^2 of `room`,
- * dt undivided, with what they may be heavier. */
-bool lar_heavier_bears(const lar_domain *whole, const lar_heavy_list *list, double room);
+/* What a step, or parts of one, have room for, (omega dt / 2)^2 with dt undivided, and what of it
+ * springs may take that elements of the list have not reported. */
+typedef struct lar_heavy_room {
+    double max, springs;
+} lar_heavy_room;
+
+/* Whether the elements bear that with what they may be heavier. */
+bool lar_heavier_bears(const lar_domain *whole, const lar_heavy_list *list,
+                       const lar_heavy_room *room);
 
 /* They become as heavy as that takes, those that were heavier fade. */
-void lar_heavier_settle(const lar_domain *whole, double room, double fading, lar_heavy_list *list);
+void lar_heavier_settle(const lar_domain *whole, const lar_heavy_room *room, double fading,
+                        lar_heavy_list *list);
 
 /* Who of a list is heavier. True when *now changes. */
 bool lar_heavier_name(const lar_heavy_list *list, lar_heavy_now *now);

@@ -26,21 +26,22 @@ static double *copy_of(const double *from, size_t count) {
     return made;
 }
 
-lar_burden *lar_burden_create(const double *mass, const double *added, size_t nodes, double least) {
+lar_burden *lar_burden_create(const double *mass, const double *added, size_t nodes) {
     lar_burden *burden = lar_calloc(1, sizeof *burden);
     if (!burden) return NULL;
     burden->mass = copy_of(mass, nodes);
     burden->added = copy_of(added, nodes);
-    burden->least = least;
     if (burden->mass && (!added || burden->added)) return burden;
     lar_burden_destroy(burden);
     return NULL;
 }
 
 lar_burden *lar_burden_copy(const lar_burden *from, size_t nodes) {
-    lar_burden *burden = lar_burden_create(from->mass, from->added, nodes, from->least);
+    lar_burden *burden = lar_burden_create(from->mass, from->added, nodes);
     if (!burden) return NULL;
     burden->most = from->most;
+    burden->room = from->room;
+    burden->springs = from->springs;
     burden->now = from->now;
     burden->node_count = from->node_count;
     memcpy(burden->node, from->node, sizeof burden->node);
