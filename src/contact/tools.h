@@ -61,7 +61,7 @@ typedef struct lar_step_division {
     int32_t before;  /* as many until `since` */
     uint64_t since;  /* step */
     double hardness; /* how many times as stiff tools are as at rest, at most parts^2 or, where
-                        elements may be heavier, twice that */
+                        elements may be heavier, four times that */
     double need;   /* of the last interval: (omega dt / 2)^2 of the fastest element, dt undivided */
     double lately; /* the largest `need`, fading */
     uint64_t decided;  /* the step when it was decided last */

@@ -410,7 +410,7 @@ static bool good_parts(int32_t parts) {
 static bool good_division(const lar_step_division *d, const file_head *head) {
     return good_parts(d->parts) && good_parts(d->before) && d->since <= head->step &&
            d->decided <= head->step && d->hardness >= 1 &&
-           d->hardness <= 2.0 * d->parts * d->parts && d->hardness <= LAR_HARDNESS_MAX &&
+           d->hardness <= 4.0 * d->parts * d->parts && d->hardness <= LAR_HARDNESS_MAX &&
            d->need >= 0 && d->lately >= 0 && d->lately <= LAR_NEED_MAX && power_of_two(d->base) &&
            (d->due == 0 || d->due == 1) && d->untouched >= 0;
 }

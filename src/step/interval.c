@@ -98,7 +98,7 @@ static lar_heavy_room room_beside(const lar_tools *tools, const lar_step_room *r
  * need these to be known, which they are once tools have been harder for a step. */
 static bool bears(const lar_domain *whole, const lar_tools *tools, const lar_step_room *room,
                   double hardness, int32_t parts) {
-    static const double HARDER = 2;
+    static const double HARDER = 4;
     const lar_step_division *division = &tools->division;
     const lar_heavy_room beside = room_beside(tools, room, hardness, parts);
     double harder = hardness / (parts * parts);

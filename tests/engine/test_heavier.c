@@ -4,6 +4,7 @@
  * after a checkpoint: test_divided.c, engine/divided_heavier.) */
 #include "engine/engine_test.h"
 #include "engine/tool_contact_test.h"
+#include "engine/tools_test.h"
 #include "step/mass/heavier.h"
 
 #define PATH LAR_TEST_BUILD "/heavier.checkpoint"
@@ -158,6 +159,72 @@ static void what_has_gone_by_leaves_nothing_behind(void **unused) {
     finish(light, plain);
 }
 
+/* ---- tools that are harder ------------------------------------------------------------------ */
+
+enum { PRESS_STEPS = 2000, PRESS_TICK = 10 };
+
+/* A thin rod lies on the block and is pressed into it. */
+static lar_model *under_a_rod(double share) {
+    lar_model *model = brick_model(&block);
+    fix_nodes(model, brick_side(&block, 2, 0), LAR_AXIS_ALL);
+    add_tool(model, "rod", LAR_TOOL_CAPSULE, 0.005, 0.021, 0.043);
+    model->tool[0].radius = 0.0015;
+    model->tool[0].length = 0.05;
+    model->damping = 20;
+    model->strained_share = share;
+    return model;
+}
+
+typedef struct pressing {
+    int harder, whole; /* looks at which the rod was harder than at rest; at undivided steps */
+    double heaviest, missing; /* share of the mass; of the account of energy */
+    uint64_t hash;
+} pressing;
+
+static pressing press_rod(const lar_model *model, const char *grid, int threads) {
+    lar_simulation *simulation = on(model, grid, threads);
+    const lar_step_division *division = &simulation->tools.division;
+    pressing p = {0};
+    while (lar_simulation_steps(simulation) < PRESS_STEPS) {
+        double done = (double)lar_simulation_steps(simulation) / PRESS_STEPS;
+        double way = 0.008 * fmin(1, 2 * done);
+        place_tool(simulation, 0, 0.005, 0.021, 0.043 - way, 1, PRESS_TICK);
+        advance(simulation, PRESS_TICK);
+        p.harder += division->hardness > 1;
+        p.whole += division->hardness > 1 && division->parts == 1;
+    }
+    lar_heavier told;
+    lar_simulation_heavier(simulation, &told);
+    p.heaviest = told.largest_share;
+    lar_energy e;
+    lar_simulation_energy(simulation, &e);
+    double sum = e.kinetic + e.strain + e.hourglass + e.damping + e.contact;
+    p.missing = fabs(sum - e.external) / e.external;
+    p.hash = lar_simulation_hash(simulation);
+    print_message("%s: harder at %d looks, undivided at %d of these; heavier by up to %.3g, %.2g "
+                  "missing\n",
+                  grid ? grid : "alone", p.harder, p.whole, p.heaviest, p.missing);
+    lar_simulation_destroy(simulation);
+    return p;
+}
+
+/* Elements that it presses on bear that with more mass, and the others need no parts of steps. */
+static void a_harder_tool_leaves_steps_whole(void **unused) {
+    (void)unused;
+    static const char *const grids[] = {"1x1x1", "2x1x1", "3x2x1"};
+    lar_model *model = under_a_rod(0);
+    pressing without = press_rod(model, NULL, 0);
+    assert_true(without.harder > 20 && without.whole == 0);
+    lar_model_destroy(model);
+    model = under_a_rod(0.05);
+    pressing with = press_rod(model, NULL, 0);
+    assert_true(with.whole > 20 && with.heaviest > 0 && with.heaviest <= 0.05);
+    assert_below(fmax(with.missing, without.missing), 1e-3);
+    for (int i = 0; i < 3; i++)
+        assert_int_equal(press_rod(model, grids[i], 1 + i % 2).hash, with.hash);
+    lar_model_destroy(model);
+}
+
 /* ---- what becomes slower -------------------------------------------------------------------- */
 
 /* A held bar that swings while its free end is drawn wide (pressed by dead forces it would buckle):
@@ -261,6 +328,7 @@ int main(void) {
         cmocka_unit_test(who_looked_does_not_matter),
         cmocka_unit_test(every_joule_is_accounted_for),
         cmocka_unit_test(what_has_gone_by_leaves_nothing_behind),
+        cmocka_unit_test(a_harder_tool_leaves_steps_whole),
         cmocka_unit_test(a_strained_end_swings_no_slower_than_told),
         cmocka_unit_test(what_cannot_be_is_refused),
     };
