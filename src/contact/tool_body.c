@@ -254,12 +254,12 @@ typedef enum hardness_change { FADES, YIELDS, STAYS, HARDENS } hardness_change;
 
 /* Tissue that is deep in a tool, although the tool presses no harder than it may, makes tools
  * harder. One that presses too hard gives way instead, and presses softer until it does not; but
- * not where its middle line is soon no longer outside. */
+ * not where tissue is deep already, which comes deeper by that faster than a tool hardens. */
 static hardness_change change_for(double depth, double load) {
-    static const double SOFT = 0.3, HARD = 0.15, DANGER = 0.65; /* radii */
-    static const double HEAVY = 3;                              /* limits */
+    static const double SOFT = 0.3, HARD = 0.15, NEAR = 0.4, DANGER = 0.65; /* radii */
+    static const double HEAVY = 3;                                          /* limits */
     if (depth > DANGER) return HARDENS;
-    if (load > HEAVY) return YIELDS;
+    if (load > HEAVY && depth < NEAR) return YIELDS;
     if (depth > SOFT) return load > 1 ? STAYS : HARDENS;
     return depth < HARD ? FADES : STAYS;
 }
