@@ -441,10 +441,10 @@ typedef struct lar_meshing_options {
     void *context;
     const char *fibres; /* along what fibres run, by a rule as scenes have it, for example "axis:
                            [0, 0, 1]"; NULL: there are none */
-    const char *fibre_region; /* the name of the region that has them; NULL: all but bones */
+    const char *fibre_region;   /* the name of the region that has them; NULL: all but bones */
     const char *const *tissues; /* tissue files for the starter scene in place of the table's
-                                   figures: FILE for all regions but bones, or REGION=FILE; NULL:
-                                   none */
+                                   figures: REGION=FILE, or FILE for all regions but bones (=FILE
+                                   where its name has a "="); the later one counts; NULL: none */
     int32_t tissue_count;
 } lar_meshing_options;
 

@@ -13,10 +13,10 @@ enum { LABELS_MAX = 256, GIVEN_MAX = 255 };
 
 typedef struct request {
     lar_meshing_options options;
-    PyObject *source, *triangles, *affine, *label, *names, *fix, *progress;
+    PyObject *source, *triangles, *affine, *label, *names, *tissue, *progress;
     PyObject *kept; /* list: what texts below belong to */
     int32_t count;
-    const char *path[GIVEN_MAX], *word[LABELS_MAX];
+    const char *path[GIVEN_MAX], *word[LABELS_MAX], *entry[GIVEN_MAX];
     /* of surfaces */
     lar_surface_arrays surface[GIVEN_MAX];
     python_rows vertex[GIVEN_MAX], triangle[GIVEN_MAX];
@@ -80,6 +80,44 @@ static bool take_labels(request *r) {
     for (Py_ssize_t i = 0; ok && i < PyTuple_Size(list); i++)
         ok = take_label(r, PyTuple_GetItem(list, i));
     Py_XDECREF(list);
+    return ok;
+}
+
+/* ---- tissue files --------------------------------------------------------------------------- */
+
+/* "REGION=FILE"; None: of all but bones, "=FILE". */
+static bool take_tissue(request *r, PyObject *region, PyObject *file) {
+    const char *name = "";
+    if (r->options.tissue_count == GIVEN_MAX)
+        return python_refuse("tissue: at most %d files", GIVEN_MAX);
+    if (region != Py_None && !PyUnicode_Check(region))
+        return python_refuse_type("tissue: expected names of regions (None: all but bones), got %R",
+                                  region);
+    if (region != Py_None && !(name = keep_text(r, Py_NewRef(region), "tissue"))) return false;
+    if (region != Py_None && (!*name || strchr(name, '=')))
+        return python_refuse("tissue: a region that is called %R cannot be asked for; give it a "
+                             "name without \"=\" (None: all regions but bones)",
+                             region);
+    PyObject *path = python_path(file, "tissue");
+    PyObject *entry = path ? PyBytes_FromFormat("%s=%s", name, PyBytes_AsString(path)) : NULL;
+    Py_XDECREF(path);
+    return (r->entry[r->options.tissue_count++] = keep_text(r, entry, "tissue")) != NULL;
+}
+
+static bool take_tissues(request *r) {
+    r->options.tissues = r->entry;
+    if (r->tissue == Py_None) return true;
+    if (is_path(r->tissue)) return take_tissue(r, Py_None, r->tissue);
+    if (!PyDict_Check(r->tissue))
+        return python_refuse_type("tissue: expected a path or a dict of regions to paths, got %R",
+                                  (PyObject *)Py_TYPE(r->tissue));
+    PyObject *items = PyDict_Items(r->tissue); /* a copy: finding a path may run any code */
+    bool ok = items != NULL;
+    for (Py_ssize_t i = 0; ok && i < PyList_Size(items); i++) {
+        PyObject *item = PyList_GetItem(items, i);
+        ok = take_tissue(r, PyTuple_GetItem(item, 0), PyTuple_GetItem(item, 1));
+    }
+    Py_XDECREF(items);
     return ok;
 }
 
@@ -375,18 +413,18 @@ static bool take_source(request *r) {
 }
 
 static bool parse(PyObject *args, PyObject *keywords, request *r) {
-    static char *names[] = {"source", "triangles", "affine", "label",     "names", "elements",
-                            "size",   "scale",     "fuse",   "principal", "voxel", "fix",
-                            "title",  "progress",  "fibres", "fibres_in", NULL};
+    static char *names[] = {"source", "triangles", "affine", "label",     "names",  "elements",
+                            "size",   "scale",     "fuse",   "principal", "voxel",  "fix",
+                            "title",  "progress",  "fibres", "fibres_in", "tissue", NULL};
     lar_meshing_options *o = &r->options;
     int elements = 0;
-    r->triangles = r->affine = r->label = r->names = r->progress = Py_None;
+    r->triangles = r->affine = r->label = r->names = r->tissue = r->progress = Py_None;
     r->kept = PyList_New(0);
-    if (!r->kept ||
-        !PyArg_ParseTupleAndKeywords(
-            args, keywords, "O|O$OOOiddpppzzOzz:mesh", names, &r->source, &r->triangles, &r->affine,
-            &r->label, &r->names, &elements, &o->size, &o->scale, &o->fuse, &o->principal,
-            &o->voxel, &o->fix, &o->title, &r->progress, &o->fibres, &o->fibre_region))
+    if (!r->kept || !PyArg_ParseTupleAndKeywords(
+                        args, keywords, "O|O$OOOiddpppzzOzzO:mesh", names, &r->source,
+                        &r->triangles, &r->affine, &r->label, &r->names, &elements, &o->size,
+                        &o->scale, &o->fuse, &o->principal, &o->voxel, &o->fix, &o->title,
+                        &r->progress, &o->fibres, &o->fibre_region, &r->tissue))
         return false;
     o->elements = elements;
     if (r->progress != Py_None && !PyCallable_Check(r->progress))
@@ -395,7 +433,7 @@ static bool parse(PyObject *args, PyObject *keywords, request *r) {
     if (isnan(o->size) || isnan(o->scale) || o->scale < 0 || isinf(o->scale))
         return python_refuse("size, scale: expected positive numbers, in metres and metres per "
                              "unit");
-    return take_labels(r) && take_source(r);
+    return take_labels(r) && take_tissues(r) && take_source(r);
 }
 
 PyObject *python_mesh(PyObject *module, PyObject *args, PyObject *keywords) {

@@ -196,7 +196,8 @@ static PyGetSetDef meshing_properties[] = {
      NULL},
     {"regions", get_regions, NULL,
      "list of dicts: name, tag, elements, volume and true_volume [m^3], tissue and source of the "
-     "scene's material, its moduli [Pa] and density [kg/m^3], held (bone).",
+     "scene's material (a paper, or its tissue file), its moduli [Pa] and density [kg/m^3], held "
+     "(bone).",
      NULL},
     {NULL, NULL, NULL, NULL, NULL}};
 

@@ -49,6 +49,7 @@ def mesh(
     progress: Union[Callable[[str, float], object], None] = None,
     fibres: Union[str, None] = None,
     fibres_in: Union[str, None] = None,
+    tissue: Union[_Path, Mapping[Union[str, None], _Path], None] = None,
 ) -> Meshing: ...
 
 class Answer:

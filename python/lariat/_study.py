@@ -73,7 +73,7 @@ class Parameter(Answer):
     profiled = _Field("bool: the interval is by its profile, not by the curvature alone.")
     sensitivity = _Field("float: by how many times the noise the data change when it grows e times.")
     correlation = _Field("array of float64 [parameters]: with each of the fit, in their order.")
-    tissue = _Field("str: path of its material's tissue file, for scenes; None without `out`.")
+    tissue = _Field("str: path of its material's tissue file, for scenes and lariat.mesh; None without `out`.")
 
     def __init__(self, fields):
         super().__init__(fields)

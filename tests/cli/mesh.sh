@@ -77,6 +77,10 @@ expect 0 "$LARIAT" mesh two.nrrd --label liver --label 7 --elements 300 --title 
     grep -q '# Fitted, 95 % between 690 and 710' both/both.yaml || fail "the tissue is not in the scene"
 expect 0 "$LARIAT" info both/both.yaml --no-speed --json
 [ "$(value_of materials.1.shear_modulus)" = 700 ] || fail "$(value_of materials.1.shear_modulus) Pa"
+# A file whose own name has a "=", for all regions.
+cp gel.tissue.yaml a=gel.yaml
+expect 0 "$LARIAT" mesh two.nrrd --label liver --elements 100 --title equals --tissue =a=gel.yaml --json
+[ "$(value_of regions.0.source)" = '"a=gel.yaml"' ] || fail "not a=gel.yaml: $(value_of regions.0.source)"
 printf 'lariat-tissue: 1\nlaw: neo-hookean\ndensity: 1000\nshear_modulus: 700\nbulk_modulus: 7000\nfibres:\n  law: exp-pow\n  part: isochoric\n  ksi: 500\n  alpha: 1\n  beta: 2\n' >fibrous.yaml
 expect 0 "$LARIAT" mesh two.nrrd --label liver --label 7 --elements 300 --title one \
     --tissue 'left kidney=fibrous.yaml' --fibres 'axis: [0, 0, 1]' --fibres-in 'left kidney'

@@ -3,7 +3,9 @@
 import array
 import math
 import os
+import pathlib
 import pickle
+import subprocess
 import tempfile
 import threading
 import unittest
@@ -12,6 +14,7 @@ import warnings
 import lariat
 from common import WITHOUT_NUMPY, child, numpy
 
+LARIAT = os.environ.get("LARIAT_COMMAND")
 SIZE, VOXEL = 22, 0.002
 AFFINE = [[VOXEL, 0, 0, -0.02], [0, VOXEL, 0, -0.02], [0, 0, VOXEL, -0.02], [0, 0, 0, 1]]
 
@@ -227,6 +230,99 @@ class Surfaces(unittest.TestCase):
                 lariat.mesh(vertices, triangles, **options)
         with self.assertRaises(TypeError):
             lariat.Meshing()
+
+
+def write_tissue(folder, name, shear, law="neo-hookean", more=""):
+    """A tissue file with a comment; its path."""
+    path = os.path.join(folder, name)
+    with open(path, "w", encoding="utf-8") as file:
+        file.write(f"# Measured on a day in May.\nlariat-tissue: 1\nlaw: {law}\ndensity: 1000\n"
+                   f"shear_modulus: {shear}\nbulk_modulus: {10 * shear}\n{more}")
+    return path
+
+
+class Tissues(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = folder.name
+
+    def in_folder(self, name):
+        return os.path.join(self.folder, name)
+
+    def moduli(self, *source, **options):
+        meshing = lariat.mesh(*source, elements=200, **options)
+        return {r["name"]: r["shear_modulus"] for r in meshing.regions}
+
+    @unittest.skipUnless(LARIAT, "LARIAT_COMMAND does not say where the command is")
+    def test_files_are_those_of_the_command(self):
+        write_nrrd(self.in_folder("ball.nrrd"), ball_labels())
+        with open(self.in_folder("names.csv"), "w", encoding="utf-8") as file:
+            file.write("3,liver\n7,left kidney\n")
+        soft, stiff = write_tissue(self.folder, "soft.yaml", 500), write_tissue(
+            self.folder, "stiff.yaml", 900, more="fibres:\n  law: exp-pow\n  part: isochoric\n"
+            "  ksi: 500\n  alpha: 1\n  beta: 2\n")
+        subprocess.run(
+            [LARIAT, "mesh", self.in_folder("ball.nrrd"), "--names", self.in_folder("names.csv"),
+             "--elements", "300", "--title", "ball", "--out", self.in_folder("command"),
+             "--fibres", "axis: [0, 0, 1]", "--fibres-in", "left kidney",
+             "--tissue", soft, "--tissue", "left kidney=" + stiff],
+            check=True, stdout=subprocess.DEVNULL)
+        meshing = lariat.mesh(
+            self.in_folder("ball.nrrd"), names=self.in_folder("names.csv"), elements=300,
+            title="ball", fibres="axis: [0, 0, 1]", fibres_in="left kidney",
+            tissue={None: pathlib.Path(soft), "left kidney": stiff.encode()})
+        os.rename(soft, soft + ".gone")  # read once, while the mesh is made
+        meshing.write(self.in_folder("module"))
+        for name in ("ball.yaml", "ball.vtu", "ball_surface.vtp"):
+            with open(self.in_folder("command/" + name), "rb") as one, \
+                    open(self.in_folder("module/" + name), "rb") as other:
+                self.assertEqual(one.read(), other.read(), name)
+        self.assertIn("shear_modulus: 900", meshing.scene)
+        self.assertEqual(meshing.scene.count("# Measured on a day in May."), 2)
+        self.assertEqual([(r["shear_modulus"], r["bulk_modulus"], r["source"])
+                          for r in meshing.regions], [(500, 5000, soft), (900, 9000, stiff)])
+        self.assertEqual(moved(meshing.model()),
+                         moved(lariat.Model(self.in_folder("command/ball.yaml"))))
+
+    def test_of_which_regions(self):
+        one, two = (write_tissue(self.folder, name, shear)
+                    for name, shear in (("a=b.yaml", 500), ("two.yaml", 900)))
+        both = {"liver": ball_surface(), "rib": ball_surface(0.01)}
+        literature = self.moduli(both)
+        self.assertEqual(self.moduli(both, tissue=one), {**literature, "liver": 500})
+        self.assertEqual(self.moduli(both, tissue={"rib": two}), {**literature, "rib": 900})
+        self.assertEqual(self.moduli(both, tissue={"liver": two, None: one, "rib": two}),
+                         {"liver": 500, "rib": 900})
+        self.assertEqual(self.moduli(both, tissue={}), literature)
+        labels = {"affine": AFFINE, "fix": "bottom"}
+        self.assertEqual(self.moduli(ball_labels(), tissue={"label_3": one, "label_7": two},
+                                     **labels), {"label_3": 500, "label_7": 900})
+
+    def test_what_is_none_is_refused(self):
+        soft, slip = write_tissue(self.folder, "soft.yaml", 500), write_tissue(
+            self.folder, "slip.yaml", 500, law="neo-hokean")
+        fibrous = write_tissue(self.folder, "fibrous.yaml", 500, more="fibres: { law: exp-pow, "
+                               "part: isochoric, ksi: 500, alpha: 1, beta: 2 }\n")
+        fault = (ValueError, TypeError, OSError)
+        for words, tissue in {
+            r"no\.yaml: cannot be opened": self.in_folder("no.yaml"),
+            r"slip\.yaml:3:6: the law \"neo-hokean\" is unknown": slip,
+            r"fibrous\.yaml: it has fibres; say along what they run in liver": fibrous,
+            "for \"kidney\", but the regions are liver; name one": {"kidney": soft},
+            "expected a path or a dict of regions to paths, got <class 'list'>": [soft],
+            "tissue: expected a path, got <class 'NoneType'>": {"liver": None},
+            "tissue: expected names of regions .*, got 3": {3: soft},
+            "a region that is called 'a=b' cannot": {"a=b": soft},
+            "a region that is called '' cannot": {"": soft},
+            "null": {"liver": soft + "\0"},
+            "character 0|null": {"li\0ver": soft},
+            "at most 255": {str(number): soft for number in range(256)},
+        }.items():
+            with self.subTest(words), self.assertRaisesRegex(fault, words):
+                lariat.mesh(*ball_surface(), elements=200, title="liver", tissue=tissue)
+        with self.assertRaises(lariat.FileError):
+            lariat.mesh(*ball_surface(), elements=200, tissue=self.in_folder("no.yaml"))
 
 
 class Units(unittest.TestCase):

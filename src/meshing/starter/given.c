@@ -75,8 +75,8 @@ lar_status lar_starter_take_tissues(lar_meshing *m, const lar_meshing_options *o
     if (!m->given) return lar_fail_memory(error, sizeof *m->given, "tissues");
     for (int32_t i = 0; i < options->tissue_count && !status; i++) {
         const char *entry = options->tissues[i], *equals = strchr(entry, '=');
-        status = take(m, equals ? entry : NULL, equals ? (size_t)(equals - entry) : 0,
-                      equals ? equals + 1 : entry, error);
+        status = take(m, equals && equals > entry ? entry : NULL,
+                      equals ? (size_t)(equals - entry) : 0, equals ? equals + 1 : entry, error);
     }
     return status;
 }
