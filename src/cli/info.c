@@ -1,20 +1,6 @@
 /* lariat info: what a model holds, before it is run. */
-#include <math.h>
-
 #include "cli/commands.h"
 #include "cli/report/info.h"
-
-/* Organs are not ten metres long: a mesh in millimetres is the commonest slip. */
-static void doubt_scale(const lar_model_info *info) {
-    static const double LARGE = 10;
-    double size = 0;
-    for (int i = 0; i < 3; i++) size = fmax(size, info->upper[i] - info->lower[i]);
-    if (size > LARGE)
-        cli_complain(&cli_info, CLI_DONE,
-                     "note: the model is %.4g m long; if the mesh is in millimetres, read it "
-                     "through a scene with scale: 0.001",
-                     size);
-}
 
 static int inspect(info_report *report, const char *against, double scale) {
     lar_error error;
@@ -51,7 +37,7 @@ static int info_main(int argc, char **argv) {
     status = inspect(&report, against, scale > 0 ? scale : 1);
     if (!status && json) info_report_json(&report);
     if (!status && !json) info_report_table(&report);
-    if (!status) doubt_scale(&report.info);
+    if (!status) cli_doubt_units(&cli_info, &report.info);
     lar_model_destroy(model);
     return status;
 }

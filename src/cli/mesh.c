@@ -262,8 +262,10 @@ static int mesh(const mesh_settings *s) {
     cli_catch_stop();
     lar_status failed =
         s->real_time ? make_real_time(&m, &meshing, &error) : make(&m, 0, &meshing, &error);
-    if (failed && cli_stop_asked)
+    if (cli_stop_asked) {
+        if (!failed) lar_meshing_destroy(meshing);
         return cli_complain(&cli_mesh, CLI_INTERRUPTED, "interrupted; nothing is written");
+    }
     if (failed) {
         cli_complain(&cli_mesh, CLI_FAILED, "%s", error.message);
         show_what_there_is(s);

@@ -1,3 +1,4 @@
+#include <math.h>
 
 #include "cli/commands.h"
 
@@ -33,4 +34,20 @@ int cli_open_model(const cli_command *command, const char *path, lar_model **mod
     for (int32_t i = 0; cli_speaker() == 0 && i < lar_model_notice_count(*model); i++)
         cli_complain(command, CLI_DONE, "note: %s", lar_model_notice_text(*model, i));
     return CLI_DONE;
+}
+
+/* A mesh in millimetres is the commonest slip, and one that is scaled twice the next. */
+void cli_doubt_units(const cli_command *command, const lar_model_info *info) {
+    static const double LARGE = 10, SMALL = 1e-3; /* [m] */
+    double size = 0;
+    for (int i = 0; i < 3; i++) size = fmax(size, info->upper[i] - info->lower[i]);
+    if (size > LARGE)
+        cli_complain(command, CLI_DONE,
+                     "note: the model is %.4g m long; if the mesh is in millimetres, read it "
+                     "through a scene with scale: 0.001",
+                     size);
+    if (size < SMALL)
+        cli_complain(command, CLI_DONE,
+                     "note: the model is %.4g mm long; lengths are metres: was it scaled twice?",
+                     1e3 * size);
 }

@@ -391,6 +391,7 @@ static void tell_of_earlier_state(const run *r, int status) {
 
 static int compute(run *r) {
     lar_error error;
+    cli_doubt_units(&cli_run, &r->info);
     if (r->settings.resume && lar_simulation_load(r->simulation, r->settings.resume, &error))
         return fail_by(r, &error);
     lar_simulation_energy(r->simulation, &r->began);

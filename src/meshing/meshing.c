@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/parallel_for.h"
+#include "base/thread.h"
 #include "meshing/fine_surface.h"
 #include "meshing/fit/fit.h"
 #include "meshing/grid/voxel_grid_check.h"
@@ -382,12 +382,36 @@ typedef struct judging {
     lar_error error[2];
 } judging;
 
-static void judge(void *context, int32_t first, int32_t end) {
+static void *measure_beside(void *context) {
     judging *both = context;
-    const work *w = both->work;
-    for (int32_t i = first; i < end; i++)
-        both->status[i] = i == 0 ? lar_support_choose(w->meshing, w->options.fix, &both->error[i])
-                                 : measure(w, &both->error[i]);
+    both->status[1] = measure(both->work, &both->error[1]);
+    return NULL;
+}
+
+static bool measuring_goes_on(void *context) {
+    return tell(context, "measuring", 0) == LAR_OK;
+}
+
+/* The support on this thread, which may ask whether to go on. */
+static lar_status judge(work *w) {
+    lar_meshing *m = w->meshing;
+    judging both = {.work = w};
+    lar_thread thread;
+    bool beside = !lar_thread_start(&thread, measure_beside, &both);
+    m->goes_on = measuring_goes_on;
+    m->asker = w;
+    both.status[0] = lar_support_choose(m, w->options.fix, &both.error[0]);
+    m->goes_on = NULL;
+    if (beside)
+        lar_thread_join(&thread);
+    else if (!both.status[0])
+        measure_beside(&both);
+    for (int i = 0; i < 2; i++) {
+        if (!both.status[i]) continue;
+        *w->error = both.error[i];
+        return both.status[i];
+    }
+    return tell(w, "measuring", 1);
 }
 
 static lar_status lay_fibres(work *w) {
@@ -415,12 +439,7 @@ static lar_status describe(work *w) {
     if (!m->region) return lar_fail_memory(w->error, sizeof *m->region, "regions");
     count_regions(m);
     lar_status status = tell(w, "measuring", 0);
-    judging both = {.work = w};
-    if (!status) lar_parallel_for(2, 1, judge, &both);
-    for (int i = 0; !status && i < 2; i++) {
-        status = both.status[i];
-        if (status) *w->error = both.error[i];
-    }
+    if (!status) status = judge(w);
     if (!status) status = check_volume(w);
     if (!status && w->options.fibres) status = lay_fibres(w);
     if (!status) status = lar_starter_check_tissues(m, w->error);

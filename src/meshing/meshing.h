@@ -56,6 +56,9 @@ struct lar_meshing {
     lar_region_info *region;  /* [info.regions] */
     lar_given_tissue *given;  /* [info.regions] */
     lar_meshing_info info;
+    bool (*goes_on)(void *asker); /* while it is made: asked where that takes long, by the thread
+                                     that makes it; NULL: it does */
+    void *asker;
     char *scene;        /* path, once written */
     char *text;         /* of the scene for memory, once asked for */
     lar_array_set *set; /* [mesh.set_count] the mesh's sets as the public header has them */

@@ -43,6 +43,8 @@ typedef struct lar_elastic {
     int32_t node_count, element_count;
     lar_elastic_element *element;
     bool *still; /* [nodes] held, or of nothing elastic */
+    bool (*goes_on)(void *asker); /* asked in every step of solving; NULL: it does */
+    void *asker;
 } lar_elastic;
 
 /* material: [elements]; held: [nodes]. What hangs together with nothing that is held is left out:

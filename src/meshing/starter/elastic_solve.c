@@ -112,6 +112,8 @@ lar_status lar_elastic_solve(const lar_elastic *elastic, const lar_load_vectors 
         double *gain = s.gain[steps % STEPS_LAST];
         step(&s, u, gain);
         LAR_EACH_LOAD work[l] += gain[l];
+        if (elastic->goes_on && !elastic->goes_on(elastic->asker))
+            status = lar_fail(error, LAR_ERROR_ARGUMENT, "stopped as asked, while measuring");
     }
     end(&s);
     return status;

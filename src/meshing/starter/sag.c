@@ -49,6 +49,8 @@ static lar_status prepare(solution *s, const lar_meshing *m, const bool *held, l
     if (!status) {
         weigh(m, material, s->mass);
         status = lar_elastic_create(&m->mesh, material, held, &s->elastic, error);
+        s->elastic.goes_on = m->goes_on;
+        s->elastic.asker = m->asker;
     }
     free(material);
     return status;
