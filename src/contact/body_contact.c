@@ -189,17 +189,28 @@ typedef struct contact_point {
     double mass;               /* [kg] */
 } contact_point;
 
-/* The point of t->count faces with the weights of t. */
+/* A face whose corners have been looked up. */
+typedef struct known_face {
+    int32_t face;
+    double x[4][3], v[4][3]; /* [m], [m/s] */
+} known_face;
+
+/* The point of t->count faces with the weights of t; one of them may be known. */
 static void point_of(const lar_body_contact *contact, const lar_state *state, const touching *t,
-                     contact_point *point) {
+                     const known_face *known, contact_point *point) {
     double compliance = 0;
     *point = (contact_point){0};
     for (int32_t f = 0; f < t->count; f++) {
         const int32_t *corner = contact->surface->face[t->face[f]].corner;
-        double x[4][3], v[4][3], at[3], velocity[3];
-        lar_contact_corners(contact, state, t->face[f], x, v);
-        lar_face_mean((const double(*)[3])x, t->weight[f], at);
-        lar_face_mean((const double(*)[3])v, t->weight[f], velocity);
+        const known_face *of = known;
+        known_face other;
+        double at[3], velocity[3];
+        if (t->face[f] != known->face) {
+            lar_contact_corners(contact, state, t->face[f], other.x, other.v);
+            of = &other;
+        }
+        lar_face_mean((const double(*)[3])of->x, t->weight[f], at);
+        lar_face_mean((const double(*)[3])of->v, t->weight[f], velocity);
         for (int i = 0; i < 3; i++) {
             point->at[i] += at[i];
             point->velocity[i] += velocity[i];
@@ -316,12 +327,11 @@ static double within_force(double max, const double force[5][3]) {
 
 /* Towards sharp edges springs fade, and the slope of what they store is a force of its own. `depth`
  * is how far the spring is pressed in. */
-static double fade(const lar_body_contact *contact, const lar_state *state, const double x[3],
-                   int32_t face, const lar_face_point *closest, double full, double mass,
-                   double depth, double rate, touching *t) {
-    const lar_contact_face *f = &contact->surface->face[face];
-    double corner[4][3], value[5], slope[5][3], stored;
-    lar_contact_corners(contact, state, face, corner, NULL);
+static double fade(const lar_body_contact *contact, const double x[3], const known_face *known,
+                   const lar_face_point *closest, double full, double mass, double depth,
+                   double rate, touching *t) {
+    const lar_contact_face *f = &contact->surface->face[known->face];
+    double value[5], slope[5][3], stored;
     for (int a = 0; a < 4; a++) value[a] = contact->surface->node[f->corner[a]].blunt;
     value[4] = 1;
     double part = lar_face_value(closest, value), steep = 6 * part * (1 - part);
@@ -329,11 +339,11 @@ static double fade(const lar_body_contact *contact, const lar_state *state, cons
     double all = lar_contact_force(&contact->law, mass, depth, rate);
     double late = late_force(&contact->law, mass, full, depth, rate, &stored);
     double more = (0.5 * all * depth - stored) * steep;
-    lar_face_slope(x, (const double(*)[3])corner, closest, value, slope);
+    lar_face_slope(x, (const double(*)[3])known->x, closest, value, slope);
     for (int a = 0; a < 5; a++)
         for (int i = 0; i < 3; i++) slope[a][i] *= -more;
     double within = within_force(fmax(all, late), (const double(*)[3])slope);
-    t->fading = face;
+    t->fading = known->face;
     for (int a = 0; a < 4; a++)
         for (int i = 0; i < 3; i++) t->fade[a][i] = within * slope[a][i];
     return part * all + (1 - part) * late;
@@ -346,18 +356,19 @@ static bool push(lar_body_contact *contact, const lar_state *state, int32_t g, i
     const lar_contact_surface *surface = contact->surface;
     const lar_contact_face *f = &surface->face[face];
     int32_t node = contact->list.group[g].node;
-    double x[3], v[3], corner[4][3], speed[4][3], way[3], rate = 0;
+    double x[3], v[3], way[3], rate = 0;
     contact_point point;
+    known_face known = {.face = face};
     lar_contact_place(contact, state, node, x, v);
-    lar_contact_corners(contact, state, face, corner, contact->friction ? speed : NULL);
+    lar_contact_corners(contact, state, face, known.x, known.v);
     *t = (touching){.count = 1, .face = {face}, .fading = -1};
     memcpy(t->weight[0], closest->weight, sizeof closest->weight);
     bool before = !(closest->height < 0);
     if (before && lar_contact_active(&surface->node[node], f))
         blend(contact, state, g, x, closest, s, t);
-    point_of(contact, state, t, &point);
+    point_of(contact, state, t, &known, &point);
     double depth = outward(x, &point, before ? -1 : 1, LAR_FACE_TIE * f->size,
-                           (const double(*)[3])corner, way);
+                           (const double(*)[3])known.x, way);
     /* Without a length there is no direction. */
     if (isnan(depth)) return false;
     double together = push_together(t, LAR_FACE_TIE * f->size, &depth);
@@ -370,7 +381,7 @@ static bool push(lar_body_contact *contact, const lar_state *state, int32_t g, i
     double from = standoff - offset;
     moved *= softness(contact, standoff);
     double force = f->fades && !same_body(contact, node, face)
-                       ? fade(contact, state, x, face, closest, full_of(contact, node, face), moved,
+                       ? fade(contact, x, &known, closest, full_of(contact, node, face), moved,
                               depth + from, rate, t)
                        : lar_contact_force(&contact->law, moved, depth + from, rate);
     t->depth = fmax(depth, 0);
@@ -379,8 +390,16 @@ static bool push(lar_body_contact *contact, const lar_state *state, int32_t g, i
         for (int a = 0; a < 4; a++) t->fade[a][i] *= together;
     }
     if (!contact->friction) return true;
-    const lar_rub rub = {node, face, x, v, way, corner, speed, closest->weight, together * force,
-                         moved};
+    const lar_rub rub = {.node = node,
+                         .face = face,
+                         .x = x,
+                         .v = v,
+                         .way = way,
+                         .corner = (const double(*)[3])known.x,
+                         .speed = (const double(*)[3])known.v,
+                         .weight = closest->weight,
+                         .press = together * force,
+                         .mass = moved};
     if (!lar_body_friction_rub(contact, state, &rub, t->fade)) return true;
     t->rubs = t->fading < 0 && t->count == 1 && t->face[0] == face;
     if (!t->rubs) t->fading = face;

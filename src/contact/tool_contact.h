@@ -204,10 +204,12 @@ static inline void lar_tool_sum_add(lar_tool_sum *sum, int32_t shares, const dou
     }
     for (int i = 0; i < 3; i++) {
         int j = (i + 1) % 3, k = (i + 2) % 3;
-        double torque = -(arm[j] * units[k] - arm[k] * units[j]), whole = floor(torque);
+        double torque = -(arm[j] * units[k] - arm[k] * units[j]);
         if (!(fabs(torque) < 0x1p56)) continue; /* an arm beyond all places */
-        sum->torque[i] += shares * llrint(whole);
-        sum->rest[i] += shares * llrint((torque - whole) / LAR_TORQUE_REST);
+        int64_t whole = (int64_t)torque;
+        whole -= (double)whole > torque; /* floor() without a call */
+        sum->torque[i] += shares * whole;
+        sum->rest[i] += shares * llrint((torque - (double)whole) / LAR_TORQUE_REST);
     }
 }
 /* The pose now, or `ahead` parts of a step later. `time_step`: of a whole step. */

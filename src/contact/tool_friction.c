@@ -16,18 +16,18 @@ bool lar_tool_friction_any(const lar_tool_list *list) {
 }
 
 /* By local node: the surface node of the model that may rub, -1: none. */
-static void find_nodes(const lar_model *model, const int32_t *local,
-                       const lar_condition_share *share, int32_t *node) {
+LAR_SETUP static void find_nodes(const lar_model *model, const int32_t *local,
+                                 const lar_condition_share *share, int32_t *node) {
     for (int32_t i = 0; i < 4 * model->surface.face_count; i++) {
         int32_t n = model->surface.corner[i / 4][i % 4];
         if (local[n] >= 0 && (!share || share->holds[n] == share->thread)) node[local[n]] = n;
     }
 }
 
-lar_status lar_tool_friction_list(const lar_model *model, const int32_t *local,
-                                  const lar_condition_share *share,
-                                  const lar_conditions *conditions, lar_tool_faces *faces,
-                                  lar_error *error) {
+LAR_SETUP lar_status lar_tool_friction_list(const lar_model *model, const int32_t *local,
+                                            const lar_condition_share *share,
+                                            const lar_conditions *conditions, lar_tool_faces *faces,
+                                            lar_error *error) {
     for (int32_t n = 0; n < model->mesh.node_count; n++)
         if (local[n] >= faces->local_count) faces->local_count = local[n] + 1;
     size_t nodes = (size_t)model->surface.node_count, all = (size_t)faces->local_count;
@@ -55,7 +55,7 @@ lar_status lar_tool_friction_list(const lar_model *model, const int32_t *local,
     return status;
 }
 
-lar_status lar_tool_friction_create(lar_tool_contact *contact, lar_error *error) {
+LAR_SETUP lar_status lar_tool_friction_create(lar_tool_contact *contact, lar_error *error) {
     if (!lar_tool_friction_any(contact->list)) return LAR_OK;
     size_t values = 3 * (size_t)contact->faces->local_count;
     size_t nodes = (size_t)contact->faces->rub_count;
@@ -97,11 +97,13 @@ void lar_tool_friction_press(lar_tool_contact *contact, const lar_condition_cont
 /* A tool with friction in the step under way. */
 typedef struct rough_tool {
     int32_t tool;
+    double radius;
     lar_tool_pose now, next;
     lar_tool_body body;
     bool turns;
     double speed[3];   /* of the tip [m/s] */
     double turn[3][3]; /* from the way from the tip to a point: what its speed is more [1/s] */
+    lar_tool_sum felt; /* as of one share of a step: the sums of many take 128 bits */
 } rough_tool;
 
 /* How fast what is fixed to the tool goes: as fast as takes it to its next place. */
@@ -125,6 +127,8 @@ static int32_t place_tools(const lar_tool_contact *contact, const lar_condition_
         rough_tool *r = &rough[count++];
         const lar_tool_motion *motion = &contact->tools->motion[t];
         r->tool = t;
+        r->radius = tool->radius;
+        r->felt = (lar_tool_sum){0};
         lar_tool_pose_now(motion, state, 0, context->whole_step, &r->now);
         lar_tool_pose_now(motion, state, 1, context->whole_step, &r->next);
         lar_tool_place(tool, &r->now, &r->body, r->body.now);
@@ -134,13 +138,11 @@ static int32_t place_tools(const lar_tool_contact *contact, const lar_condition_
     return count;
 }
 
-static const rough_tool *nearest(const lar_tool_contact *contact, const rough_tool *rough,
-                                 int32_t count, const double x[3]) {
-    const rough_tool *found = rough;
+static rough_tool *nearest(rough_tool *rough, int32_t count, const double x[3]) {
+    rough_tool *found = rough;
     double min = INFINITY;
     for (int32_t i = 0; i < count && count > 1; i++) {
-        double radius = contact->list->tool[rough[i].tool].radius;
-        double distance = lar_tool_contact_distance(&rough[i].body, radius, x);
+        double distance = lar_tool_contact_distance(&rough[i].body, rough[i].radius, x);
         if (!(distance < min)) continue;
         min = distance;
         found = &rough[i];
@@ -148,7 +150,8 @@ static const rough_tool *nearest(const lar_tool_contact *contact, const rough_to
     return found;
 }
 
-static void rigid_velocity(const rough_tool *tool, const double x[3], double velocity[3]) {
+/* Velocity at x of what is fixed to the tool. */
+static inline void rigid_velocity(const rough_tool *tool, const double x[3], double velocity[3]) {
     memcpy(velocity, tool->speed, 3 * sizeof *velocity);
     if (!tool->turns) return;
     double arm[3];
@@ -156,16 +159,12 @@ static void rigid_velocity(const rough_tool *tool, const double x[3], double vel
     for (int i = 0; i < 3; i++) velocity[i] += lar_dot(tool->turn[i], arm);
 }
 
-/* Velocity of the tool's material at x. Jaws turn about their hinge besides: their middle lines
- * tell by how much. */
-static void tool_velocity(const rough_tool *tool, double radius, const double x[3], double dt,
-                          double velocity[3]) {
-    rigid_velocity(tool, x, velocity);
-    if (tool->body.count < 2) return;
+/* Jaws turn about their hinge besides: their middle lines tell by how much. */
+static void add_opening(const rough_tool *tool, const double x[3], double dt, double velocity[3]) {
     double deepest = -INFINITY, normal[3], along = 0, part, end[3];
     int32_t jaw = 0;
     for (int32_t s = 0; s < tool->body.count; s++) {
-        double depth = lar_segment_depth(&tool->body.now[s], radius, x, normal, &part);
+        double depth = lar_segment_depth(&tool->body.now[s], tool->radius, x, normal, &part);
         if (!(depth > deepest)) continue;
         deepest = depth;
         jaw = s;
@@ -197,60 +196,99 @@ static inline void rub(const double press[3], const double velocity[3], double u
     }
 }
 
+/* For who looks. */
+__attribute__((noinline, cold)) static void note_rub(lar_touch_list *touches, int32_t local,
+                                                     const double x[3], const double press[3],
+                                                     const int64_t force[3], double scale) {
+    lar_touch touch = {.kind = LAR_TOUCH_RUBBED, .face = -1, .node = {local}, .weight = {1}};
+    double size = lar_length(press);
+    for (int i = 0; i < 3; i++) {
+        touch.place[i] = x[i];
+        touch.normal[i] = press[i] / size;
+    }
+    lar_touch_note(touches, &touch);
+    lar_touch_settle(touches, force, scale);
+    lar_touch_push(touches, local, force);
+}
+
 static void rub_node(lar_tool_contact *contact, const lar_condition_context *context,
-                     const lar_leapfrog *leapfrog, const double *push, const rough_tool *rough,
-                     int32_t count, int32_t at, const int64_t sum[3], lar_state *state) {
+                     const lar_leapfrog *leapfrog, double push, rough_tool *rough, int32_t count,
+                     const lar_tool_rub_node *node, lar_tool_rubbed *rubbed, const int64_t sum[3],
+                     lar_state *state) {
     const double press[3] = {(double)sum[0], (double)sum[1], (double)sum[2]};
-    const lar_tool_rub_node *node = &contact->faces->rub[at];
-    const int32_t local = contact->faces->rub_node[at];
-    double x[3], v[3], velocity[3], unit = leapfrog->push * push[local];
+    const int32_t local = rubbed->node;
+    double x[3], v[3], velocity[3];
     int64_t force[3];
     for (int i = 0; i < 3; i++) {
         x[i] = node->rest[i] + state->u[lar_state_at(state, local, i)];
         force[i] = state->force[lar_state_at(state, local, i)];
     }
     lar_state_velocity(state, local, v);
-    const rough_tool *tool = nearest(contact, rough, count, x);
-    tool_velocity(tool, contact->list->tool[tool->tool].radius, x, context->time_step, velocity);
-    lar_tool_rubbed *rubbed = &contact->rubbed[contact->rubbed_count++];
-    rubbed->node = local;
-    rub(press, velocity, unit, leapfrog, v, force, rubbed->force);
-    for (int i = 0; i < 3; i++) state->force[lar_state_at(state, local, i)] -= rubbed->force[i];
+    rough_tool *tool = nearest(rough, count, x);
+    rigid_velocity(tool, x, velocity);
+    if (tool->body.count > 1) add_opening(tool, x, context->time_step, velocity);
+    rub(press, velocity, leapfrog->push * push, leapfrog, v, force, rubbed->force);
+    for (int i = 0; i < 3; i++)
+        state->force[lar_state_at(state, local, i)] = force[i] - rubbed->force[i];
     if (!(context->weight[local] > 0)) return; /* another processor tells the tool */
-    if (contact->touches && contact->touches->tool == tool->tool) {
-        lar_touch touch = {.kind = LAR_TOUCH_RUBBED, .face = -1, .node = {local}, .weight = {1}};
-        double size = lar_length(press);
-        for (int i = 0; i < 3; i++) {
-            touch.place[i] = x[i];
-            touch.normal[i] = press[i] / size;
-        }
-        lar_touch_note(contact->touches, &touch);
-        lar_touch_settle(contact->touches, rubbed->force, context->scale);
-        lar_touch_push(contact->touches, local, rubbed->force);
-    }
+    if (contact->touches && contact->touches->tool == tool->tool)
+        note_rub(contact->touches, local, x, press, rubbed->force, context->scale);
     double arm[3];
     lar_minus(x, tool->now.position, arm);
-    lar_tool_sum_add(&contact->sum[tool->tool], context->shares, arm, rubbed->force);
+    lar_tool_sum_add(&tool->felt, 1, arm, rubbed->force);
+}
+
+/* What a tool has felt of the step, in all shares of it. */
+static void tell_tool(const rough_tool *rough, int32_t shares, lar_tool_sum *sum) {
+    for (int i = 0; i < 3; i++) {
+        sum->force[i] += shares * rough->felt.force[i];
+        sum->torque[i] += shares * rough->felt.torque[i];
+        sum->rest[i] += shares * rough->felt.rest[i];
+    }
 }
 
 static inline bool is_held(const lar_tool_rub_node *node, const lar_condition_context *context) {
     return context->held ? context->held[node->node] & LAR_AXIS_ALL : node->held;
 }
 
+/* Lists the nodes that are pressed. Nearly all of the surface is not, so what is done for each of
+ * its nodes is kept short, and has no branch. */
+static int32_t list_pressed(const lar_tool_contact *contact) {
+    const int32_t *node = contact->faces->rub_node, all = contact->faces->rub_count;
+    const int64_t *press = contact->press;
+    const size_t axis = (size_t)contact->faces->local_count;
+    lar_tool_rubbed *rubbed = contact->rubbed;
+    int32_t count = 0;
+    for (int32_t i = 0; i < all; i++) {
+        const int64_t *at = press + node[i];
+        rubbed[count].node = i;
+        count += (at[0] | at[axis] | at[2 * axis]) != 0;
+    }
+    return count;
+}
+
 void lar_tool_friction_add(lar_tool_contact *contact, const lar_condition_context *context,
                            const lar_leapfrog *leapfrog, const double *push, lar_state *state) {
+    const int32_t pressed = list_pressed(contact);
     rough_tool rough[LAR_TOOLS_MAX];
-    int32_t count = 0;
     contact->rubbed_count = 0;
-    for (int32_t i = 0; i < contact->faces->rub_count; i++) {
+    if (pressed == 0) return;
+    int32_t count = place_tools(contact, context, state, rough);
+    for (int32_t i = 0; i < pressed; i++) {
+        const lar_tool_rub_node *node = &contact->faces->rub[contact->rubbed[i].node];
+        const int32_t local = contact->faces->rub_node[contact->rubbed[i].node];
         int64_t sum[3];
-        for (int k = 0; k < 3; k++) sum[k] = *press_at(contact, contact->faces->rub_node[i], k);
-        if (!(sum[0] | sum[1] | sum[2])) continue;
-        for (int k = 0; k < 3; k++) *press_at(contact, contact->faces->rub_node[i], k) = 0;
-        if (is_held(&contact->faces->rub[i], context)) continue;
-        if (count == 0) count = place_tools(contact, context, state, rough);
-        rub_node(contact, context, leapfrog, push, rough, count, i, sum, state);
+        for (int k = 0; k < 3; k++) {
+            sum[k] = *press_at(contact, local, k);
+            *press_at(contact, local, k) = 0;
+        }
+        if (is_held(node, context)) continue;
+        lar_tool_rubbed *rubbed = &contact->rubbed[contact->rubbed_count++];
+        rubbed->node = local;
+        rub_node(contact, context, leapfrog, push[local], rough, count, node, rubbed, sum, state);
     }
+    for (int32_t i = 0; i < count; i++)
+        tell_tool(&rough[i], context->shares, &contact->sum[rough[i].tool]);
 }
 
 void lar_tool_friction_half_work(const lar_tool_contact *contact,
