@@ -127,12 +127,15 @@ class Processes(unittest.TestCase):
             self.assertEqual(said, "stopped True True\n")
 
     def test_fork(self):
+        # The sanitizer's memory has a lock that a fork copies as it is; threads that have begun
+        # ask for none.
         said = self.runs("model = block()\n"
                          "plain = lariat.Simulation(model)\n"
                          "grid = lariat.Simulation(model, grid='2x1x1')\n"
                          "held = lariat.Simulation(model)\n"
                          "session = lariat.Session(held)\n"
                          "plain.advance(10); grid.advance(10)\n"
+                         "time.sleep(0.3)\n"
                          "sys.stdout.flush()\n"
                          "pid = os.fork()\n"
                          "if pid == 0:\n"
