@@ -95,7 +95,8 @@ static lar_heavy_room room_beside(const lar_tools *tools, const lar_step_room *r
 
 /* Whether so many parts bear elements as they have been lately, and springs; where elements may be
  * heavier, with what they may. Tools that are harder than parts of steps bear beside any element
- * need these to be known, which they are once tools have been harder for a step. */
+ * need these to be known, which they are once tools have been harder for a step; but not where
+ * materials are stiffer than in the model, for elements that are not strained report as there. */
 static bool bears(const lar_domain *whole, const lar_tools *tools, const lar_step_room *room,
                   double hardness, int32_t parts) {
     static const double HARDER = 4;
@@ -104,7 +105,8 @@ static bool bears(const lar_domain *whole, const lar_tools *tools, const lar_ste
     double harder = hardness / (parts * parts);
     if (!whole->burden)
         return harder <= 1 && division->lately + room->springs * hardness <= beside.max;
-    if (harder > 1 && !(division->hardness > 1 && harder <= HARDER)) return false;
+    bool known = division->hardness > 1 && division->base == 1;
+    if (harder > 1 && !(known && harder <= HARDER)) return false;
     return lar_heavier_bears(whole, &tools->strained, &beside);
 }
 
