@@ -52,6 +52,11 @@ void lar_tool_ask(lar_tools *tools, int32_t tool, const lar_tool_motion *motion)
 double lar_tools_harden(const lar_tool_list *list, const lar_tools *tools, double fading,
                         double seconds, double unit);
 
+/* Whether from step `step` on no tool goes faster than `speed` [m/s] anywhere, nor is kept from
+ * its hand. */
+bool lar_tools_are_slow(const lar_tool_list *list, const lar_tools *tools, uint64_t step,
+                        double time_step, double speed);
+
 /* At the beginning of an interval that ends at step `until`: decides where tools go in it, and
  * forgets what they have felt. `unit`: newtons of a force unit. True when a tool does not go where
  * it went before. */

@@ -53,7 +53,7 @@ typedef struct lar_tool_felt {
  * it is. Every number of parts divides them. */
 enum { LAR_STEP_SHARES = 96 };
 
-enum { LAR_UNTOUCHED_LONG = INT16_MAX };
+enum { LAR_UNTOUCHED_LONG = INT16_MAX, LAR_STILL_LONG = 32 };
 
 /* How steps are divided, for a while, where elements are strained or tools press hard. */
 typedef struct lar_step_division {
@@ -66,7 +66,9 @@ typedef struct lar_step_division {
     double lately; /* the largest `need`, fading */
     uint64_t decided;  /* the step when it was decided last */
     int32_t base;      /* parts that stiffer materials (settings.h) take at least, a power of two */
-    int16_t due;       /* to be decided before the next step, wherever an interval begins */
+    int8_t due;        /* to be decided before the next step, wherever an interval begins */
+    int8_t still;      /* for how many decisions nothing has moved, LAR_STILL_LONG: long enough;
+                          negative: something has since the last one */
     int16_t untouched; /* for how many steps, and one, nothing has pressed on the body since a tool
                           did; LAR_UNTOUCHED_LONG: for a tenth of a second; 0: none ever did */
 } lar_step_division;
@@ -108,10 +110,12 @@ static inline double lar_division_need(const lar_step_division *division) {
 }
 
 /* Whether it must be decided in every step: elements are strained so that they may soon be too fast
- * for it, or must be heavier where tools begin to press. */
+ * for it, or must be heavier where tools begin to press; but not while nothing moves, for then they
+ * stay as they are for an interval. */
 static inline bool lar_division_is_close(const lar_step_division *division) {
-    return lar_division_need(division) > 0.7 ||
-           division->hardness > (double)division->parts * division->parts;
+    bool still = division->still == LAR_STILL_LONG || division->still == -LAR_STILL_LONG;
+    return !still && (lar_division_need(division) > 0.7 ||
+                      division->hardness > (double)division->parts * division->parts);
 }
 
 /* Nothing presses on the body any more, so barriers of corners (mechanics/hex8_guard.h) are not

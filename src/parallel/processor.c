@@ -202,7 +202,7 @@ static lar_status create_worker(const lar_schedule *schedule, const lar_processo
                         (int)p->self, (int)thread, (int)moving);
     lar_status status = create_state(p, worker, error);
     worker->state.strained = &p->strained;
-    worker->state.needs = p->domain.burden ? &worker->needs : NULL;
+    worker->state.needs = &worker->needs;
     if (!status && !(worker->gather = lar_calloc_aligned(largest, 1)))
         status = lar_fail_memory(error, largest, "a packet");
     lar_condition_share share = {thread, a->owner, a->loads, a->thread};

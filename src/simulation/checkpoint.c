@@ -412,7 +412,7 @@ static bool good_division(const lar_step_division *d, const file_head *head) {
            d->decided <= head->step && d->hardness >= 1 &&
            d->hardness <= 4.0 * d->parts * d->parts && d->hardness <= LAR_HARDNESS_MAX &&
            d->need >= 0 && d->lately >= 0 && d->lately <= LAR_NEED_MAX && power_of_two(d->base) &&
-           (d->due == 0 || d->due == 1) && d->untouched >= 0;
+           (d->due == 0 || d->due == 1) && abs(d->still) <= LAR_STILL_LONG && d->untouched >= 0;
 }
 
 /* A way between two places is a number. Empty hands, which go no way, may be anywhere. */

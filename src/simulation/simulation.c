@@ -159,7 +159,7 @@ lar_status lar_simulation_create_state(lar_simulation *simulation, bool search_a
     if (!status) status = lar_strained_create(domain, &simulation->strained, error);
     simulation->strained.follows = simulation->strained.follows && !search_always;
     simulation->state.strained = &simulation->strained;
-    simulation->state.needs = domain->burden ? &simulation->needs : NULL;
+    simulation->state.needs = &simulation->needs;
     if (!status)
         status = lar_interactions_create(&domain->surroundings, &simulation->tools, search_always,
                                          interactions, error);

@@ -278,6 +278,19 @@ static lar_status build_blocks(lar_domain *domain, lar_error *error) {
     return LAR_OK;
 }
 
+/* A cube counts for no more than 0.58 of its edge, a slab for what it is. */
+static double thinnest_of(const lar_domain *domain) {
+    double least = INFINITY;
+    for (int32_t r = 0; r < domain->run_count; r++)
+        for (size_t i = 0; i < LAR_BLOCK * (size_t)domain->run[r].count; i++) {
+            size_t place = LAR_BLOCK * (size_t)domain->run_first[r] + i;
+            const lar_lane_base *base = &domain->base[place];
+            if (domain->layout.block[place / LAR_BLOCK].element[place % LAR_BLOCK] >= 0)
+                least = fmin(least, base->volume / sqrt(2 * base->areas));
+        }
+    return least;
+}
+
 void lar_domain_element(const lar_domain *domain, int32_t r, int32_t b, int lane, lar_hex8 *hex8) {
     const lar_block_run *run = &domain->run[r];
     const lar_lane_base *base = domain->base + LAR_BLOCK * b + lane;
@@ -340,13 +353,8 @@ static lar_status allocate_masses(lar_domain *domain, lar_error *error) {
 static lar_status create_burden(lar_domain *domain, lar_error *error) {
     size_t nodes = (size_t)domain->layout.node_padded;
     if (!(domain->model->strained_share > 0) || domain->kind != LAR_ELEMENT_HEX8) return LAR_OK;
-    lar_step_room room = lar_step_room_of(domain->time_step, domain->stable_step, true);
     domain->burden = lar_burden_create(domain->mass, domain->added, nodes);
-    if (domain->burden) {
-        domain->burden->most = lar_burden_most(domain->model, domain->rate);
-        domain->burden->room = room.max;
-        domain->burden->springs = room.springs;
-    }
+    if (domain->burden) domain->burden->most = lar_burden_most(domain->model, domain->rate);
     if (!domain->added) domain->added = lar_calloc_aligned(nodes, sizeof *domain->added);
     if (domain->burden && domain->added) return LAR_OK;
     return lar_fail_memory(error, 24 * nodes, "the masses");
@@ -397,11 +405,13 @@ lar_status lar_domain_create_styled(const lar_model *model, const lar_options *o
     if (!status) status = spread_mass(domain, error);
     if (!status) status = list_runs(domain, INT32_MAX, error);
     if (!status) {
+        domain->room = lar_step_room_of(domain->time_step, domain->stable_step);
         choose_scale(domain);
         prepare_motion(domain);
         status = lar_viscous_plan(domain, error);
         if (!status) status = lar_activation_plan(domain, error);
         if (!status && domain->kind == LAR_ELEMENT_HEX8) status = build_blocks(domain, error);
+        if (!status && domain->kind == LAR_ELEMENT_HEX8) domain->thinnest = thinnest_of(domain);
     }
     if (!status)
         status = lar_conditions_create(model, domain->layout.local, NULL,
@@ -448,6 +458,8 @@ lar_status lar_domain_create_part(const lar_domain *whole, const lar_part *part,
                            .rate = whole->rate,
                            .rate_lent = true,
                            .stable_step = whole->stable_step,
+                           .room = whole->room,
+                           .thinnest = whole->thinnest,
                            .stable_worst = whole->stable_worst,
                            .adds = whole->adds,
                            .leapfrog = whole->leapfrog};

@@ -88,8 +88,10 @@ typedef struct lar_domain {
     double time_step;   /* [s] */
     uint64_t interval;  /* steps after which is decided (step/interval.h) */
     double stable_step; /* the elements' bound at rest [s] */
+    lar_step_room room; /* of a step, where tools touch */
     lar_gid stable_worst;
-    bool adds; /* mass, see mass_scaling.h */
+    double thinnest; /* element at rest, of hex8 [m] */
+    bool adds;       /* mass, see mass_scaling.h */
     lar_hex8_limits limits;
     lar_leapfrog leapfrog; /* without gravity when gravity follows a curve */
 

@@ -30,18 +30,15 @@ lar_status lar_strained_create(const lar_domain *domain, lar_strained *strained,
                                .damped_count = lar_calloc(runs, sizeof *strained->damped_count)};
     strained->follows = domain->layout.thread_count == 1;
     bool active = lar_model_active(domain->model) != NULL;
-    bool heavier = domain->burden != NULL;
-    if (heavier)
-        strained->pressed =
-            lar_calloc((size_t)domain->model->mesh.element_count, sizeof *strained->pressed);
+    size_t elements = (size_t)domain->model->mesh.element_count;
+    strained->pressed = lar_calloc(elements, sizeof *strained->pressed);
     if (active) {
         strained->activation = lar_calloc_aligned(lanes, sizeof *strained->activation);
         strained->active_energy = lar_calloc_aligned(lanes, sizeof *strained->active_energy);
     }
     if (strained->lane && strained->count && strained->strain && strained->near &&
         strained->stiffness && strained->sound && strained->damped && strained->damped_count &&
-        (!active || (strained->activation && strained->active_energy)) &&
-        (!heavier || strained->pressed))
+        strained->pressed && (!active || (strained->activation && strained->active_energy)))
         return LAR_OK;
     lar_strained_destroy(strained);
     size_t each = 2 * sizeof *strained->lane + sizeof *strained->strain +
@@ -367,9 +364,7 @@ static void measure(const lar_domain *domain, lar_gid e, size_t place, double st
     double need = 0.25 * domain->time_step * domain->time_step * square;
     if (!(need >= 0)) need = INFINITY; /* a corner that is a point has no number */
     if (!(need <= state->need)) state->need = need;
-    if (!state->needs) return;
-    need += lar_pressed_takes(domain, e, state);
-    if (need > domain->burden->room) lar_needs_add(state->needs, e, need);
+    if (state->needs) lar_pressed_need(domain, e, need, state);
 }
 
 /* Elements of which more than their strain counts, and what is known of them. */

@@ -22,6 +22,15 @@ static double larger(double a, double b) {
     return b <= a ? a : b;
 }
 
+/* Where nodes and tools are no faster than this [m/s], no element becomes thinner by more than a
+ * hundredth within an interval. Thin ones are as fast as they are thin. */
+static double slow(const lar_domain *whole, const lar_step_division *division) {
+    static const double SHARE = 0.01;
+    double thinnest = whole->thinnest / sqrt(fmax(1, fmax(division->need, division->lately)));
+    double seconds = (double)whole->interval * whole->time_step;
+    return SHARE * thinnest / (2 * sqrt(3) * seconds);
+}
+
 void lar_interval_harvest(lar_interval *interval, const lar_domain *whole, const lar_report *report,
                           uint64_t steps, lar_tools *tools) {
     int32_t parts = tools->division.parts;
@@ -33,6 +42,8 @@ void lar_interval_harvest(lar_interval *interval, const lar_domain *whole, const
     if (steps > 0 && parts > interval->parts) interval->parts = parts;
     tools->division.need = larger(tools->division.need, report->need);
     lar_heavier_harvest(&report->needs, &tools->strained);
+    lar_step_division *d = &tools->division;
+    if (d->still > 0 && !(report->needs.fastest <= slow(whole, d))) d->still = (int8_t)-d->still;
     for (int32_t t = 0; t < tools->count; t++) {
         const lar_tool_sum *now = &report->tool[t];
         lar_tool_sum *before = &interval->seen[t];
@@ -60,14 +71,6 @@ uint64_t lar_interval_end(const lar_domain *whole, const lar_step_division *divi
     return (step / whole->interval + 1) * whole->interval;
 }
 
-/* At least what the step takes at rest; tools that touch take their own part (theory.md 10). */
-static lar_step_room room_of(const lar_domain *whole, const lar_tools *tools) {
-    bool touched = false;
-    for (int32_t i = 0; i < tools->count; i++)
-        touched = touched || tools->follower[i].felt.depth > 0;
-    return lar_step_room_of(whole->time_step, whole->stable_step, touched);
-}
-
 /* Parts that stiffer materials need. Elements take s^2 of a step, times what they are faster, and
  * contact at most what it takes beside elements as they are (mechanics/contact.c): a part of 1/p of
  * a step has room for p^2 of both together. */
@@ -87,27 +90,35 @@ static int32_t base_of(const lar_domain *whole) {
 
 /* Elements that tools press on have reported what that takes of a step (step/mass/pressed.h); what
  * tools have become harder since counts beside all. */
-static lar_heavy_room room_beside(const lar_tools *tools, const lar_step_room *room,
-                                  double hardness, int32_t parts) {
+static lar_heavy_room room_beside(const lar_domain *whole, const lar_tools *tools, double hardness,
+                                  int32_t parts) {
     double more = fmax(0, hardness - tools->division.hardness);
-    return (lar_heavy_room){.max = room->max * parts * parts, .springs = room->springs * more};
+    return (lar_heavy_room){.max = whole->room.max * parts * parts,
+                            .springs = whole->room.springs * more};
 }
 
 /* Whether so many parts bear elements as they have been lately, and springs; where elements may be
  * heavier, with what they may. Tools that are harder than parts of steps bear beside any element
- * need these to be known, which they are once tools have been harder for a step; but not where
- * materials are stiffer than in the model, for elements that are not strained report as there. */
-static bool bears(const lar_domain *whole, const lar_tools *tools, const lar_step_room *room,
-                  double hardness, int32_t parts) {
+ * need these to be known, which they are once tools become no harder: while they do, something
+ * comes into them. */
+static bool bears(const lar_domain *whole, const lar_tools *tools, double hardness, int32_t parts) {
     static const double HARDER = 4;
-    const lar_step_division *division = &tools->division;
-    const lar_heavy_room beside = room_beside(tools, room, hardness, parts);
+    const lar_heavy_room beside = room_beside(whole, tools, hardness, parts);
     double harder = hardness / (parts * parts);
-    if (!whole->burden)
-        return harder <= 1 && division->lately + room->springs * hardness <= beside.max;
-    bool known = division->hardness > 1 && division->base == 1;
-    if (harder > 1 && !(known && harder <= HARDER)) return false;
+    if (harder > 1 && !(hardness <= tools->division.hardness && harder <= HARDER)) return false;
     return lar_heavier_bears(whole, &tools->strained, &beside);
+}
+
+/* For how many decisions nothing has moved, this one counted. A tool that becomes harder moves what
+ * it presses on. */
+static int8_t still_now(const lar_domain *whole, const lar_tools *tools, uint64_t step,
+                        double hardness) {
+    const lar_step_division *d = &tools->division;
+    if (d->still < 0 || d->due || hardness > d->hardness ||
+        !lar_tools_are_slow(whole->surroundings.list, tools, step, whole->time_step,
+                            slow(whole, d)))
+        return 0;
+    return d->still < LAR_STILL_LONG ? (int8_t)(d->still + 1) : LAR_STILL_LONG;
 }
 
 /* Whether anything but tools may hold elements in the shape that they have. */
@@ -141,23 +152,23 @@ static int16_t untouched_now(const lar_domain *whole, const lar_tools *tools, do
 bool lar_interval_divide(const lar_domain *whole, uint64_t step, double seconds, lar_tools *tools) {
     /* What was needed lately counts for some time: strained tissue trembles [s]. */
     static const double MEMORY = 0.05;
-    const lar_step_room room = room_of(whole, tools);
     lar_step_division *d = &tools->division;
     double fading = fmax(0.5, 1 - seconds / MEMORY);
     double hardness =
         lar_tools_harden(whole->surroundings.list, tools, fading, seconds, 1 / whole->scale);
     bool close = lar_division_is_close(d), let_go = lar_division_lets_go(d);
+    d->still = still_now(whole, tools, step, hardness);
     d->untouched = untouched_now(whole, tools, (double)step * whole->time_step, seconds);
     d->lately = fmax(fmin(d->need, LAR_NEED_MAX), fading * d->lately);
     d->need = 0;
-    if (whole->burden) lar_heavier_fade(fading, &tools->strained);
+    lar_heavier_fade(fading, &tools->strained);
     int32_t wanted = d->base;
-    while (wanted < LAR_PARTS_MAX && !bears(whole, tools, &room, hardness, wanted))
+    while (wanted < LAR_PARTS_MAX && !bears(whole, tools, hardness, wanted))
         wanted = lar_more_parts(wanted);
     bool changed = hardness != d->hardness || wanted != d->parts ||
                    close != lar_division_is_close(d) || let_go != lar_division_lets_go(d);
     if (whole->burden) {
-        const lar_heavy_room beside = room_beside(tools, &room, hardness, wanted);
+        const lar_heavy_room beside = room_beside(whole, tools, hardness, wanted);
         lar_heavier_settle(whole, &beside, fading, &tools->strained);
         changed = lar_heavier_name(&tools->strained, &tools->heavier) || changed;
     }
@@ -176,10 +187,10 @@ bool lar_interval_decide(const lar_domain *whole, uint64_t step, lar_tools *tool
     if (step % whole->interval != 0 && !lar_division_is_close(division) && !division->due)
         return false;
     if (division->due) division->base = base_of(whole);
-    division->due = 0;
     double seconds = (double)(step - division->decided) * whole->time_step;
     division->decided = step;
     bool changed = lar_interval_divide(whole, step, seconds, tools);
+    division->due = 0;
     return lar_tools_follow(list, tools, step, lar_interval_end(whole, division, step),
                             whole->time_step, 1 / whole->scale) ||
            changed;

@@ -97,12 +97,11 @@ double lar_auto_step(const lar_model *model, double stable_step) {
     return model->duration > 0 ? fmin(step, model->duration / 200) : step;
 }
 
-lar_step_room lar_step_room_of(double time_step, double stable_step, bool touched) {
+lar_step_room lar_step_room_of(double time_step, double stable_step) {
     static const double MAX = 0.9, SPRINGS = 0.25;
-    double share = time_step / stable_step, rest = 1.02 * share * share;
-    lar_step_room room = {.max = fmax(MAX, rest)};
-    double springs = fmin(SPRINGS, room.max - rest);
-    room.springs = touched ? springs : 0;
-    room.least = room.max - springs;
+    double share = time_step / stable_step;
+    lar_step_room room = {.rest = 1.02 * share * share};
+    room.max = fmax(MAX, room.rest);
+    room.springs = fmin(SPRINGS, room.max - room.rest);
     return room;
 }

@@ -41,13 +41,13 @@ lar_status lar_stable_step(const lar_model *model, lar_element_kind kind, double
 double lar_auto_step(const lar_model *model, double stable_step);
 
 /* What an undivided step bears of elements and springs together, (omega dt / 2)^2, what the
- * springs of tools take of it that are as hard as at rest (nothing where no tool touches), and what
- * elements have of it at least. Parts of a step bear their square times as much; springs do not
- * become stiffer with them. */
+ * springs of tools take of it that are as hard as at rest, and what the fastest element takes that
+ * is not strained. Parts of a step bear their square times as much; springs do not become stiffer
+ * with them. */
 typedef struct lar_step_room {
-    double max, springs, least;
+    double max, springs, rest;
 } lar_step_room;
 
-lar_step_room lar_step_room_of(double time_step, double stable_step, bool touched);
+lar_step_room lar_step_room_of(double time_step, double stable_step);
 
 #endif

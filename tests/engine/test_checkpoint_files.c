@@ -81,7 +81,9 @@ static void forged_files_are_refused(void **unused) {
     act(simulation, 0, 8);
     lar_bytes bytes = saved_bytes(simulation);
     size_t offset = bytes.size - 8 - 56 * (size_t)model->mesh.node_count; /* of the first node */
-    enum { DIVISION = 144, SETTINGS = DIVISION + 56, TOOL = SETTINGS + 552 };
+    /* A tool presses: version 12, without forces. */
+    enum { DIVISION = 144, SETTINGS = DIVISION + 56, PRESSED = SETTINGS + 1064 + 8 };
+    enum { TOOL = PRESSED + 24 };
     enum { FOLLOWER = TOOL + 152 * TEST_TOOLS, FELT = FOLLOWER + 152 };
     enum { HAND = FOLLOWER + 240 * TEST_HAND };
     const struct {
@@ -109,17 +111,21 @@ static void forged_files_are_refused(void **unused) {
         {DIVISION + 32, 8, -1, "tool"}, /* and lately */
         {DIVISION + 32, 8, 1025, "tool"},
         {DIVISION + 32, 8, NAN, "tool"},
-        {DIVISION + 40, 8, 1e300, "tool"}, /* when decided */
-        {DIVISION + 48, 4, 0, "tool"},     /* parts of stiffer materials */
-        {DIVISION + 52, 4, 2, "tool"},     /* due */
-        {SETTINGS, 4, 2, "tool"},          /* whether gravity is set */
-        {SETTINGS + 4, 4, -1, "tool"},     /* and damping */
-        {SETTINGS + 8, 8, 1001, "tool"},   /* gravity */
+        {DIVISION + 40, 8, 1e300, "tool"},  /* when decided */
+        {DIVISION + 48, 4, 0, "tool"},      /* parts of stiffer materials */
+        {DIVISION + 52, 4, 2, "tool"},      /* due */
+        {DIVISION + 52, 4, 0x2100, "tool"}, /* still for 33 decisions */
+        {SETTINGS, 4, 2, "tool"},           /* whether gravity is set */
+        {SETTINGS + 4, 4, -1, "tool"},      /* and damping */
+        {SETTINGS + 8, 8, 1001, "tool"},    /* gravity */
         {SETTINGS + 24, 8, NAN, "tool"},
         {SETTINGS + 32, 8, -1, "tool"}, /* damping */
         {SETTINGS + 32, 8, 1e9, "tool"},
         {SETTINGS + 40, 8, 0, "tool"}, /* the factor of the first material, and of the last */
         {SETTINGS + 40 + 63 * 8, 8, 4.5, "tool"},
+        {PRESSED, 4, 1, "sizes"},      /* heavier elements */
+        {PRESSED + 8, 8, NAN, "tool"}, /* what pressed ones need */
+        {PRESSED + 16, 8, -1, "tool"},
         {TOOL, 8, INFINITY, "tool"}, /* a position */
         {TOOL, 8, -1e200, "tool"},
         {TOOL + 24, 8, 0.5, "tool"},    /* an orientation */

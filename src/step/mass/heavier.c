@@ -95,14 +95,14 @@ static double mass_of(const lar_domain *whole, lar_gid e) {
 
 bool lar_heavier_bears(const lar_domain *whole, const lar_heavy_list *list,
                        const lar_heavy_room *room) {
-    double added = 0;
+    double added = 0, most = whole->burden ? whole->burden->most : 0;
     if (list->beyond + room->springs > room->max) return false;
     for (int32_t i = 0; i < list->count; i++) {
         double factor = factor_for(&list->of[i], room);
         if (factor > FACTOR_MAX) return false;
         added += (factor - 1) * mass_of(whole, list->of[i].element);
     }
-    return added <= whole->burden->most;
+    return added <= most;
 }
 
 /* Where more is held than may be, what fades goes at once. */
@@ -123,7 +123,7 @@ void lar_heavier_settle(const lar_domain *whole, const lar_heavy_room *room, dou
         /* Nearly nothing is nothing, or an eighth would be held for ever. */
         if (heavy.held < NEARLY) heavy.held = 1;
         heavy.factor = stepped(heavy.held);
-        if (heavy.factor > 1 || heavy.lately > whole->burden->room) list->of[kept++] = heavy;
+        if (heavy.factor > 1 || heavy.lately > whole->room.max) list->of[kept++] = heavy;
     }
     cut(list, kept);
 }
@@ -175,8 +175,7 @@ bool lar_heavier_good(const lar_domain *whole, const lar_heavy_list *list) {
         heavier += heavy->factor > 1;
     }
     if (!good || heavier > LAR_HEAVIER_MAX) return false;
-    if (!whole->burden && (list->count > 0 || list->beyond > 0 || list->beyond_need > 0))
-        return false;
+    if (!whole->burden && list->count > 0) return false;
     lar_heavy_now now = {0};
     lar_heavier_name(list, &now);
     return lar_heavier_now_good(whole, &now);

@@ -40,8 +40,6 @@ lar_burden *lar_burden_copy(const lar_burden *from, size_t nodes) {
     lar_burden *burden = lar_burden_create(from->mass, from->added, nodes);
     if (!burden) return NULL;
     burden->most = from->most;
-    burden->room = from->room;
-    burden->springs = from->springs;
     burden->now = from->now;
     burden->node_count = from->node_count;
     memcpy(burden->node, from->node, sizeof burden->node);

@@ -17,15 +17,12 @@ typedef struct lar_burden {
     double *mass;      /* [layout.node_padded] without what is more for a while [kg] */
     double *added;     /* the same of lar_domain.added; NULL: nothing */
     double most;       /* that strained elements may have more [kg] */
-    double room;       /* of a whole step: needs up to this one are met without */
-    double springs;    /* what springs of tools at rest take of a step (lar_step_room) */
     lar_heavy_now now; /* who is heavier */
     int32_t node_count;
     lar_lid node[8 * LAR_HEAVIER_MAX]; /* their nodes, of those that are here */
 } lar_burden;
 
-/* With masses as they are now; `most`, `room` and `springs` are the caller's to set. NULL: there is
- * no memory. */
+/* With masses as they are now; `most` is the caller's to set. NULL: there is no memory. */
 lar_burden *lar_burden_create(const double *mass, const double *added, size_t nodes);
 lar_burden *lar_burden_copy(const lar_burden *from, size_t nodes);
 void lar_burden_destroy(lar_burden *burden); /* accepts NULL */

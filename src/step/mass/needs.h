@@ -17,8 +17,13 @@ typedef struct lar_need {
 struct lar_needs {
     int32_t count, padding;
     double beyond;                /* the largest need of those that did not find room */
+    double fastest;               /* node when they were looked at, along an axis [m/s] */
     lar_need of[LAR_HEAVIER_MAX]; /* the largest first, equal ones by element */
 };
+
+static inline void lar_needs_add_beyond(lar_needs *needs, double need) {
+    if (need > needs->beyond) needs->beyond = need;
+}
 
 /* Of an element that is not among them. */
 static inline void lar_needs_add(lar_needs *needs, int32_t element, double need) {
@@ -26,8 +31,7 @@ static inline void lar_needs_add(lar_needs *needs, int32_t element, double need)
     if (i == LAR_HEAVIER_MAX) {
         const lar_need *last = &needs->of[--i];
         bool later = need < last->need || (need == last->need && element > last->element);
-        double out = later ? need : last->need;
-        if (out > needs->beyond) needs->beyond = out;
+        lar_needs_add_beyond(needs, later ? need : last->need);
         if (later) return;
     } else {
         needs->count++;
@@ -41,7 +45,8 @@ static inline void lar_needs_add(lar_needs *needs, int32_t element, double need)
 }
 
 static inline void lar_needs_join(lar_needs *sum, const lar_needs *other) {
-    if (other->beyond > sum->beyond) sum->beyond = other->beyond;
+    lar_needs_add_beyond(sum, other->beyond);
+    if (!(other->fastest <= sum->fastest)) sum->fastest = other->fastest;
     for (int32_t i = 0; i < other->count; i++)
         lar_needs_add(sum, other->of[i].element, other->of[i].need);
 }
@@ -49,6 +54,7 @@ static inline void lar_needs_join(lar_needs *sum, const lar_needs *other) {
 static inline void lar_needs_clear(lar_needs *needs) {
     needs->count = 0;
     needs->beyond = 0;
+    needs->fastest = 0;
 }
 
 #endif
