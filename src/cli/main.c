@@ -9,9 +9,9 @@
 #include "cli/commands.h"
 
 const cli_command *const cli_commands[] = {
-    &cli_mesh,   &cli_info,      &cli_run,          &cli_view,    &cli_replay,
-    &cli_verify, &cli_partition, &cli_requirements, &cli_predict, &cli_fit,     &cli_demo_model,
-    &cli_bench,  &cli_device,    &cli_doctor,       &cli_help,    NULL};
+    &cli_mesh,      &cli_info,         &cli_run,     &cli_view, &cli_replay,     &cli_verify,
+    &cli_partition, &cli_requirements, &cli_predict, &cli_fit,  &cli_demo_model, &cli_bench,
+    &cli_device,    &cli_doctor,       &cli_help,    NULL};
 enum { COUNT = sizeof cli_commands / sizeof cli_commands[0] - 1 };
 
 void cli_print_overview(FILE *out) {
@@ -73,10 +73,9 @@ int main(int argc, char **argv) {
     prepare_process();
     int status = dispatch(argc, argv);
     /* A result that did not reach its file is no success. */
-    if ((fflush(stdout) != 0 || ferror(stdout)) && status == CLI_DONE)
-        return cli_complain(NULL, CLI_FAILED,
-                            "standard output cannot be written: %s; check where it goes and the "
-                            "free space",
-                            strerror(errno));
-    return status;
+    if ((fflush(stdout) == 0 && !ferror(stdout)) || status != CLI_DONE) return status;
+    const char *remedy = errno == EPIPE ? "what read it has ended before all was told"
+                                        : "check where it goes and the free space";
+    return cli_complain(NULL, CLI_FAILED, "standard output cannot be written: %s; %s",
+                        strerror(errno), remedy);
 }

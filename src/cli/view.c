@@ -43,6 +43,7 @@ typedef struct view {
     lar_session_state state;      /* as last told */
     bool slow, recording_lost;    /* as last told */
     double slow_since, slow_told; /* when slow motion began, and was last announced [s] */
+    double slow_quiet;            /* so long it is not announced again [s] */
     uint64_t recoveries;          /* as last told */
     double recovered_told;        /* when that was [s] */
     double progress_at;
@@ -261,13 +262,14 @@ static void announce_slow(view *v, const lar_session_status *s, double at) {
     v->slow = s->slow_motion != 0;
     if (s->slow_cause != LAR_SLOW_NOT) v->report.slow_cause = s->slow_cause;
     if (!v->slow || s->slow_cause == LAR_SLOW_NOT || at < v->slow_since + KNOWN ||
-        at < v->slow_told + REPEAT_LIMIT || v->slow_told > v->slow_since ||
+        at < v->slow_told + v->slow_quiet || v->slow_told > v->slow_since ||
         s->real_time_factor_now > 0.99 * s->pace)
         return;
     clear_progress(v);
     cli_complain(&cli_view, CLI_DONE, "note: slow motion, %.2f times real time: %s",
                  s->real_time_factor_now, s->slow_advice);
     v->slow_told = at;
+    v->slow_quiet *= 2; /* what comes again and again is known; the report counts all */
 }
 
 /* Slow motion and stops are announced, each time they begin. */
@@ -330,6 +332,7 @@ static void look_after(view *v) {
     const struct timespec nap = {0, 50000000};
     double begin = now();
     v->slow_told = v->recovered_told = -1e9;
+    v->slow_quiet = REPEAT_LIMIT;
     while (!is_over(v, begin, now())) {
         lar_session_status status;
         nanosleep(&nap, NULL);
