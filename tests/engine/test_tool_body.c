@@ -3,6 +3,8 @@
 #include "contact/tool_body.h"
 #include "engine/engine_test.h"
 #include "engine/tool_contact_test.h"
+#include "step/mass/needs.h"
+#include "step/mass/pressed.h"
 
 static const brick block = {{6, 6, 4}, 0.005, 0.05, LAR_LAW_neo_hookean, 2e3, 2e5, 1000};
 static const double upright[4] = {1, 0, 0, 0};
@@ -124,6 +126,28 @@ static void what_is_said_does_not_depend_on_the_grid(void **unused) {
     lar_model_destroy(model);
 }
 
+/* The fastest element and the springs of a tool make all of the room that a step has: no rounding
+ * makes parts of it. */
+static void a_touch_at_rest_needs_no_parts(void **unused) {
+    (void)unused;
+    lar_model *model = pressed_model();
+    lar_simulation *simulation = start(model);
+    const lar_domain *whole = &simulation->domain;
+    lar_state *state = &simulation->state;
+    lar_needs_clear(state->needs);
+    state->pressed = simulation->strained.pressed;
+    state->hardness = 1;
+    for (int32_t e = 0; e < model->mesh.element_count; e++) {
+        double bound = whole->stable_step * whole->stable_step / 4;
+        state->pressed[e] = LAR_PRESSED;
+        lar_pressed_need(whole, e, whole->room.rest * whole->rate[e].square * bound, state);
+        state->pressed[e] = 0;
+    }
+    assert_true(state->needs->beyond == 0);
+    lar_simulation_destroy(simulation);
+    lar_model_destroy(model);
+}
+
 /* Hardness grows with time, not with the number of intervals, and is gone some time after. Parts of
  * steps bear it beside the fastest element, which is pressed. */
 static void hardness_grows_with_time(void **unused) {
@@ -232,6 +256,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_pushed_tool_stays_outside_and_comes_back),
         cmocka_unit_test(what_is_said_does_not_depend_on_the_grid),
+        cmocka_unit_test(a_touch_at_rest_needs_no_parts),
         cmocka_unit_test(hardness_grows_with_time),
         cmocka_unit_test(a_tool_that_presses_too_hard_yields),
         cmocka_unit_test(nothing_holds_what_leaves_the_tissue),

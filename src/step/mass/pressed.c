@@ -20,9 +20,10 @@ void lar_pressed_mark(const lar_domain *domain, const lar_interactions *interact
 }
 
 void lar_pressed_need(const lar_domain *domain, lar_gid e, double need, lar_state *state) {
+    static const double ROUNDING = 1e-9; /* the fastest element and springs make all of the room */
     if (state->pressed[e]) need += domain->room.springs * state->hardness;
     if (state->pressed[e]) state->pressed[e] = LAR_PRESSED_MEASURED;
-    if (!(need > domain->room.max)) return;
+    if (!(need > (1 + ROUNDING) * domain->room.max)) return;
     if (domain->burden)
         lar_needs_add(state->needs, e, need);
     else
