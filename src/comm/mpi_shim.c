@@ -39,10 +39,9 @@ static int start(int *rank, int *size, int *tag_max) {
     return failed;
 }
 
-static int send(const void *data, int bytes, int to, int tag, bool matched, lar_mpi_request *r) {
+static int send(const void *data, int bytes, int to, int tag, lar_mpi_request *r) {
     MPI_Request request = MPI_REQUEST_NULL;
-    int failed = matched ? MPI_Issend(data, bytes, MPI_BYTE, to, tag, world, &request)
-                         : MPI_Isend(data, bytes, MPI_BYTE, to, tag, world, &request);
+    int failed = MPI_Isend(data, bytes, MPI_BYTE, to, tag, world, &request);
     return keep(r, request, failed);
 }
 

@@ -18,7 +18,7 @@
 #include <stdint.h>
 
 /* Changes with every change of the table. */
-enum { LAR_MPI_VERSION = 1 };
+enum { LAR_MPI_VERSION = 2 };
 
 /* An MPI_Request: an int in MPICH, a pointer in Open MPI. */
 typedef struct lar_mpi_request {
@@ -30,8 +30,7 @@ typedef struct lar_mpi {
     const char *name; /* "Open MPI 4.1.4" */
     /* Starts MPI unless the program has done so. *tag_max: tags are 0..*tag_max. */
     int (*start)(int *rank, int *size, int *tag_max);
-    /* `matched`: complete only when the receiver has taken it. */
-    int (*send)(const void *data, int bytes, int to, int tag, bool matched, lar_mpi_request *r);
+    int (*send)(const void *data, int bytes, int to, int tag, lar_mpi_request *r);
     int (*receive)(void *data, int bytes, int tag, lar_mpi_request *r); /* from anyone */
     int (*test)(lar_mpi_request *r, bool *done);
     void (*cancel)(lar_mpi_request *r); /* of a receive */
