@@ -136,21 +136,23 @@ static bool shorten(const follow_law *law, int count, double *way) {
 }
 
 /* The way along `count` coordinates: `gap` is what is left to go, `pushed` what the tissue pushes
- * with, `max` what the hand may. True when all of it is gone. Where tissue pushes the way that the
- * hand wants to go nothing holds the tool back: drag keeps it from swinging against tissue, and in
- * what opens would only make it late. */
+ * with, `max` what the hand may. True when all of it is gone. As far as tissue pushes the way that
+ * the hand wants to go nothing holds the tool back: drag keeps it from swinging against tissue, and
+ * in what opens would only make it late. Across that way drag holds as anywhere: a jaw that a fold
+ * pushes from both sides in turn would else be led on through it, freely in every other interval.
+ */
 static bool go(const follow_law *law, int count, const double *gap, const double *pushed,
                double max, double *way) {
-    double drawn[3];
-    if (dot(count, gap, pushed) > 0) {
-        for (int i = 0; i < count; i++) way[i] = gap[i];
-        return shorten(law, count, way);
+    double drawn[3], against[3], along = dot(count, gap, pushed);
+    double helped = along > 0 ? along / dot(count, pushed, pushed) : 0;
+    for (int i = 0; i < count; i++) {
+        against[i] = helped > 0 ? 0 : pushed[i];
+        drawn[i] = law->drag * (gap[i] - helped * pushed[i]) / law->seconds - against[i];
     }
-    for (int i = 0; i < count; i++) drawn[i] = law->drag * gap[i] / law->seconds - pushed[i];
     double length = sqrt(dot(count, drawn, drawn));
     double share = length > max ? max / length : 1;
     for (int i = 0; i < count; i++)
-        way[i] = law->seconds / law->drag * (drawn[i] * share + pushed[i]);
+        way[i] = law->seconds / law->drag * (drawn[i] * share + against[i]) + helped * pushed[i];
     return shorten(law, count, way) && share == 1 && sqrt(dot(count, gap, gap)) <= law->farthest;
 }
 

@@ -61,11 +61,11 @@ static lar_model *straight_tool_model(const brick *b) {
 
 /* ---- the same bits -------------------------------------------------------------------------- */
 
-static same_bits body = {fibrous_tool_model, PATH, {0xdefb996c9624e9e1, 0x6326fa1eca12b045}};
+static same_bits body = {fibrous_tool_model, PATH, {0xdf3c6310a5615686, 0x37fd0759dfad5174}};
 
 static same_bits straight = {straight_tool_model,
                              LAR_TEST_BUILD "/straight.checkpoint",
-                             {0xad2bae61d020c3fc, 0xbca18325d74f10d3}};
+                             {0x61dc819bc934c10a, 0xfa4c904808c206b3}};
 
 /* Parameters of each law beside tissue of some kilopascal. */
 static const double LAWS[LAR_FIBRE_LAWS][LAR_FIBRE_PARAMETERS] = {

@@ -1,5 +1,6 @@
 /* A tool that is pushed into tissue: stays outside, says that it is kept from following its hand,
  * and comes back to it. */
+#include "base/vector.h"
 #include "contact/tool_body.h"
 #include "engine/engine_test.h"
 #include "engine/tool_contact_test.h"
@@ -148,6 +149,42 @@ static void a_touch_at_rest_needs_no_parts(void **unused) {
     lar_model_destroy(model);
 }
 
+/* Tissue that pushes a tool aside, and a little the way that its hand wants to go, does not set it
+ * free to go that way: a jaw in a fold was led through it like that. As far as it is pushed the
+ * right way nothing holds it back. */
+static void a_tool_pushed_aside_is_not_free_to_go_on(void **unused) {
+    (void)unused;
+    enum { STEPS = 4 };
+    static const double PUSHED[2][2] = {{0.2, 0.98}, {1, 0}}; /* x, z of the force's direction */
+    lar_model *model = pressed_model();
+    lar_simulation *simulation = start(model);
+    const double dt = lar_simulation_time_step(simulation);
+    const double scale = LAR_STEP_SHARES * STEPS * simulation->domain.scale;
+    for (int c = 0; c < 2; c++) {
+        lar_tools tools = simulation->tools;
+        lar_tool_follower *follower = &tools.follower[0];
+        follower->lagging = 1;
+        follower->hand.to.position[0] += 0.01;
+        follower->felt.steps = STEPS;
+        for (int i = 0; i < 2; i++) {
+            double force = 2 * simulation->list.limits[0].force * PUSHED[c][i];
+            follower->felt.force[2 * i] = (int64_t)(force * scale);
+        }
+        assert_true(lar_tools_follow(&simulation->list, &tools, 0, STEPS, dt,
+                                     1 / simulation->domain.scale));
+        double way[3], length;
+        lar_minus(tools.motion[0].to.position, tools.motion[0].from.position, way);
+        length = lar_length(way);
+        print_message("pushed by (%g, 0, %g): goes (%.3g, %.3g, %.3g) mm\n", PUSHED[c][0],
+                      PUSHED[c][1], 1e3 * way[0], 1e3 * way[1], 1e3 * way[2]);
+        assert_true(length > 0);
+        if (c == 0) assert_below(way[0], 0.5 * length);
+        if (c == 1) assert_true(way[0] > 0.999 * length && length > 0.4 * STEPS * dt);
+    }
+    lar_simulation_destroy(simulation);
+    lar_model_destroy(model);
+}
+
 /* Hardness grows with time, not with the number of intervals, and is gone some time after. Parts of
  * steps bear it beside the fastest element, which is pressed. */
 static void hardness_grows_with_time(void **unused) {
@@ -257,6 +294,7 @@ int main(void) {
         cmocka_unit_test(a_pushed_tool_stays_outside_and_comes_back),
         cmocka_unit_test(what_is_said_does_not_depend_on_the_grid),
         cmocka_unit_test(a_touch_at_rest_needs_no_parts),
+        cmocka_unit_test(a_tool_pushed_aside_is_not_free_to_go_on),
         cmocka_unit_test(hardness_grows_with_time),
         cmocka_unit_test(a_tool_that_presses_too_hard_yields),
         cmocka_unit_test(nothing_holds_what_leaves_the_tissue),
