@@ -30,8 +30,10 @@ int cli_refuse(const cli_command *command, const lar_error *error);
  * printed. */
 int cli_open_model(const cli_command *command, const char *path, lar_model **model);
 
-/* Says on standard error when a model is as long or as short as no organ is. */
-void cli_doubt_units(const cli_command *command, const lar_model_info *info);
+/* Says on standard error when a model, read from `path`, is as long or as short as no organ is, or
+ * of a material as light, heavy, soft or hard as there is none. */
+void cli_doubt_units(const cli_command *command, const char *path, const lar_model *model,
+                     const lar_model_info *info);
 
 /* Into the options what a saved state was made with, as far as they leave it open: kind of
  * elements, time step, hands. `path` NULL: nothing. */

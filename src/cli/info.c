@@ -37,7 +37,7 @@ static int info_main(int argc, char **argv) {
     status = inspect(&report, against, scale > 0 ? scale : 1);
     if (!status && json) info_report_json(&report);
     if (!status && !json) info_report_table(&report);
-    if (!status) cli_doubt_units(&cli_info, &report.info);
+    if (!status) cli_doubt_units(&cli_info, path, model, &report.info);
     lar_model_destroy(model);
     return status;
 }

@@ -1,4 +1,5 @@
 #include <math.h>
+#include <string.h>
 
 #include "cli/commands.h"
 
@@ -37,7 +38,7 @@ int cli_open_model(const cli_command *command, const char *path, lar_model **mod
 }
 
 /* A mesh in millimetres is the commonest slip, and one that is scaled twice the next. */
-void cli_doubt_units(const cli_command *command, const lar_model_info *info) {
+static void doubt_length(const cli_command *command, const lar_model_info *info) {
     static const double LARGE = 10, SMALL = 1e-3; /* [m] */
     double size = 0;
     for (int i = 0; i < 3; i++) size = fmax(size, info->upper[i] - info->lower[i]);
@@ -50,4 +51,38 @@ void cli_doubt_units(const cli_command *command, const lar_model_info *info) {
         cli_complain(command, CLI_DONE,
                      "note: the model is %.4g mm long; lengths are metres: was it scaled twice?",
                      1e3 * size);
+}
+
+/* Grams and millimetres, kilopascals and megapascals: outside of what there is in bodies, and of
+ * what they are tested with (foams, steel). */
+static bool doubt_material(const cli_command *command, const lar_material_info *material) {
+    static const double LIGHT = 10, HEAVY = 3e4; /* [kg/m^3] */
+    static const double SOFT = 10, HARD = 1e12;  /* [Pa] */
+    bool dense = material->density < LIGHT || material->density > HEAVY;
+    const char *name = material->name[0] ? material->name : "without a name";
+    bool stiff = material->shear_modulus < SOFT || material->shear_modulus > HARD;
+    if (dense)
+        cli_complain(command, CLI_DONE,
+                     "note: material %s has a density of %.4g; densities are in kg/m^3, water "
+                     "has 1000",
+                     name, material->density);
+    if (stiff)
+        cli_complain(command, CLI_DONE,
+                     "note: material %s has a shear modulus of %.4g; moduli are in pascals, soft "
+                     "organs have some thousand",
+                     name, material->shear_modulus);
+    return dense || stiff;
+}
+
+void cli_doubt_units(const cli_command *command, const char *path, const lar_model *model,
+                     const lar_model_info *info) {
+    const char *ending = strrchr(path, '.');
+    bool deck = ending && strcmp(ending, ".feb") == 0; /* in units of its own, often none at all */
+    doubt_length(command, info);
+    bool doubted = deck;
+    for (int32_t i = 0; i < info->materials && !doubted; i++) {
+        lar_material_info material;
+        doubted = lar_model_material(model, i, &material, NULL) == LAR_OK &&
+                  doubt_material(command, &material);
+    }
 }

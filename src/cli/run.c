@@ -315,6 +315,11 @@ static int choose_time(run *r) {
                             "%g s take %.3g steps of %.3g s; give a smaller --time or --steps",
                             time, steps, lar_simulation_time_step(r->simulation));
     r->last_step = r->first_step + (uint64_t)fmax(1, steps);
+    double done = fmax(1, steps) * lar_simulation_time_step(r->simulation);
+    if (r->settings.time > 0 && fabs(done - time) > 0.05 * time)
+        cli_complain(&cli_run, CLI_DONE,
+                     "note: %g s are no whole number of steps of %.4g s; the run is %.4g s long",
+                     time, lar_simulation_time_step(r->simulation), done);
     return CLI_DONE;
 }
 
@@ -391,7 +396,7 @@ static void tell_of_earlier_state(const run *r, int status) {
 
 static int compute(run *r) {
     lar_error error;
-    cli_doubt_units(&cli_run, &r->info);
+    cli_doubt_units(&cli_run, r->settings.scene, r->model, &r->info);
     if (r->settings.resume && lar_simulation_load(r->simulation, r->settings.resume, &error))
         return fail_by(r, &error);
     lar_simulation_energy(r->simulation, &r->began);

@@ -138,6 +138,15 @@ says '^account  *OPEN by .* --time-step 0.0002'
 expect 0 "$LARIAT" run "$SCRATCH/hit.yaml" --time-step 2e-5
 ! grep -q '^account' "$SCRATCH/out" || fail "$(grep '^account' "$SCRATCH/out")"
 
+# Slips of units, and a time that is no number of steps, are doubted.
+sed 's/density: 1000/density: 1.0e-6/' "$SCRATCH/hit.yaml" >"$SCRATCH/light.yaml"
+expect 0 "$LARIAT" run "$SCRATCH/light.yaml" --steps 1
+complains "note: material without a name has a density of 1e-06; densities are in kg/m^3"
+sed 's/2.0e3/2.0/; s/4.0e4/40/' "$SCRATCH/hit.yaml" >"$SCRATCH/soft.yaml"
+expect 0 "$LARIAT" run "$SCRATCH/soft.yaml" --time 1e-4
+complains "note: material without a name has a shear modulus of 2; moduli are in pascals"
+complains 'note: 0.0001 s are no whole number of steps of .*; the run is .* s long'
+
 # A table for people.
 expect 0 "$LARIAT" run "$scene" --steps 10
 says '^state hash  *[0-9a-f]'
