@@ -233,7 +233,8 @@ class Misuse(unittest.TestCase):
         for seed in (-1, 1.5, "1", True, numpy.zeros(2)):
             with self.assertRaises(ValueError, msg=seed):
                 env.reset(seed=seed)
-        for options in ({"colour": 1}, {"goal": (1, 2)}, {"goal": (0, 0, float("nan"))},
+        for options in ({"colour": 1}, {"goal": (1, 2)}, {"goal": (1000, 0, 0)},
+                        {"goal": (0, 0, float("nan"))},
                         {"stiffness": 100}):
             with self.assertRaises(ValueError, msg=options):
                 env.reset(options=options)

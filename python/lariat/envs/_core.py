@@ -124,6 +124,10 @@ class Core:
             goal = np.asarray(goal, float)
             if goal.shape != (3,) or not np.isfinite(goal).all():
                 raise lariat.ArgumentError(f"goal: expected 3 finite numbers, got {goal}")
+            size = self.high - self.low
+            if (goal < self.low - size).any() or (goal > self.high + size).any():
+                raise lariat.ArgumentError(f"goal: {goal} m is far from where the tip can go, "
+                                           f"{self.low} to {self.high} m")
         self.batch.reset(which, self.start)
         for k, i in enumerate(which):
             if seeds is not None and seeds[k] is not None:
