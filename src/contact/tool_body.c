@@ -285,16 +285,15 @@ double lar_tools_harden(const lar_tool_list *list, const lar_tools *tools, doubl
     return change == FADES ? fmax(1, fading * hardness) : hardness;
 }
 
-/* What is left of a way in an interval that begins at step `step` is no faster than `speed`. */
-static bool is_slow(const lar_tool_limits *limits, const lar_tool_motion *motion, uint64_t step,
-                    double time_step, double speed) {
+/* How far any part of a tool goes in a step of the interval that begins at step `step` [m]. */
+static double way_of(const lar_tool_limits *limits, const lar_tool_motion *motion, uint64_t step) {
     double way[3], turn[3];
-    if (motion->end <= step) return true;
+    if (motion->end <= step) return 0;
     lar_minus(motion->to.position, motion->from.position, way);
     turn_between(motion->from.orientation, motion->to.orientation, turn);
     double far = lar_length(way) + limits->lever * lar_length(turn) +
                  limits->travel * fabs(motion->to.opening - motion->from.opening);
-    return far <= speed * time_step * (double)(motion->end - motion->start);
+    return far / (double)(motion->end - motion->start);
 }
 
 bool lar_tools_are_slow(const lar_tool_list *list, const lar_tools *tools, uint64_t step,
@@ -302,8 +301,16 @@ bool lar_tools_are_slow(const lar_tool_list *list, const lar_tools *tools, uint6
     bool slow = true;
     for (int32_t i = 0; i < tools->count && slow; i++)
         slow = !tools->follower[i].lagging &&
-               is_slow(&list->limits[i], &tools->motion[i], step, time_step, speed);
+               way_of(&list->limits[i], &tools->motion[i], step) <= speed * time_step;
     return slow;
+}
+
+double lar_tools_go(const lar_tool_list *list, const lar_tools *tools, uint64_t step) {
+    double max = 0;
+    for (int32_t i = 0; i < tools->count; i++)
+        if (tools->follower[i].felt.depth > 0)
+            max = fmax(max, way_of(&list->limits[i], &tools->motion[i], step));
+    return max;
 }
 
 bool lar_tools_follow(const lar_tool_list *list, lar_tools *tools, uint64_t step, uint64_t until,

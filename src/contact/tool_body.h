@@ -52,6 +52,9 @@ void lar_tool_ask(lar_tools *tools, int32_t tool, const lar_tool_motion *motion)
 double lar_tools_harden(const lar_tool_list *list, const lar_tools *tools, double fading,
                         double seconds, double unit);
 
+/* How far a tool that tissue is in goes in a step, from step `step` on [m]. */
+double lar_tools_go(const lar_tool_list *list, const lar_tools *tools, uint64_t step);
+
 /* Whether from step `step` on no tool goes faster than `speed` [m/s] anywhere, nor is kept from
  * its hand. */
 bool lar_tools_are_slow(const lar_tool_list *list, const lar_tools *tools, uint64_t step,

@@ -185,6 +185,30 @@ static void a_tool_pushed_aside_is_not_free_to_go_on(void **unused) {
     lar_model_destroy(model);
 }
 
+/* A tool that tissue is in goes no farther in a part of a step than a tenth of the thinnest
+ * element; one that touches nothing goes as it likes. */
+static void a_fast_tool_in_tissue_divides_steps(void **unused) {
+    (void)unused;
+    static const int32_t PARTS[2] = {1, 4};
+    lar_model *model = pressed_model();
+    lar_simulation *simulation = start(model);
+    const lar_domain *whole = &simulation->domain;
+    for (int touches = 0; touches < 2; touches++) {
+        lar_tools tools = simulation->tools;
+        lar_tool_motion *motion = &tools.motion[0];
+        motion->to.position[0] = motion->from.position[0] + 10 * 0.35 * whole->thinnest;
+        motion->start = 0;
+        motion->end = 10;
+        tools.follower[0].felt = (lar_tool_felt){.depth = touches ? 1e-6 : 0, .steps = 1};
+        lar_interval_divide(whole, 1, 1e-4, &tools);
+        assert_int_equal(tools.division.parts, PARTS[touches]);
+        lar_interval_divide(whole, 10, 1e-4, &tools);
+        assert_int_equal(tools.division.parts, 1);
+    }
+    lar_simulation_destroy(simulation);
+    lar_model_destroy(model);
+}
+
 /* Hardness grows with time, not with the number of intervals, and is gone some time after. Parts of
  * steps bear it beside the fastest element, which is pressed. */
 static void hardness_grows_with_time(void **unused) {
@@ -295,6 +319,7 @@ int main(void) {
         cmocka_unit_test(what_is_said_does_not_depend_on_the_grid),
         cmocka_unit_test(a_touch_at_rest_needs_no_parts),
         cmocka_unit_test(a_tool_pushed_aside_is_not_free_to_go_on),
+        cmocka_unit_test(a_fast_tool_in_tissue_divides_steps),
         cmocka_unit_test(hardness_grows_with_time),
         cmocka_unit_test(a_tool_that_presses_too_hard_yields),
         cmocka_unit_test(nothing_holds_what_leaves_the_tissue),
