@@ -331,15 +331,6 @@ static void place_anchor(const lar_tool_pose *pose, const double anchor[3], doub
     for (int i = 0; i < 3; i++) out[i] += pose->position[i];
 }
 
-/* How long the spring of a hold may be: what is torn away from a tool slips instead of being torn
- * apart. Elements that have become so fast that steps need some six parts slip earlier: a hand that
- * went on pulling would turn them inside out. */
-static double grasp_reach(const lar_tool *tool, const lar_tools *tools) {
-    static const double BORNE_RATE = 30; /* (omega dt / 2)^2 of the fastest element */
-    double need = lar_division_need(&tools->division);
-    return need > BORNE_RATE ? tool->radius * BORNE_RATE / need : tool->radius;
-}
-
 /* The spring between a point of a face and its anchor. */
 static void grasp_point(lar_tool_contact *contact, const lar_condition_context *context,
                         const lar_state *state, const lar_grasp *grasp,
@@ -361,7 +352,7 @@ static void grasp_point(lar_tool_contact *contact, const lar_condition_context *
         length += pull[i] * pull[i];
     }
     length = sqrt(length);
-    double most = stiffness * grasp_reach(tool, contact->tools);
+    double most = stiffness * tool->radius * lar_division_reach(&contact->tools->division);
     double share = length > most ? most / length : 1;
     for (int a = 0; a < 4; a++)
         for (int i = 0; i < 3; i++) force[a][i] = grasp->weight[a] * share * pull[i];

@@ -109,6 +109,15 @@ static inline double lar_division_need(const lar_step_division *division) {
     return division->lately / ((double)division->base * division->base);
 }
 
+/* How long the spring of a hold may be, as a part of what it may be in sound tissue: what is torn
+ * away from a tool slips instead of being torn apart. Elements that have become so fast that steps
+ * need some six parts slip earlier: a hand that went on pulling would turn them inside out. */
+static inline double lar_division_reach(const lar_step_division *division) {
+    static const double BORNE_RATE = 30; /* (omega dt / 2)^2 of the fastest element */
+    double need = lar_division_need(division);
+    return need > BORNE_RATE ? BORNE_RATE / need : 1;
+}
+
 /* Whether it must be decided in every step: elements are strained so that they may soon be too fast
  * for it, or must be heavier where tools begin to press; but not while nothing moves, for then they
  * stay as they are for an interval. */

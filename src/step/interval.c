@@ -164,6 +164,7 @@ bool lar_interval_divide(const lar_domain *whole, uint64_t step, double seconds,
     double hardness =
         lar_tools_harden(whole->surroundings.list, tools, fading, seconds, 1 / whole->scale);
     const double go = lar_tools_go(whole->surroundings.list, tools, step);
+    const double reach = lar_division_reach(d);
     bool close = lar_division_is_close(d), let_go = lar_division_lets_go(d);
     d->still = still_now(whole, tools, step, hardness);
     d->untouched = untouched_now(whole, tools, (double)step * whole->time_step, seconds);
@@ -175,7 +176,8 @@ bool lar_interval_divide(const lar_domain *whole, uint64_t step, double seconds,
            (!bears(whole, tools, hardness, wanted) || goes_too_far(whole, go, wanted)))
         wanted = lar_more_parts(wanted);
     bool changed = hardness != d->hardness || wanted != d->parts ||
-                   close != lar_division_is_close(d) || let_go != lar_division_lets_go(d);
+                   close != lar_division_is_close(d) || let_go != lar_division_lets_go(d) ||
+                   (tools->grasp_count > 0 && reach != lar_division_reach(d));
     if (whole->burden) {
         const lar_heavy_room beside = room_beside(whole, tools, hardness, wanted);
         lar_heavier_settle(whole, &beside, fading, &tools->strained);
