@@ -305,7 +305,7 @@ bool lar_tools_are_slow(const lar_tool_list *list, const lar_tools *tools, uint6
     return slow;
 }
 
-double lar_tools_go(const lar_tool_list *list, const lar_tools *tools, uint64_t step) {
+double lar_tools_way(const lar_tool_list *list, const lar_tools *tools, uint64_t step) {
     double max = 0;
     for (int32_t i = 0; i < tools->count; i++)
         if (tools->follower[i].felt.depth > 0)

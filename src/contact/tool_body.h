@@ -53,7 +53,7 @@ double lar_tools_harden(const lar_tool_list *list, const lar_tools *tools, doubl
                         double seconds, double unit);
 
 /* How far a tool that tissue is in goes in a step, from step `step` on [m]. */
-double lar_tools_go(const lar_tool_list *list, const lar_tools *tools, uint64_t step);
+double lar_tools_way(const lar_tool_list *list, const lar_tools *tools, uint64_t step);
 
 /* Whether from step `step` on no tool goes faster than `speed` [m/s] anywhere, nor is kept from
  * its hand. */

@@ -111,9 +111,9 @@ static bool bears(const lar_domain *whole, const lar_tools *tools, double hardne
 
 /* Whether a tool that tissue is in goes too far in a part of a step: what an element is hit with
  * within one is known only after it. Known of hex8. */
-static bool goes_too_far(const lar_domain *whole, double go, int32_t parts) {
+static bool goes_too_far(const lar_domain *whole, double way, int32_t parts) {
     static const double SHARE = 0.1; /* of the thinnest element */
-    return whole->thinnest > 0 && go > SHARE * whole->thinnest * parts;
+    return whole->thinnest > 0 && way > SHARE * whole->thinnest * parts;
 }
 
 /* For how many decisions nothing has moved, this one counted. A tool that becomes harder moves what
@@ -163,7 +163,7 @@ bool lar_interval_divide(const lar_domain *whole, uint64_t step, double seconds,
     double fading = fmax(0.5, 1 - seconds / MEMORY);
     double hardness =
         lar_tools_harden(whole->surroundings.list, tools, fading, seconds, 1 / whole->scale);
-    const double go = lar_tools_go(whole->surroundings.list, tools, step);
+    const double way = lar_tools_way(whole->surroundings.list, tools, step);
     const double reach = lar_division_reach(d);
     bool close = lar_division_is_close(d), let_go = lar_division_lets_go(d);
     d->still = still_now(whole, tools, step, hardness);
@@ -173,7 +173,7 @@ bool lar_interval_divide(const lar_domain *whole, uint64_t step, double seconds,
     lar_heavier_fade(fading, &tools->strained);
     int32_t wanted = d->base;
     while (wanted < LAR_PARTS_MAX &&
-           (!bears(whole, tools, hardness, wanted) || goes_too_far(whole, go, wanted)))
+           (!bears(whole, tools, hardness, wanted) || goes_too_far(whole, way, wanted)))
         wanted = lar_more_parts(wanted);
     bool changed = hardness != d->hardness || wanted != d->parts ||
                    close != lar_division_is_close(d) || let_go != lar_division_lets_go(d) ||
