@@ -14,6 +14,9 @@ const FLAGS = [
 ];
 
 export const CHROMIUM = process.env.CHROMIUM ?? '/usr/bin/chromium';
+/* A wait ends when what it waits for is there; this is only the end of a wait for what never comes. A
+ * software renderer and an engine on two cores that others use have needed 12 s for what takes one. */
+const PATIENCE_MS = 60000;
 export const OUT = process.env.LARIAT_TEST_OUT ?? join(tmpdir(), 'lariat-browser-test');
 
 export async function openBrowser({ flags = [], ...options } = {}) {
@@ -40,7 +43,7 @@ export async function openBrowser({ flags = [], ...options } = {}) {
  * itself logs every refused WebSocket; who expects some, because the engine is gone, says so. */
 export async function openPage(browser, url, { drawn = true, expected = [] } = {}) {
     const page = await browser.context.newPage();
-    page.setDefaultTimeout(6000);
+    page.setDefaultTimeout(PATIENCE_MS);
     const complaints = [];
     const add = (text) => {
         if (!/GL Driver Message|GPU stall/.test(text) && !expected.some((e) => e.test(text)))
@@ -63,7 +66,7 @@ export async function openPage(browser, url, { drawn = true, expected = [] } = {
         page,
         complaints,
         get: (key) => page.evaluate((k) => window.lariat[k], key),
-        until: (condition, argument, ms = 8000) =>
+        until: (condition, argument, ms = PATIENCE_MS) =>
             page.waitForFunction(condition, argument, { timeout: ms, polling: 50 }),
         shot: (name) => page.screenshot({ path: join(OUT, `${name}.png`), scale: 'css' }),
         async close() {

@@ -89,7 +89,7 @@ test('pause, step, play and reset', async () => {
 test('pace', async () => {
     await fresh();
     await v.page.getByLabel('Pace').selectOption('0.1');
-    await v.page.getByText('0.1 × real time, as asked for').waitFor({ timeout: 3000 });
+    await v.page.getByText('0.1 × real time, as asked for').waitFor();
     await v.page.getByLabel('Pace').selectOption('1');
     await v.page.locator('#state-text', { hasText: /real time|slow motion/ }).waitFor();
 });
@@ -97,14 +97,14 @@ test('pace', async () => {
 test('record, save and load', async () => {
     await fresh();
     await button('Record').click();
-    await v.page.locator('#record[aria-pressed="true"]').waitFor({ timeout: 3000 });
+    await v.page.locator('#record[aria-pressed="true"]').waitFor();
     await drag(v.page, ...FUNDUS, 30, -40, 3);
     await v.page.waitForTimeout(200);
     await v.page.mouse.up();
     await button('Stop recording').click();
-    await v.page.getByText(/Saved: recording/).waitFor({ timeout: 3000 });
+    await v.page.getByText(/Saved: recording/).waitFor();
     await button('Save').click();
-    await v.page.getByText(/Saved: checkpoint/).waitFor({ timeout: 3000 });
+    await v.page.getByText(/Saved: checkpoint/).waitFor();
     const files = readdirSync(model.saved);
     assert.equal(files.length, 2, files.join(' '));
     for (const file of files) assert.ok(statSync(join(model.saved, file)).size > 1000, file);
@@ -118,17 +118,17 @@ test('a recording is played: listed, paused, scrubbed, left; and it outlives the
     await fresh();
     await v.page.locator('#picture').focus();
     await v.page.keyboard.press('c');
-    await v.page.locator('#record[aria-pressed="true"]').waitFor({ timeout: 3000 });
+    await v.page.locator('#record[aria-pressed="true"]').waitFor();
     await drag(v.page, ...FUNDUS, 40, -60, 8);
     await v.until(() => window.lariat.hand === 'holding' && window.lariat.displacement > 0.003);
     await v.page.waitForTimeout(600);
     await v.page.mouse.up();
     await v.page.waitForTimeout(800);
     await v.page.keyboard.press('c');
-    await v.page.locator('#record[aria-pressed="false"]').waitFor({ timeout: 3000 });
+    await v.page.locator('#record[aria-pressed="false"]').waitFor();
     await v.page.keyboard.press('o');
     const list = v.page.locator('#saved-recordings button');
-    await list.first().waitFor({ timeout: 3000 });
+    await list.first().waitFor();
     const name = await list.first().innerText();
     await fresh();
 
@@ -143,8 +143,8 @@ test('a recording is played: listed, paused, scrubbed, left; and it outlives the
     await p.page.locator('#saved').evaluate((card) => (card.open = true));
     assert.equal(await p.page.locator('#saved-states button').count(), await v.page.locator('#saved-states button').count());
     await p.page.getByRole('button', { name: `Play ${name}` }).click();
-    await p.page.locator('#replay').waitFor({ state: 'visible', timeout: 3000 });
-    await p.until(() => window.lariat.displacement > 0.003, undefined, 20000);
+    await p.page.locator('#replay').waitFor({ state: 'visible' });
+    await p.until(() => window.lariat.displacement > 0.003);
     await p.page.locator('#picture').focus();
     await p.page.keyboard.press('Space');
     await p.until(() => window.lariat.state === 'paused');
@@ -152,7 +152,7 @@ test('a recording is played: listed, paused, scrubbed, left; and it outlives the
     await p.shot('11-replay');
     const slider = p.page.getByLabel('Place in the recording');
     const half = (Number(await slider.getAttribute('max')) / 2).toFixed(2);
-    const arrived = (place) => p.until((text) => document.getElementById('replay-time').innerText.startsWith(`${text} of`), place, 20000);
+    const arrived = (place) => p.until((text) => document.getElementById('replay-time').innerText.startsWith(`${text} of`), place);
     await slider.fill('0'); // as the browser writes numbers: it refuses 0.30
     await arrived('0.00');
     await p.until(() => window.lariat.displacement < 1e-3 && window.lariat.state === 'paused');
@@ -165,23 +165,23 @@ test('a recording is played: listed, paused, scrubbed, left; and it outlives the
     await p.until((n) => window.lariat.frames > n + 2, seen);
     const middle = await p.get('hash');
     await slider.fill('0');
-    await p.until((h) => window.lariat.hash === h, hash, 20000);
+    await p.until((h) => window.lariat.hash === h, hash);
     await slider.fill(String(Number(half)));
-    await p.until((h) => window.lariat.hash === h, middle, 20000);
+    await p.until((h) => window.lariat.hash === h, middle);
     await p.page.locator('#picture').focus();
     await p.page.keyboard.press(';');
-    await p.until((text) => parseFloat(document.getElementById('replay-time').innerText) > Number(text) + 0.1 && window.lariat.state === 'paused', half, 20000);
+    await p.until((text) => parseFloat(document.getElementById('replay-time').innerText) > Number(text) + 0.1 && window.lariat.state === 'paused', half);
     await drag(p.page, ...FUNDUS, 10, -10, 2);
-    await p.page.getByText('a recording is being played').waitFor({ timeout: 3000 });
+    await p.page.getByText('a recording is being played').waitFor();
     await p.page.mouse.up();
     await p.page.keyboard.press('Space');
     await p.until(() => {
         const [here, end] = document.getElementById('replay-time').innerText.split(' of ').map(parseFloat);
         return window.lariat.state === 'paused' && end - here < 0.02;
-    }, undefined, 20000);
+    });
     assert.equal(await p.page.locator('#replay-trouble').innerText(), '', 'all hashes are equal');
     await p.page.keyboard.press('x');
-    await p.page.locator('#replay').waitFor({ state: 'hidden', timeout: 3000 });
+    await p.page.locator('#replay').waitFor({ state: 'hidden' });
     await p.page.keyboard.press('Space');
     await p.until(() => window.lariat.state === 'playing');
     await p.close();
@@ -192,7 +192,7 @@ test('colour maps change the picture, the legend and its range', async () => {
     await fresh();
     await drag(v.page, ...FUNDUS, 30, -60);
     // Far enough that no range is at its floor.
-    await v.until(() => window.lariat.hand === 'holding' && window.lariat.force > 0.01 && window.lariat.displacement > 0.003, undefined, 20000);
+    await v.until(() => window.lariat.hand === 'holding' && window.lariat.force > 0.01 && window.lariat.displacement > 0.003);
     const [tissue] = await colours(v.page, [MIDDLE]);
     const seen = new Set();
     const fields = [['displacement', 1, /m$/], ['von Mises stress', 4, /Pa$/], ['pressure', 8, /Pa$/]];
@@ -276,9 +276,9 @@ test('the hands of other viewers are drawn, and your pull is yours', async () =>
     await fresh();
     const other = await openPage(browser, engine.url);
     await drag(other.page, ...FUNDUS, 40, -60);
-    await other.until(() => window.lariat.hand === 'holding' && window.lariat.force > 0.01, undefined, 20000);
+    await other.until(() => window.lariat.hand === 'holding' && window.lariat.force > 0.01);
     await v.page.bringToFront();
-    await v.until(() => window.lariat.others === 1, undefined, 20000);
+    await v.until(() => window.lariat.others === 1);
     await v.shot('12-other-hand');
     assert.equal(await v.get('force'), 0, 'your pull is not theirs');
     assert.equal(await v.get('hand'), 'free');
@@ -287,7 +287,7 @@ test('the hands of other viewers are drawn, and your pull is yours', async () =>
     await other.page.mouse.up();
     await other.close();
     await v.page.bringToFront();
-    await v.until(() => window.lariat.others === 0, undefined, 20000);
+    await v.until(() => window.lariat.others === 0);
 });
 
 test('gravity pulls the organ down, a stiffer one gives less, and other viewers see it', async () => {
@@ -298,13 +298,13 @@ test('gravity pulls the organ down, a stiffer one gives less, and other viewers 
     await v.page.keyboard.press('0');
     await v.page.getByLabel('towards').selectOption('-z');
     await v.page.locator('#gravity').fill('15');
-    await v.until(() => window.lariat.displacement > 1e-3, undefined, 20000);
+    await v.until(() => window.lariat.displacement > 1e-3);
     await v.until(() => window.lariat.body.gravity[2] === -15);
     await v.page.locator('#damping').fill('0.5');
     await v.page.waitForTimeout(1500);
     const sagged = await v.get('displacement');
     await v.page.locator('#stiffness').fill('1');
-    await v.until((soft) => window.lariat.body.stiffness.every((factor) => factor === 4) && window.lariat.displacement < 0.6 * soft, sagged, 20000);
+    await v.until((soft) => window.lariat.body.stiffness.every((factor) => factor === 4) && window.lariat.displacement < 0.6 * soft, sagged);
     await v.shot('13-body');
     await other.page.bringToFront();
     await other.until(() => window.lariat.body.stiffness[0] === 4 && document.getElementById('body-short').textContent === 'changed');
@@ -343,7 +343,7 @@ test('a scene from a scan: its slices, and the instruments beside it', async () 
     await s.page.keyboard.press('q');
     await s.until(() => window.lariat.scan);
     await s.page.keyboard.press('a');
-    await s.page.getByText('i 12 of 24').waitFor({ timeout: 3000 });
+    await s.page.getByText('i 12 of 24').waitFor();
     assert.deepEqual(await s.page.locator('#tool-list button').evaluateAll((all) => all.map((one) => one.getAttribute('aria-label') ?? one.textContent)), ['hand', 'probe', 'grasper']);
     await s.page.waitForTimeout(400);
     await s.shot('14-scan');
@@ -401,16 +401,17 @@ test('a tool is added by keyboard, presses the organ, is felt, and is removed', 
     assert.ok((await v.get('displacement')) < 1e-3, 'it touches nothing yet');
     const second = await openPage(browser, engine.url);
     await second.until(() => window.lariat.names.includes('sphere 1'));
-    await second.page.getByRole('radio', { name: 'sphere 1' }).waitFor({ timeout: 3000 });
+    await second.page.getByRole('radio', { name: 'sphere 1' }).waitFor();
     await second.close();
     await v.page.bringToFront();
     // Down into the organ: its force and its limit are shown, and the tissue gives way.
     await keys.press('p');
-    for (let i = 0; i < 14 && (await v.get('force')) < 0.05; i++) {
+    const pressed = () => window.lariat.force > 0.05 && window.lariat.displacement > 2e-3;
+    for (let i = 0; i < 14 && !(await v.page.evaluate(pressed)); i++) {
         await keys.press('ArrowDown');
         await v.page.waitForTimeout(120);
     }
-    await v.until(() => window.lariat.force > 0.05 && window.lariat.displacement > 2e-3);
+    await v.until(pressed);
     assert.match(await v.page.getByRole('radio', { name: 'sphere 1' }).innerText(), /of \d+\.\d\d N/);
     await v.shot('tool-pressed');
     // A size that cannot be is said by the engine.
@@ -418,7 +419,7 @@ test('a tool is added by keyboard, presses the organ, is felt, and is removed', 
     await keys.press('Insert');
     await v.page.locator('#add-radius').fill('4000');
     await keys.press('Enter');
-    await v.page.getByText('too large for a body').waitFor({ timeout: 3000 });
+    await v.page.getByText('too large for a body').waitFor();
     // A reset keeps it, above the body.
     await v.page.locator('#picture').focus();
     await fresh();
@@ -453,7 +454,7 @@ test('after a reset an instrument is where the scene has it, and stays there', a
     await v.until((x) => Math.hypot(...window.lariat.tools[1].slice(0, 3).map((y, i) => y - x[i])) > 0.005, rest);
     await keys.press('r');
     await v.until((x) => Math.hypot(...window.lariat.tools[1].slice(0, 3).map((y, i) => y - x[i])) < 1e-6, rest);
-    await v.page.getByText('take it anew').waitFor({ timeout: 3000 });
+    await v.page.getByText('take it anew').waitFor();
     await keys.press('ArrowLeft'); // it is nobody's now: this turns the view
     await v.page.waitForTimeout(500);
     assert.ok(apart(await grasper(), rest) < 1e-6, 'a key brings it back');
@@ -537,7 +538,7 @@ test('two families of fibres in an artery: lines on its faces, which turn with t
     await a.page.getByLabel('fibres').evaluate((box) => box.click());
     await a.until(() => window.lariat.fibres > 0);
     assert.equal((await a.get('fibres')) % 2, 0);
-    await a.until(() => window.lariat.displacement > 0.0002, undefined, 20000);
+    await a.until(() => window.lariat.displacement > 0.0002);
     await a.page.waitForTimeout(300);
     await a.shot('11-artery-fibres');
     assert.equal(await a.get('torn'), 0);
@@ -548,11 +549,11 @@ test('two families of fibres in an artery: lines on its faces, which turn with t
 test('a run that breaks is explained, and reset takes it up again', async () => {
     const torn = await view(tornDemo(model), '--port', '0');
     const t = await openPage(browser, torn.url, { drawn: false });
-    await t.page.getByText('The simulation has stopped').waitFor({ timeout: 15000 });
+    await t.page.getByText('The simulation has stopped').waitFor();
     assert.match(await t.page.locator('#trouble-text').innerText(), /element|node/);
     await t.shot('6-stopped');
     await t.page.locator('#trouble-do').click();
-    await t.page.locator('#trouble').waitFor({ state: 'hidden', timeout: 3000 });
+    await t.page.locator('#trouble').waitFor({ state: 'hidden' });
     await t.close();
     await torn.end();
 });
@@ -561,11 +562,11 @@ test('an engine that is killed is missed within 3 s, and found again', async () 
     const first = await view(model.scene, '--port', '0');
     const t = await openPage(browser, first.url, { expected: [/WebSocket connection/, /failed: /] });
     await first.end('SIGKILL');
-    await t.page.getByText('No connection to the engine').waitFor({ timeout: 3000 });
+    await t.page.getByText('No connection to the engine').waitFor();
     await t.shot('7-lost');
     const second = await view(model.scene, '--port', String(first.port));
     assert.equal(second.port, first.port);
-    await t.page.locator('#trouble').waitFor({ state: 'hidden', timeout: 8000 });
+    await t.page.locator('#trouble').waitFor({ state: 'hidden' });
     const frames = await t.get('frames');
     await t.until((n) => window.lariat.frames > n + 1, frames);
     await t.close();

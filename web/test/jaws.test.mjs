@@ -51,7 +51,7 @@ after(async () => {
 
 /* What the entry of the grasper says, at any moment from now on. */
 const says = (words) =>
-    v.until((w) => new RegExp(w).test(document.getElementById('tool-list').innerText), words, 60000);
+    v.until((w) => new RegExp(w).test(document.getElementById('tool-list').innerText), words);
 
 test('jaws close at 0.7 N, and open, while a probe presses: it goes on, and the page says how hard', async () => {
     await says('0\\.[67]\\d of \\d\\.\\d\\d N, grasp 0\\.\\d\\d N');

@@ -99,7 +99,7 @@ for (const riding of [false, true])
         await v.page.locator('#picture').focus();
         await v.page.keyboard.press('h');
         await v.page.keyboard.press('h');
-        await v.page.getByText(/(uterus|tubes): hidden/).first().waitFor({ timeout: 3000 });
+        await v.page.getByText(/(uterus|tubes): hidden/).first().waitFor();
         await v.page.keyboard.press('u');
         await v.page.waitForTimeout(400);
         const [back] = await colours(v.page, [UPPER]);
@@ -115,7 +115,7 @@ test('lines along fibres are drawn where there are some, and not on hidden organ
     assert.equal(await none.page.locator('#fibres-row').isVisible(), false);
     await none.page.locator('#picture').focus();
     await none.page.keyboard.press('/');
-    await none.page.getByText('Nothing in this scene has fibres.').waitFor({ timeout: 3000 });
+    await none.page.getByText('Nothing in this scene has fibres.').waitFor();
     assert.equal(await none.get('fibres'), 0);
     await none.close();
     const v = await openPage(browser, own.url);
@@ -200,7 +200,7 @@ test('a distance is measured between two places, now and at rest, and follows th
     await v.page.locator('#picture').focus();
     await v.page.keyboard.press('d');
     await v.page.mouse.click(500, 160);
-    await v.page.getByText('One end is set.').waitFor({ timeout: 3000 });
+    await v.page.getByText('One end is set.').waitFor();
     await v.page.mouse.click(500, 480);
     await v.until(() => window.lariat.measured > 0);
     const still = await v.get('measured');
@@ -234,7 +234,7 @@ test('a distance is measured between two places, now and at rest, and follows th
     // By keyboard alone, and from anew with the third end.
     await v.page.keyboard.press('d');
     await v.page.keyboard.press('Enter');
-    await v.page.getByText('One end is set.').waitFor({ timeout: 3000 });
+    await v.page.getByText('One end is set.').waitFor();
     for (let i = 0; i < 4; i++) await v.page.keyboard.press('ArrowUp');
     await v.page.waitForTimeout(600);
     await v.page.keyboard.press('Enter');
@@ -252,9 +252,9 @@ test('energies and times are plotted, and asked for only while they are seen', a
     own.state.late = 3;
     await v.page.locator('#picture').focus();
     await v.page.keyboard.press('y');
-    await v.page.getByText('strain 1.01 mJ, kinetic').waitFor({ timeout: 3000 });
-    await v.page.getByText(/Answers to tools, due within 1\.00 ms: 3 of \d+ missed/).waitFor({ timeout: 3000 });
-    await v.page.getByText('A step, of the 100 µs that it stands for').waitFor({ timeout: 3000 });
+    await v.page.getByText('strain 1.01 mJ, kinetic').waitFor();
+    await v.page.getByText(/Answers to tools, due within 1\.00 ms: 3 of \d+ missed/).waitFor();
+    await v.page.getByText('A step, of the 100 µs that it stands for').waitFor();
     await v.page.waitForTimeout(1500);
     const drawn = (id) => v.page.evaluate((name) => {
         const canvas = document.getElementById(name);
@@ -321,7 +321,7 @@ test('slices of the scan are shown where they lie, and are asked for one at a ti
     await v.until(() => window.lariat.scan);
     await v.page.keyboard.press('a');
     await v.page.keyboard.press('a'); // k, i, j: across the line of sight
-    await v.page.getByText('j 8 of 17').waitFor({ timeout: 3000 });
+    await v.page.getByText('j 8 of 17').waitFor();
     await v.page.waitForTimeout(400);
     await v.shot('scan');
     const [bone, still] = await colours(v.page, [BONE, [500, 320]]);
@@ -335,11 +335,11 @@ test('slices of the scan are shown where they lie, and are asked for one at a ti
     await v.shot('scan-cut');
     // As fast as the slider goes, one is under way at a time.
     await v.page.getByLabel('Which slice').fill('3');
-    await v.page.getByText('j 3 of 17').waitFor({ timeout: 3000 });
+    await v.page.getByText('j 3 of 17').waitFor();
     await v.page.locator('#picture').focus();
     const asked = own.state.slices;
     for (let i = 0; i < 5; i++) await v.page.keyboard.press('}');
-    await v.page.getByText('j 8 of 17').waitFor({ timeout: 3000 });
+    await v.page.getByText('j 8 of 17').waitFor();
     assert.ok(own.state.slices <= asked + 5, `${own.state.slices - asked} slices`);
     await v.page.keyboard.press('q');
     assert.equal(await v.get('scan'), false);
@@ -350,14 +350,14 @@ test('slices of the scan are shown where they lie, and are asked for one at a ti
     const w = await openPage(browser, server.url);
     await w.page.locator('#picture').focus();
     await w.page.keyboard.press('q');
-    await w.page.getByText('There is no scan').waitFor({ timeout: 3000 });
+    await w.page.getByText('There is no scan').waitFor();
     assert.equal(await w.page.getByLabel('scan slice').isVisible(), false);
     await w.close();
 });
 
 /* What the browser saves when something is done, and its name. */
 async function saved(page, act) {
-    const [download] = await Promise.all([page.waitForEvent('download', { timeout: 8000 }), act()]);
+    const [download] = await Promise.all([page.waitForEvent('download', ), act()]);
     return { name: download.suggestedFilename(), data: readFileSync(await download.path()) };
 }
 
@@ -404,7 +404,7 @@ test('a video is filmed and saved', async () => {
     const v = await openPage(browser, server.url);
     await v.page.locator('#picture').focus();
     await v.page.keyboard.press('w');
-    await v.page.locator('#filming').waitFor({ state: 'visible', timeout: 3000 });
+    await v.page.locator('#filming').waitFor({ state: 'visible' });
     for (let i = 0; i < 20; i++) {
         await v.page.keyboard.press('ArrowLeft');
         await v.page.waitForTimeout(60);
@@ -413,7 +413,7 @@ test('a video is filmed and saved', async () => {
     assert.match(name, /^pear-\d+\.webm$/);
     assert.equal(data.readUInt32BE(0), 0x1a45dfa3, 'WebM');
     assert.ok(data.length > 5000, `${data.length} bytes`);
-    await v.page.locator('#filming').waitFor({ state: 'hidden', timeout: 3000 });
+    await v.page.locator('#filming').waitFor({ state: 'hidden' });
     // Clusters with blocks of pictures, one after the other.
     assert.ok(data.includes(Buffer.from([0x1f, 0x43, 0xb6, 0x75])), 'pictures are in it');
     await v.close();
