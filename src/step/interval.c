@@ -31,6 +31,18 @@ static double slow(const lar_domain *whole, const lar_step_division *division) {
     return SHARE * thinnest / (2 * sqrt(3) * seconds);
 }
 
+/* An element that is taken through a blow as a heavier one goes through it in few long parts of a
+ * step, where leapfrog is least exact: while nodes go farther than that in a step, it is parts that
+ * are taken, as many as the elements need or as keep nodes from going farther in one. */
+static void divide_blows(const lar_domain *whole, const lar_needs *needs, lar_heavy_list *list) {
+    static const double SHARE = 0.03; /* of the thinnest element at rest */
+    if (!whole->burden || needs->count == 0 || !(whole->thinnest > 0)) return;
+    double way = needs->fastest * whole->time_step / (SHARE * whole->thinnest);
+    if (way > 1)
+        list->beyond_need =
+            larger(list->beyond_need, fmin(needs->of[0].need, whole->room.max * way * way));
+}
+
 void lar_interval_harvest(lar_interval *interval, const lar_domain *whole, const lar_report *report,
                           uint64_t steps, lar_tools *tools) {
     int32_t parts = tools->division.parts;
@@ -42,6 +54,7 @@ void lar_interval_harvest(lar_interval *interval, const lar_domain *whole, const
     if (steps > 0 && parts > interval->parts) interval->parts = parts;
     tools->division.need = larger(tools->division.need, report->need);
     lar_heavier_harvest(&report->needs, &tools->strained);
+    divide_blows(whole, &report->needs, &tools->strained);
     lar_step_division *d = &tools->division;
     if (d->still > 0 && !(report->needs.fastest <= slow(whole, d))) d->still = (int8_t)-d->still;
     for (int32_t t = 0; t < tools->count; t++) {

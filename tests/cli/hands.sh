@@ -3,6 +3,7 @@
 # some that once made energy: a spleen of 300 elements that a hand had drawn out sprang back to its
 # barriers within two steps, and 11 mJ came out of them where there were 10. A liver and a duodenum
 # that were hit at up to 1 m/s had 9 and 2 % too much: barriers soft on the way in, hard on the way out.
+# The last one once more between processes, where what tools do is sent to the others.
 HANDS=$5
 . "$(dirname "$0")/lib.sh"
 cd "$SCRATCH" || exit 1
@@ -31,5 +32,9 @@ if [ -f "$labels/totalseg_abdomen_pelvis_3mm.nii.gz" ]; then
     organ spleen 20016 9.5 2
     organ liver 70006 6 1
     organ duodenum 90014 0.9 0
+    alone=$(cut -d'|' -f19 out)
+    expect 0 "$HANDS" duodenum/duodenum.yaml --name duodenum --seed 90014 --sessions 1 \
+        --seconds 0.9 --coupled --rows --grid 2x1x1 --comm shm
+    [ "$(cut -d'|' -f19 out)" = "$alone" ] || fail "duodenum: between processes another hash"
 fi
 finish "random hands"

@@ -11,6 +11,7 @@
 #include "base/quaternion.h"
 #include "base/vector.h"
 #include "divide/random.h"
+#include "fleet.h"
 #include "tool.h"
 
 static const char usage[] =
@@ -24,6 +25,7 @@ static const char usage[] =
     "  --contact       the surface touches itself\n"
     "  --coupled       hands lead by springs, as in a session\n"
     "  --grid XxYxZ    processors\n"
+    "  --comm BACKEND  these as processes would be: shm, tcp\n"
     "  --every N       looks at the state every N ms; default 5\n"
     "  --log           says on stderr what is done when\n"
     "  --rows          without the table's head\n"
@@ -41,7 +43,7 @@ static const double PULL = 0.1;                  /* [m] */
 static const double TURN = 1.5;                  /* at most, of a leg [rad] */
 
 typedef struct lar_hands_options {
-    const char *scene, *name, *grid;
+    const char *scene, *name, *grid, *comm;
     double seconds;
     int sessions, without_hand, weightless, contact, coupled, every, log, rows, head;
     uint64_t seed;
@@ -346,7 +348,10 @@ static lar_status session(const lar_hands_options *options, const lar_model *mod
     with.grid = options->grid;
     with.hands = h.tools - HAND;
     h.out.min_corner = INFINITY;
-    lar_status status = lar_simulation_create(model, &with, &h.simulation, error);
+    static lar_fleet fleet;
+    lar_status status = LAR_OK;
+    if (options->comm) status = lar_fleet_start(&fleet, model, options->comm, &with, error);
+    if (!status) status = lar_simulation_create(model, &with, &h.simulation, error);
     for (int t = 0; t < h.tools && !status; t++)
         status = lar_guide_create(h.simulation, t, options->coupled, &h.guide[t], error);
     if (!status) {
@@ -355,6 +360,7 @@ static lar_status session(const lar_hands_options *options, const lar_model *mod
     }
     if (!status) print_row(&h, seed);
     lar_simulation_destroy(h.simulation);
+    lar_fleet_join(&fleet);
     return status;
 }
 
@@ -386,13 +392,12 @@ static lar_status open_scene(const lar_hands_options *options, lar_model **model
 }
 
 static lar_hands_options read_options(int count, char **word) {
-    static const struct option known[] = {{"sessions", 1, 0, 'n'},   {"seed", 1, 0, 's'},
-                                          {"seconds", 1, 0, 'S'},    {"name", 1, 0, 'N'},
-                                          {"contact", 0, 0, 'C'},    {"coupled", 0, 0, 'H'},
-                                          {"grid", 1, 0, 'g'},       {"every", 1, 0, 'e'},
-                                          {"log", 0, 0, 'l'},        {"rows", 0, 0, 'r'},
-                                          {"head", 0, 0, 'h'},       {"without-hand", 0, 0, 'w'},
-                                          {"weightless", 0, 0, 'W'}, {0}};
+    static const struct option known[] = {
+        {"sessions", 1, 0, 'n'},   {"seed", 1, 0, 's'},    {"seconds", 1, 0, 'S'},
+        {"name", 1, 0, 'N'},       {"contact", 0, 0, 'C'}, {"coupled", 0, 0, 'H'},
+        {"grid", 1, 0, 'g'},       {"every", 1, 0, 'e'},   {"log", 0, 0, 'l'},
+        {"rows", 0, 0, 'r'},       {"head", 0, 0, 'h'},    {"without-hand", 0, 0, 'w'},
+        {"weightless", 0, 0, 'W'}, {"comm", 1, 0, 'c'},    {0}};
     lar_hands_options o = {.sessions = 5, .seed = 1, .seconds = 10, .every = 5};
     for (int c; (c = getopt_long(count, word, "", known, NULL)) != -1;) {
         if (c == 'n') o.sessions = atoi(optarg);
@@ -402,6 +407,7 @@ static lar_hands_options read_options(int count, char **word) {
         if (c == 'C') o.contact = 1;
         if (c == 'H') o.coupled = 1;
         if (c == 'g') o.grid = optarg;
+        if (c == 'c') o.comm = optarg;
         if (c == 'e') o.every = atoi(optarg);
         if (c == 'l') o.log = 1;
         if (c == 'r') o.rows = 1;

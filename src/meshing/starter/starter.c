@@ -160,10 +160,10 @@ static void put_motion(const lar_meshing *m, FILE *f) {
         "time_step: auto\n"
         "damping: %g             # 1/s; let go, it comes to rest in about %.2g s\n"
         "duration: %g              # s; a run lasts so long unless --time says otherwise\n"
-        "# Where tools squeeze it, elements may move with more mass meanwhile, up to 2 %% of all:\n"
-        "# steps are divided into fewer parts, and the clock is kept longer; but some per cent of\n"
-        "# the energy of a blow are then not accounted for.\n"
-        "#     mass_scaling: { strained: 0.02 }\n\n",
+        "# Where tools squeeze it, elements move with more mass for a while, up to 2 %% of all, "
+        "in\n"
+        "# place of shorter steps for the whole body:\n"
+        "mass_scaling: { strained: 0.02 }\n\n",
         m->support.carried ? "What holds it bears its weight besides" : "For its weight besides",
         m->image ? "the patient lying on the back" : "lying on its back", squeezed_step(m),
         damping(m), settling(m), duration(m));
