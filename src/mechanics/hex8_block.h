@@ -18,7 +18,8 @@
  * And one makes models that are larger than caches cheaper, again with the same bits:
  *
  *     lean     gradients and shapes follow from where the nodes are at rest, which neighbours
- * share: 96 bytes per element and 24 per node are read instead of 328, and the rest is made anew in
+ * share, nodes of a row from its first ones, and moduli from volume and material: 48 bytes per
+ * element (80 outside rows) and 24 per node are read instead of 328, and the rest is made anew in
  * every step, a few blocks at a time (docs/performance.md, "Lean blocks").
  *
  * Forces are 64-bit integers, newtons times the model's scale, a power of two (docs/theory.md). The
@@ -66,9 +67,16 @@ typedef struct lar_hex8_block { /* LAR_SHAPE_GENERAL */
 
 /* What is kept of a general block where it is made anew in every step. */
 typedef struct lar_lean_block {
-    lar_block_head head;
-    double volume[LAR_BLOCK]; /* at rest [m^3]; LAR_LEAN_NOTHING in lanes without an element */
-} lar_lean_block;
+    double stiffness[LAR_HEX8_HOURGLASS][LAR_BLOCK]; /* as in a head */
+    double volume[LAR_BLOCK];    /* at rest [m^3]; LAR_LEAN_NOTHING in lanes without an element */
+    int32_t material[LAR_BLOCK]; /* row of the run's parameters */
+    int32_t line[4][2]; /* of rows: first local node of each line, and the one four further */
+} __attribute__((aligned(64))) lar_lean_block;
+/* The same of lanes that do not lie in rows. */
+typedef struct lar_loose_block {
+    lar_lean_block lean;
+    int32_t node[8][LAR_BLOCK]; /* local nodes */
+} lar_loose_block;
 /* So large that all gradients are as good as zero. */
 #define LAR_LEAN_NOTHING 1e200
 
@@ -119,6 +127,12 @@ static inline bool lar_law_has_more(lar_law law) {
     return lar_law_table[law].count > LAR_BLOCK_PARAMETERS;
 }
 
+/* A law's parameters times the scale, before those that stiffness scales are multiplied with a
+ * volume; all 0 in the row for lanes without an element, which is the last. */
+typedef struct lar_lean_parameters {
+    double of[LAR_BLOCK_PARAMETERS];
+} lar_lean_parameters;
+
 /* Consecutive blocks of one law, one shape and one kind of rows. */
 typedef struct lar_block_run {
     lar_law law;
@@ -128,9 +142,11 @@ typedef struct lar_block_run {
     bool streamed; /* the blocks of the model are more than caches hold: ask ahead */
     int32_t count;
     size_t axis_stride; /* values from one axis of a node to the next, in all of its arrays */
-    const void *blocks; /* lar_hex8_block, lar_box_block or lar_lean_block [count] */
+    const void
+        *blocks; /* lar_hex8_block, lar_box_block, lar_lean_block or lar_loose_block [count] */
     const lar_block_more *more; /* [count], NULL when the law has no more parameters */
     const double *rest;         /* [3][axis_stride] at rest [m]: the blocks are lean. Else NULL */
+    const lar_lean_parameters *parameters; /* of lean blocks [materials + 1] */
     int viscous; /* lar_viscosity_kind; 0: elastic, and what follows does not count */
     int terms;
     bool isochoric;
@@ -151,7 +167,43 @@ typedef struct lar_viscous_step {
 
 /* From one block of a run to the next. */
 static inline size_t lar_run_stride(const lar_block_run *run) {
-    return run->rest ? sizeof(lar_lean_block) : lar_block_size(run->shape);
+    if (!run->rest) return lar_block_size(run->shape);
+    return run->rows == LAR_ROWS_NONE ? sizeof(lar_loose_block) : sizeof(lar_lean_block);
+}
+
+static inline const void *lar_run_block(const lar_block_run *run, int32_t b) {
+    return (const char *)run->blocks + (size_t)b * lar_run_stride(run);
+}
+
+/* Corner a of a lane in a row: on the line of the edge along xi that it ends. */
+static inline int32_t lar_lean_node(const lar_lean_block *lean, int a, int lane) {
+    int right = (a ^ a >> 1) & 1;
+    return lean->line[a / 2][lane / 4] + lane % 4 + right;
+}
+
+/* What a whole block begins with, of a lean one. */
+static inline void lar_lean_head(const lar_block_run *run, const lar_lean_block *lean,
+                                 lar_block_head *head) {
+    memcpy(head->stiffness, lean->stiffness, sizeof head->stiffness);
+    if (run->rows == LAR_ROWS_NONE)
+        memcpy(head->node, ((const lar_loose_block *)(const void *)lean)->node, sizeof head->node);
+    for (int a = 0; a < 8 && run->rows != LAR_ROWS_NONE; a++)
+        for (int lane = 0; lane < LAR_BLOCK; lane++)
+            head->node[a][lane] = lar_lean_node(lean, a, lane);
+    for (int k = 0; k < LAR_BLOCK_PARAMETERS; k++) {
+        for (int lane = 0; lane < LAR_BLOCK; lane++)
+            head->modulus[k][lane] = run->parameters[lean->material[lane]].of[k];
+        for (int lane = 0; lane < LAR_BLOCK && lar_law_scales(run->law, k); lane++)
+            head->modulus[k][lane] *= lean->volume[lane];
+    }
+}
+
+/* The local node at corner a of a lane of block b. */
+static inline int32_t lar_run_node(const lar_block_run *run, int32_t b, int a, int lane) {
+    const void *block = lar_run_block(run, b);
+    if (!run->rest) return ((const lar_block_head *)block)->node[a][lane];
+    if (run->rows == LAR_ROWS_NONE) return ((const lar_loose_block *)block)->node[a][lane];
+    return lar_lean_node(block, a, lane);
 }
 
 /* How much of a run's active stress is there now. */

@@ -38,7 +38,7 @@ LAR_INLINE lar_lane quotient(lar_lane a, lar_lane b, lar_lane reciprocal) {
 LAR_INLINE void expand_lanes(const lar_lean_block *lean, int lane, lar_block_rows rows,
                              lane_nodes rest, lar_hex8_block *whole) {
     lar_lane X[7][3];
-    gather_modes(&lean->head, lane, rows, false, rest, X);
+    gather_modes(&whole->head, lane, rows, false, rest, X);
     lar_lane volume = lar_lane_load(&lean->volume[lane]), reciprocal = lar_lane_set(1) / volume;
     UNROLL6 for (int m = 0; m < LAR_HEX8_GRADIENTS; m++) UNROLL3 for (int i = 0; i < 3; i++) {
         lar_lane term[2];
@@ -53,22 +53,15 @@ LAR_INLINE void expand_lanes(const lar_lean_block *lean, int lane, lar_block_row
         lar_lane_store(&whole->shape[m][i][lane], X[3 + m][i]);
 }
 
-static void expand_some(const lar_lean_block *lean, size_t count, lar_block_rows rows,
-                        lane_nodes rest, lar_hex8_block *whole) {
-    for (; count > 0; count--, lean++, whole++) {
-        whole->head = lean->head;
-        for (int lane = 0; lane < LAR_BLOCK; lane += LAR_LANES)
-            expand_lanes(lean, lane, rows, rest, whole);
-    }
-}
-
 static lane_nodes nodes_of(const lar_block_run *run, const double *value) {
     return (lane_nodes){value, run->axis_stride};
 }
 
 static void expand(const lar_block_run *run, int32_t b, lar_hex8_block *whole) {
-    expand_some((const lar_lean_block *)run->blocks + b, 1, run->rows, nodes_of(run, run->rest),
-                whole);
+    const void *block = lar_run_block(run, b);
+    lar_lean_head(run, block, &whole->head);
+    for (int lane = 0; lane < LAR_BLOCK; lane += LAR_LANES)
+        expand_lanes(block, lane, run->rows, nodes_of(run, run->rest), whole);
 }
 
 /* ---- phases -------------------------------------------------------------------------------- */
@@ -431,7 +424,7 @@ LAR_INLINE int64_t recover_form(const lar_block_run *run, int fibrous, const lar
         size_t count = (size_t)(run->count - b < CHUNK ? run->count - b : CHUNK);
         const char *kept = (const char *)run->blocks + (size_t)b * stride, *blocks = kept;
         if (run->rest) {
-            expand_some((const void *)kept, count, run->rows, nodes_of(run, run->rest), made);
+            for (size_t i = 0; i < count; i++) expand(run, b + (int32_t)i, &made[i]);
             blocks = (const void *)made;
         }
         strain(blocks, count, run->rows, run->turn, nodes_of(run, u), record);

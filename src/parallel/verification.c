@@ -88,17 +88,14 @@ void lar_verification_recover(const lar_verification *verification, const lar_do
         const lar_block_run *run = &domain->run[r];
         for (int32_t b = 0; b < run->count; b++) {
             const lar_lanes *lanes = &domain->layout.block[domain->run_first[r] + b];
-            /* The nodes that the kernel would use. */
-            const lar_block_head *head =
-                domain->kind == LAR_ELEMENT_HEX8
-                    ? (const void *)((const char *)run->blocks + (size_t)b * lar_run_stride(run))
-                    : NULL;
             for (int lane = 0; lane < LAR_BLOCK; lane++) {
                 lar_gid e = lanes->element[lane];
                 if (e < 0 || e % passes != pass) continue;
                 for (int a = 0; a < 8; a++) {
-                    lar_lid node = head ? head->node[a][lane]
-                                        : domain->layout.local[domain->layout.corner[e][a]];
+                    /* That the kernel would use. */
+                    lar_lid node = domain->kind == LAR_ELEMENT_HEX8
+                                       ? lar_run_node(run, b, a, lane)
+                                       : domain->layout.local[domain->layout.corner[e][a]];
                     insert(state, node, e / passes);
                 }
             }

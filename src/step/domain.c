@@ -72,6 +72,16 @@ static lar_status list_spares(lar_domain *domain, lar_error *error) {
     return LAR_OK;
 }
 
+/* Lean rows know their lines only. */
+static void put_node(const lar_block_run *run, void *block, int a, int lane, lar_lid node) {
+    if (!run->rest)
+        ((lar_block_head *)block)->node[a][lane] = node;
+    else if (run->rows == LAR_ROWS_NONE)
+        ((lar_loose_block *)block)->node[a][lane] = node;
+    else if (lane % 4 == 0 && (a == 0 || a == 3 || a == 4 || a == 7))
+        ((lar_lean_block *)block)->line[a / 2][lane / 4] = node;
+}
+
 /* `memory`: the block; `whole`: where the gradients and shapes of a general one go. */
 static void fill_lane(const lar_domain *domain, const lar_block_run *run, void *memory,
                       lar_hex8_block *whole, int lane, lar_gid e, double *steepest,
@@ -79,7 +89,6 @@ static void fill_lane(const lar_domain *domain, const lar_block_run *run, void *
     lar_block_shape shape = run->shape;
     const lar_mesh *mesh = &domain->model->mesh;
     const lar_gid *node = domain->layout.corner[e];
-    lar_block_head *head = memory;
     double corner[8][3];
     lar_hex8 hex8;
     for (int a = 0; a < 8; a++) memcpy(corner[a], mesh->position[node[a]], sizeof corner[a]);
@@ -96,7 +105,7 @@ static void fill_lane(const lar_domain *domain, const lar_block_run *run, void *
         for (int i = 0; shape == LAR_SHAPE_GENERAL && i < 3; i++)
             whole->shape[m][i][lane] = hex8.shape[m][i];
     if (run->rest) ((lar_lean_block *)memory)->volume[lane] = hex8.volume;
-    for (int a = 0; a < 8; a++) head->node[a][lane] = domain->layout.local[node[a]];
+    for (int a = 0; a < 8; a++) put_node(run, memory, a, lane, domain->layout.local[node[a]]);
     base->volume = hex8.volume;
     memcpy(base->stiffness, hex8.stiffness, sizeof base->stiffness);
     base->limit =
@@ -214,9 +223,11 @@ static bool fill_block(lar_domain *domain, int32_t r, int32_t b, void *memory, d
             lar_materials_fill(domain, r, b, memory, lane);
             continue;
         }
-        if (run->rest) ((lar_lean_block *)memory)->volume[lane] = LAR_LEAN_NOTHING;
-        for (int a = 0; a < 8; a++)
-            ((lar_block_head *)memory)->node[a][lane] = domain->layout.node_padded;
+        if (run->rest) {
+            ((lar_lean_block *)memory)->volume[lane] = LAR_LEAN_NOTHING;
+            ((lar_lean_block *)memory)->material[lane] = domain->model->material_count;
+        }
+        for (int a = 0; a < 8; a++) put_node(run, memory, a, lane, domain->layout.node_padded);
     }
     return !run->rest || same_numbers(domain, run, b, lanes, whole);
 }
@@ -260,16 +271,23 @@ static lar_status build_blocks(lar_domain *domain, lar_error *error) {
     for (int32_t r = 0; r < domain->run_count && domain->lean; r++) {
         lar_block_run *run = &domain->run[r];
         if (run->shape != LAR_SHAPE_GENERAL) continue;
-        domain->block_bytes -=
-            (size_t)run->count * (sizeof(lar_hex8_block) - sizeof(lar_lean_block));
+        size_t kept = run->rows == LAR_ROWS_NONE ? sizeof(lar_loose_block) : sizeof(lar_lean_block);
+        domain->block_bytes -= (size_t)run->count * (sizeof(lar_hex8_block) - kept);
     }
+    size_t blocks = domain->block_bytes, rows = (size_t)domain->model->material_count + 1;
+    if (domain->lean) domain->block_bytes += rows * sizeof *domain->lean_parameters;
     if (!status) status = allocate_blocks(domain, error);
     if (status) return status;
-    for (int32_t r = 0; r < domain->run_count && domain->lean; r++)
-        if (domain->run[r].shape == LAR_SHAPE_GENERAL) domain->run[r].rest = domain->rest;
+    if (domain->lean) domain->lean_parameters = (void *)((char *)domain->blocks + blocks);
+    for (int32_t r = 0; r < domain->run_count && domain->lean; r++) {
+        if (domain->run[r].shape != LAR_SHAPE_GENERAL) continue;
+        domain->run[r].rest = domain->rest;
+        domain->run[r].parameters = domain->lean_parameters;
+    }
     if (fill_blocks(domain)) return LAR_OK;
     free(domain->blocks);
     domain->lean = false;
+    domain->lean_parameters = NULL;
     domain->block_bytes = whole;
     for (int32_t r = 0; r < domain->run_count; r++) domain->run[r].rest = NULL;
     domain->blocks = lar_calloc_aligned(whole, 1);
@@ -294,10 +312,13 @@ static double thinnest_of(const lar_domain *domain) {
 void lar_domain_element(const lar_domain *domain, int32_t r, int32_t b, int lane, lar_hex8 *hex8) {
     const lar_block_run *run = &domain->run[r];
     const lar_lane_base *base = domain->base + LAR_BLOCK * b + lane;
-    const void *block =
-        (const char *)run->blocks + (size_t)(b - domain->run_first[r]) * lar_run_stride(run);
+    const void *block = lar_run_block(run, b - domain->run_first[r]);
     const lar_hex8_block *general = block;
     lar_hex8_block made;
+    if (run->rest) {
+        domain->kernels->expand(run, b - domain->run_first[r], &made);
+        general = &made;
+    }
     const lar_box_block *box = block;
     *hex8 = (lar_hex8){.volume = base->volume};
     lar_model_fibres(domain->model, domain->layout.block[b].element[lane], hex8->fibre);
@@ -306,10 +327,6 @@ void lar_domain_element(const lar_domain *domain, int32_t r, int32_t b, int lane
     if (run->shape == LAR_SHAPE_BOX) {
         for (int m = 0; m < 3; m++) hex8->gradient[m][(m + run->turn) % 3] = box->gradient[m][lane];
         return;
-    }
-    if (run->rest) {
-        domain->kernels->expand(run, b - domain->run_first[r], &made);
-        general = &made;
     }
     for (int i = 0; i < 3; i++) {
         for (int m = 0; m < LAR_HEX8_GRADIENTS; m++)

@@ -38,11 +38,12 @@ typedef struct lar_domain {
 
     lar_layout layout;
     int32_t run_count;
-    lar_block_run *run;     /* [run_count] of one thread, batch and kind; `blocks` for hex8 only */
-    int32_t *run_first;     /* [run_count] the run's first block in layout.block */
-    void *blocks;           /* all blocks of all runs */
-    bool lean;              /* general ones are lean */
-    lar_lane_base *base;    /* [8 for each block] */
+    lar_block_run *run; /* [run_count] of one thread, batch and kind; `blocks` for hex8 only */
+    int32_t *run_first; /* [run_count] the run's first block in layout.block */
+    void *blocks;       /* all blocks of all runs */
+    bool lean;          /* general ones are lean */
+    lar_lean_parameters *lean_parameters; /* [materials + 1] behind the blocks; NULL: none is */
+    lar_lane_base *base;                  /* [8 for each block] */
     lar_material *material; /* [materials of the model] as they are now; names are lent, parameters
                                atomic */
     lar_parameters set;     /* that `material` follows */

@@ -16,6 +16,7 @@ static void forget_own(lar_domain *domain) {
     domain->burden = NULL;
     domain->run = NULL;
     domain->blocks = NULL;
+    domain->lean_parameters = NULL;
     domain->more = NULL;
     domain->relaxing = NULL;
     domain->fibres = NULL;
@@ -44,8 +45,8 @@ static void *copy_of(const void *from, size_t bytes, bool *failed) {
 }
 
 /* Where `place`, in the memory that begins at `from`, is in that at `to`. */
-static const void *moved(const void *place, const void *from, const void *to) {
-    return place ? (const char *)to + ((const char *)place - (const char *)from) : NULL;
+static void *moved(const void *place, const void *from, void *to) {
+    return place ? (char *)to + ((const char *)place - (const char *)from) : NULL;
 }
 
 lar_status lar_domain_share(lar_domain *from, lar_domain *copy, lar_error *error) {
@@ -79,8 +80,10 @@ lar_status lar_domain_share(lar_domain *from, lar_domain *copy, lar_error *error
         lar_domain_leave(copy);
         return lar_fail_memory(error, from->block_bytes, "a clone");
     }
+    copy->lean_parameters = moved(from->lean_parameters, from->blocks, copy->blocks);
     for (int32_t r = 0; r < copy->run_count; r++) {
         lar_block_run *run = &copy->run[r];
+        if (run->rest) run->parameters = copy->lean_parameters;
         run->blocks = moved(run->blocks, from->blocks, copy->blocks);
         run->more = moved(run->more, from->more, copy->more);
         run->relaxing = moved(run->relaxing, from->relaxing, copy->relaxing);

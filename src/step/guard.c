@@ -78,10 +78,6 @@ typedef struct strained_group {
     lar_gid element[LAR_BLOCK];
 } strained_group;
 
-static void set_nodes(strained_group *group, int at, const lar_block_head *head, int32_t lane) {
-    for (int a = 0; a < 8; a++) group->hex8.node[a][at] = head->node[a][lane];
-}
-
 static lar_gid element_of(const lar_domain *domain, int32_t r, int32_t lane) {
     const lar_lanes *block = domain->layout.block + domain->run_first[r] + lane / LAR_BLOCK;
     return block->element[lane % LAR_BLOCK];
@@ -95,10 +91,9 @@ static void add_lane(const lar_domain *domain, int32_t r, int32_t lane, int32_t 
                      strained_group *group) {
     const lar_block_run *run = &domain->run[r];
     int32_t block = lane / LAR_BLOCK, at = group->count++;
-    const lar_block_head *head =
-        (const void *)((const char *)run->blocks + (size_t)block * lar_run_stride(run));
     size_t first = LAR_BLOCK * (size_t)domain->run_first[r];
-    set_nodes(group, at, head, lane % LAR_BLOCK);
+    for (int a = 0; a < 8; a++)
+        group->hex8.node[a][at] = lar_run_node(run, block, a, lane % LAR_BLOCK);
     group->hex8.largest[at] = domain->base[first + (size_t)lane].largest;
     group->lane[at] = lane;
     group->entry[at] = entry;

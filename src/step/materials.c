@@ -76,19 +76,26 @@ void lar_materials_fill(const lar_domain *domain, int32_t r, int32_t b, void *bl
     int32_t at = domain->run_first[r] + b;
     lar_gid e = domain->layout.block[at].element[lane];
     const lar_lane_base *base = domain->base + LAR_BLOCK * at + lane;
-    lar_block_head *head = block;
     lar_block_more *more = more_of(domain, r, b);
     beside_blocks beside = beside_of(domain, r, b);
     int32_t material = domain->model->element_material[e];
     double factor = domain->factor[lar_factor_of(material)];
     double hourglass = factor * shear_of(domain, material);
-    for (int m = 0; m < LAR_HEX8_HOURGLASS; m++)
-        head->stiffness[m][lane] = base->stiffness[m] * hourglass * domain->scale;
     const lar_material *made = &domain->material[material];
-    for (int k = 0; k < lar_law_table[made->law].count; k++)
-        *lar_block_parameter(head, more, k, lane) =
-            lar_law_scales(made->law, k) ? made->parameter[k] * base->volume * domain->scale
-                                         : made->parameter[k];
+    bool lean = domain->run[r].rest != NULL;
+    double(*stiffness)[LAR_BLOCK] =
+        lean ? ((lar_lean_block *)block)->stiffness : ((lar_block_head *)block)->stiffness;
+    for (int m = 0; m < LAR_HEX8_HOURGLASS; m++)
+        stiffness[m][lane] = base->stiffness[m] * hourglass * domain->scale;
+    if (lean) ((lar_lean_block *)block)->material[lane] = material;
+    for (int k = 0; k < lar_law_table[made->law].count; k++) {
+        bool scales = lar_law_scales(made->law, k), shared = lean && k < LAR_BLOCK_PARAMETERS;
+        double value = scales ? made->parameter[k] * domain->scale : made->parameter[k];
+        if (shared)
+            domain->lean_parameters[material].of[k] = value;
+        else
+            *lar_block_parameter(block, more, k, lane) = scales ? value * base->volume : value;
+    }
     if (beside.relaxing) fill_viscosity(domain, base, beside.relaxing, lane, made, factor);
     if (beside.fibres) fill_fibres(domain, base, beside, lane, made, e);
     domain->corner_limit[LAR_BLOCK * at + lane] = base->limit * hourglass * hourglass;

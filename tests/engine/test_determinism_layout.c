@@ -4,6 +4,7 @@
 #include "engine_test.h"
 
 #include "model/demo/demo.h"
+#include "step/identity.h"
 
 enum { STEPS = 1000 };
 
@@ -143,6 +144,8 @@ static void lean_elements_are_whole_ones(void **unused) {
     assert_true(lean->domain.lean && !whole->domain.lean);
     assert_true(lean->domain.block_bytes < whole->domain.block_bytes);
     const lar_domain *domain = &whole->domain;
+    assert_true(lar_identity(domain, &whole->state, 0) ==
+                lar_identity(&lean->domain, &lean->state, 0));
     for (int32_t r = 0; r < domain->run_count; r++)
         for (int32_t b = domain->run_first[r]; b < domain->run_first[r] + domain->run[r].count; b++)
             for (int lane = 0; lane < LAR_BLOCK; lane++) {

@@ -72,7 +72,7 @@ static void fill_more(lar_block_run *run, lar_single_more *to) {
 static const void *block_of(const lar_kernels *kernels, const lar_block_run *run, int32_t b,
                             lar_hex8_block *made) {
     if (b == run->count) b--;
-    if (!run->rest) return (const char *)run->blocks + (size_t)b * lar_block_size(run->shape);
+    if (!run->rest) return lar_run_block(run, b);
     kernels->expand(run, b, made);
     return made;
 }

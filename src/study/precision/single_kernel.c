@@ -309,7 +309,6 @@ typedef lar_single_more lar_block_more;
 typedef lar_single_general lar_hex8_block;
 typedef lar_single_box lar_box_block;
 typedef struct lar_lean_block { /* there are none: single.c makes them whole */
-    lar_block_head head;
     float volume[LAR_BLOCK];
 } lar_lean_block;
 typedef struct lar_block_run {
@@ -353,6 +352,13 @@ static inline size_t lar_block_size(lar_block_shape shape) {
 }
 static inline size_t lar_run_stride(const lar_block_run *run) {
     return lar_block_size(run->shape);
+}
+static inline const void *lar_run_block(const lar_block_run *run, int32_t b) {
+    return (const char *)run->blocks + (size_t)b * lar_run_stride(run);
+}
+static inline void lar_lean_head(const lar_block_run *run, const lar_lean_block *lean,
+                                 lar_block_head *head) {
+    (void)run, (void)lean, (void)head;
 }
 
 /* A bit per element of a chunk: 64 of them. */
