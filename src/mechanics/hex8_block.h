@@ -181,22 +181,8 @@ static inline int32_t lar_lean_node(const lar_lean_block *lean, int a, int lane)
     return lean->line[a / 2][lane / 4] + lane % 4 + right;
 }
 
-/* What a whole block begins with, of a lean one. */
-static inline void lar_lean_head(const lar_block_run *run, const lar_lean_block *lean,
-                                 lar_block_head *head) {
-    memcpy(head->stiffness, lean->stiffness, sizeof head->stiffness);
-    if (run->rows == LAR_ROWS_NONE)
-        memcpy(head->node, ((const lar_loose_block *)(const void *)lean)->node, sizeof head->node);
-    for (int a = 0; a < 8 && run->rows != LAR_ROWS_NONE; a++)
-        for (int lane = 0; lane < LAR_BLOCK; lane++)
-            head->node[a][lane] = lar_lean_node(lean, a, lane);
-    for (int k = 0; k < LAR_BLOCK_PARAMETERS; k++) {
-        for (int lane = 0; lane < LAR_BLOCK; lane++)
-            head->modulus[k][lane] = run->parameters[lean->material[lane]].of[k];
-        for (int lane = 0; lane < LAR_BLOCK && lar_law_scales(run->law, k); lane++)
-            head->modulus[k][lane] *= lean->volume[lane];
-    }
-}
+/* What a whole block begins with, of a lean one. Once for all instruction sets. */
+void lar_lean_head(const lar_block_run *run, const lar_lean_block *lean, lar_block_head *head);
 
 /* The local node at corner a of a lane of block b. */
 static inline int32_t lar_run_node(const lar_block_run *run, int32_t b, int a, int lane) {
