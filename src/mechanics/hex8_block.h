@@ -181,7 +181,8 @@ static inline int32_t lar_lean_node(const lar_lean_block *lean, int a, int lane)
     return lean->line[a / 2][lane / 4] + lane % 4 + right;
 }
 
-/* What a whole block begins with, of a lean one. Once for all instruction sets. */
+/* What a whole block begins with, of a lean one: once for all instruction sets, which would each be
+ * larger by a kilobyte. */
 void lar_lean_head(const lar_block_run *run, const lar_lean_block *lean, lar_block_head *head);
 
 /* The local node at corner a of a lane of block b. */

@@ -71,18 +71,3 @@ lar_status lar_kernels_find(lar_isa isa, const lar_kernels **kernels, lar_error 
                         (int)isa);
     return find_by_name(names[isa], kernels, error);
 }
-
-void lar_lean_head(const lar_block_run *run, const lar_lean_block *lean, lar_block_head *head) {
-    memcpy(head->stiffness, lean->stiffness, sizeof head->stiffness);
-    if (run->rows == LAR_ROWS_NONE)
-        memcpy(head->node, ((const lar_loose_block *)(const void *)lean)->node, sizeof head->node);
-    for (int a = 0; a < 8 && run->rows != LAR_ROWS_NONE; a++)
-        for (int lane = 0; lane < LAR_BLOCK; lane++)
-            head->node[a][lane] = lar_lean_node(lean, a, lane);
-    for (int k = 0; k < LAR_BLOCK_PARAMETERS; k++) {
-        for (int lane = 0; lane < LAR_BLOCK; lane++)
-            head->modulus[k][lane] = run->parameters[lean->material[lane]].of[k];
-        for (int lane = 0; lane < LAR_BLOCK && lar_law_scales(run->law, k); lane++)
-            head->modulus[k][lane] *= lean->volume[lane];
-    }
-}

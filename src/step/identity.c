@@ -41,10 +41,12 @@ static uint64_t hash_blocks(uint64_t hash, const lar_domain *domain) {
     for (int32_t r = 0; domain->blocks && r < domain->run_count; r++)
         for (int32_t b = 0; b < domain->run[r].count; b++) {
             const lar_block_run *run = &domain->run[r];
-            lar_block_head head;
+            lar_hex8_block whole;
             word = lar_run_block(run, b);
-            if (run->rest) lar_lean_head(run, lar_run_block(run, b), &head);
-            if (run->rest) word = (const void *)&head;
+            if (run->rest) {
+                domain->kernels->expand(run, b, &whole);
+                word = (const void *)&whole.head;
+            }
             for (size_t i = 0; i < sizeof(lar_block_head) / sizeof *word; i++)
                 hash = lar_hash_word(hash, word[i]);
         }
