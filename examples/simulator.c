@@ -180,7 +180,12 @@ static int play(simulator *s, lar_error *error) {
 
 int main(int argc, char **argv) {
     lar_error error = {LAR_OK, "no thread could be started"};
-    simulator s = {.seconds = argc > 1 ? atof(argv[1]) : 20};
+    char *end = "";
+    simulator s = {.seconds = argc > 1 ? strtod(argv[1], &end) : 20};
+    if (*end || !(s.seconds > 0)) {
+        fputs("usage: simulator [SECONDS [SCENE]]\n", stderr);
+        return 2;
+    }
     lar_model *model = NULL;
     lar_simulation *simulation = NULL;
     int failed = (argc > 2 ? lar_model_open(argv[2], &model, &error) : make_slab(&model, &error)) ||

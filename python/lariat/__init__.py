@@ -18,6 +18,10 @@ docs/python.md is the tutorial.
 
 import os as _os
 
+if not _os.path.exists(_os.path.join(_os.path.dirname(__file__), "_lariat.abi3.so")):
+    raise ImportError(
+        "lariat's compiled module is not here; `make` builds it in a clone (`make demo` builds the "
+        "command and the page only), `pip install .` installs it")
 from ._lariat import (
     ArgumentError,
     Batch,

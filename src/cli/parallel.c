@@ -3,6 +3,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/pin.h"
+
 const char *const cli_scheme_names[] = {"all", "local", "one", "two", NULL};
 const char *const cli_channel_names[] = {"sequential", "concurrent", NULL};
 const char *const cli_comm_names[] = {"threads", "shm", "ucx", "mpi", "tcp", NULL};
@@ -58,7 +60,12 @@ static int check_processes(const cli_command *command, const cli_parallel *p) {
 
 int cli_parallel_check(const cli_command *command, const cli_parallel *p) {
     int status = check_processes(command, p);
-    return status ? status : check_files(command, p);
+    if (!status) status = check_files(command, p);
+    if (!status && p->pin && lar_pin_cores() == 0)
+        cli_complain(command, CLI_DONE,
+                     "note: --pin has no effect, threads cannot be bound to cores here (lariat "
+                     "doctor says how)");
+    return status;
 }
 
 void cli_parallel_set(const cli_parallel *p, lar_options *options) {

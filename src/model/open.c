@@ -131,6 +131,7 @@ lar_status lar_model_open(const char *path, lar_model **model, lar_error *error)
                         *path ? path : "\"\"");
     return lar_fail(error, LAR_ERROR_ARGUMENT,
                     "%s: the extension \".%s\" is not known; give a scene (.yaml), a deck "
-                    "(.feb .inp) or a mesh (.vtu .vtk .msh .inp)",
+                    "(.feb .inp) or a mesh (.vtu .vtk .msh .inp); of scans and surfaces lariat "
+                    "mesh makes a scene",
                     path, extension);
 }

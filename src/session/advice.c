@@ -28,8 +28,15 @@ double lar_two_digits(double count) {
     return floor(count / unit) * unit;
 }
 
-static void advise_smaller(const lar_advice *a, double ratio, double min, double allowed,
+/* Much slower than steps of that length alone would make it. */
+static bool is_busy_besides(double slower, double pace, const lar_session_status *status) {
+    double now = status->real_time_factor_now;
+    return now > 0 && now * slower < 0.6 * pace;
+}
+
+static void advise_smaller(const lar_advice *a, double pace, double min, double allowed,
                            lar_session_status *status) {
+    double ratio = min / allowed;
     double wanted = ceil(ratio * a->busy / EFFICIENCY);
     char way[64] = "";
     if (a->cores > a->busy && wanted <= a->cores) {
@@ -39,8 +46,10 @@ static void advise_smaller(const lar_advice *a, double ratio, double min, double
     }
     snprintf(status->slow_advice, sizeof status->slow_advice,
              "a step takes %.3g us and stands for %.3g us of the clock; what would hold: %sa mesh "
-             "of about %.0f elements, or a slower pace",
-             1e6 * min, 1e6 * allowed / ROOM, way, lar_two_digits(a->elements / ratio));
+             "of about %.0f elements, or a slower pace%s",
+             1e6 * min, 1e6 * allowed / ROOM, way, lar_two_digits(a->elements / ratio),
+             is_busy_besides(ratio, pace, status) ? "; and other programs keep the processor busy"
+                                                  : "");
 }
 
 void lar_advise(const lar_advice *a, double pace, lar_session_status *status) {
@@ -51,16 +60,17 @@ void lar_advise(const lar_advice *a, double pace, lar_session_status *status) {
     if (min > allowed && status->step_parts > 1 && min / status->step_parts <= allowed) {
         status->slow_cause = LAR_SLOW_DIVISION;
         bool stiffer = a->stiffer >= status->step_parts;
-        const char *why = stiffer ? "because the body was made stiffer than the model has it; make "
-                                    "it softer"
-                                  : "while tissue is strained or tools press hard; let go or pull "
-                                    "less";
+        const char *why = stiffer
+                              ? "because the body was made stiffer than the model has it; make "
+                                "it softer"
+                              : "while tissue is strained or tools press hard; let go, or pull, "
+                                "press and load it less";
         snprintf(status->slow_advice, sizeof status->slow_advice,
                  "steps are divided by %d %s, or choose a slower pace", (int)status->step_parts,
                  why);
     } else if (min > allowed) {
         status->slow_cause = LAR_SLOW_STEP;
-        advise_smaller(a, min / allowed, min, allowed, status);
+        advise_smaller(a, pace, min, allowed, status);
     } else {
         status->slow_cause = LAR_SLOW_MACHINE;
         snprintf(status->slow_advice, sizeof status->slow_advice,

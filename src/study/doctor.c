@@ -1,9 +1,12 @@
 #include "study/doctor.h"
 
 #include <dlfcn.h>
+#include <limits.h>
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 #include <time.h>
+#include <unistd.h>
 
 #include "base/pin.h"
 #include "base/parallel_for.h"
@@ -59,6 +62,19 @@ static bool backend(const char *name) {
     return false;
 }
 
+/* In a build folder the module's Python files stand before it is built, which `make demo` does not
+ * do. Installed commands have no such folder beside them. */
+static bool has_python(void) {
+    char command[PATH_MAX] = "", path[PATH_MAX + 64];
+    ssize_t length = readlink("/proc/self/exe", command, sizeof command - 1);
+    char *slash = length > 0 ? strrchr(command, '/') : NULL;
+    if (!python || !slash) return python;
+    snprintf(path, sizeof path, "%.*s/python/lariat/", (int)(slash - command), command);
+    if (access(path, F_OK) != 0) return true;
+    strcat(path, "_lariat.abi3.so");
+    return access(path, R_OK) == 0;
+}
+
 void lar_features_look(lar_feature feature[LAR_FEATURES]) {
     const lar_feature found[LAR_FEATURES] = {
         {"nifti", "lariat mesh reads scans in NIfTI (.nii, .nii.gz)",
@@ -96,8 +112,10 @@ void lar_features_look(lar_feature feature[LAR_FEATURES]) {
          "apt-get install mpich libmpich-dev, then make", lar_mpi_module("mpich")},
         {"petsc", "lariat bench implicit --solver cg and bcgs",
          "apt-get install petsc-dev, then make", lar_linear_solver_petsc()},
-        {"python", "import lariat, the Python module", "apt-get install python3-dev, then make",
-         python}};
+        {"python", "import lariat, the Python module",
+         python ? "make (make demo builds the command and the page only)"
+                : "apt-get install python3-dev, then make",
+         has_python()}};
     memcpy(feature, found, sizeof found);
 }
 

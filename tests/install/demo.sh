@@ -68,20 +68,28 @@ grep -q '^thing.c:1: error' "$scratch/said" || fail "the compiler's words are lo
 cat >"$scratch/build/lariat" <<'END'
 #!/bin/sh
 echo "$*" >>called
-[ "$1" != doctor ] || printf '      "name": "viewer",\n      "gives": "x",\n      "there": %s,\n' "$THERE"
+[ "$1" = doctor ] || exit 0
+printf '      "name": "viewer",\n      "gives": "x",\n      "there": %s,\n' "$THERE"
+printf '      "name": "page",\n      "gives": "x",\n      "there": %s,\n' "$PAGE"
 END
 chmod +x "$scratch/build/lariat"
+# show VIEWER PAGE: true or false
 show() {
     rm -f "$scratch/called"
-    THERE=$1 DISPLAY='' WAYLAND_DISPLAY='' "$scratch/tools/demo.sh" 5 >"$scratch/shown" ||
-        fail "make demo fails where there is a viewer: $1"
+    THERE=$1 PAGE=$2 DISPLAY='' WAYLAND_DISPLAY='' "$scratch/tools/demo.sh" 5 >"$scratch/shown" ||
+        fail "make demo fails where there is a viewer: $1, and its page: $2"
 }
-show true
+show true true
 grep -q '^view out/demo/uterus_live.yaml .*--seconds 5$' "$scratch/called" || fail "no viewer"
-show false
-grep -q '^run out/demo/uterus.yaml' "$scratch/called" || fail "nothing is shown without a viewer"
-! grep -q '^view' "$scratch/called" || fail "a viewer that is not there is called"
-grep -q 'libwebsockets-dev' "$scratch/shown" || fail "no word what is missing"
+# lacks VIEWER PAGE WORDS: the organ is pulled by a force, and it is said what is missing.
+lacks() {
+    show "$1" "$2"
+    grep -q '^run out/demo/uterus.yaml' "$scratch/called" || fail "nothing is shown without $3"
+    ! grep -q '^view' "$scratch/called" || fail "a viewer without $3 is called"
+    grep -q "$3" "$scratch/shown" || fail "no word what is missing: $3"
+}
+lacks false false 'libwebsockets-dev'
+lacks true false 'nodejs npm'
 
 [ $failures -eq 0 ] || exit 1
 rm -rf "$scratch"

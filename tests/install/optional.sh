@@ -109,6 +109,14 @@ for target in liblariat-mpi liblariat-petsc _lariat.abi3.so of-nowhere nifti2; d
     no_target without $target
 done
 
+# No headers of Python anywhere: the module is not built, and all else is.
+printf '#!/bin/sh\nexit 1\n' >"$scratch/bin/python3"
+chmod +x "$scratch/bin/python3"
+configure headless -DPYTHON_INCLUDE_ROOT="$scratch/nowhere"
+rm "$scratch/bin/python3"
+says_once headless "^-- Python headers not found: .*(apt-get install python3-dev)$"
+no_target headless _lariat.abi3.so
+
 # A name that is none is a slip.
 if "$cmake" -S "$source" -B "$scratch/slip" -G Ninja -DLARIAT_WITHOUT=metiss >"$scratch/slip.log" 2>&1
 then

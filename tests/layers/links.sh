@@ -46,6 +46,6 @@ case ${1:-} in
     find "$2/src/CMakeFiles" -name '*.o' | while read -r object; do
         source=${object#*.dir/}
         [ ! -e "$1/src/${source%.o}" ] || echo "$object"
-    done | xargs nm -A | check "" "$1/include/lariat.h" "$1/include/lariat_sizes.h" "$1/include/lariat_fit.h"
+    done | xargs -d '\n' nm -A | check "" "$1/include/lariat.h" "$1/include/lariat_sizes.h" "$1/include/lariat_fit.h"
     ;;
 esac

@@ -33,6 +33,14 @@ static void a_step_that_is_too_long_names_grid_and_elements(void **unused) {
     /* No grid where there are no cores for it. */
     s = slow(&organ, 1, 9e-4, 1);
     has(&s, "what would hold: a mesh of about 1300 elements");
+    /* Five times as slow as steps alone would make it. */
+    lar_session_status busy = {
+        .slow_motion = 1, .step_min = 2e-4, .step_parts = 1, .real_time_factor_now = 0.09};
+    lar_advise(&organ, 1, &busy);
+    has(&busy, "a slower pace; and other programs keep the processor busy");
+    busy.real_time_factor_now = 0.44;
+    lar_advise(&organ, 1, &busy);
+    assert_null(strstr(busy.slow_advice, "other programs"));
     lar_advice full = organ;
     full.busy = 4;
     s = slow(&full, 1, 1.17e-4, 1);

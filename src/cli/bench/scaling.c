@@ -98,8 +98,12 @@ static void print_table(const scaling_settings *s, const lar_bench_scaling_resul
     if (r->core_to_core.median > 0)
         printf("core to core %.3f us (%.3f to %.3f)", 1e-3 * r->core_to_core.median,
                1e-3 * r->core_to_core.min, 1e-3 * r->core_to_core.max);
-    printf("%s%d cores%s\n\n", r->core_to_core.median > 0 ? ", " : "", (int)r->cores,
-           r->pinned ? ", every thread bound to one where there are enough" : "");
+    const char *comma = r->core_to_core.median > 0 ? ", " : "";
+    if (r->cores > 0)
+        printf("%s%d cores%s\n\n", comma, (int)r->cores,
+               r->pinned ? ", every thread bound to one where there are enough" : "");
+    else
+        printf("%sno thread can be bound to a core (lariat doctor)\n\n", comma);
     printf("%-20s %27s %11s %8s %10s\n", "", "step [us] (least to most)", "of plain", "speed-up",
            "efficiency");
     for (int i = 0; i < r->rows; i++) print_row(&r->row[i], i == 0);
