@@ -27,7 +27,9 @@ lar_status lar_strained_create(const lar_domain *domain, lar_strained *strained,
                                .stiffness = lar_calloc(lanes, sizeof *strained->stiffness),
                                .sound = lar_calloc(lanes, sizeof *strained->sound),
                                .damped = lar_calloc(lanes, sizeof *strained->damped),
-                               .damped_count = lar_calloc(runs, sizeof *strained->damped_count)};
+                               .damped_count = lar_calloc(runs, sizeof *strained->damped_count),
+                               .lacked = lar_calloc(lanes, sizeof *strained->lacked),
+                               .lacked_count = lar_calloc(runs, sizeof *strained->lacked_count)};
     strained->follows = domain->layout.thread_count == 1;
     bool active = lar_model_active(domain->model) != NULL;
     size_t elements = (size_t)domain->model->mesh.element_count;
@@ -38,10 +40,11 @@ lar_status lar_strained_create(const lar_domain *domain, lar_strained *strained,
     }
     if (strained->lane && strained->count && strained->strain && strained->near &&
         strained->stiffness && strained->sound && strained->damped && strained->damped_count &&
-        strained->pressed && (!active || (strained->activation && strained->active_energy)))
+        strained->lacked && strained->lacked_count && strained->pressed &&
+        (!active || (strained->activation && strained->active_energy)))
         return LAR_OK;
     lar_strained_destroy(strained);
-    size_t each = 2 * sizeof *strained->lane + sizeof *strained->strain +
+    size_t each = 3 * sizeof *strained->lane + sizeof *strained->strain +
                   2 * sizeof *strained->sound + sizeof *strained->damped;
     return lar_fail_memory(error, lanes * each, "the strained elements");
 }
@@ -55,6 +58,8 @@ void lar_strained_destroy(lar_strained *strained) {
     free(strained->sound);
     free(strained->damped);
     free(strained->damped_count);
+    free(strained->lacked);
+    free(strained->lacked_count);
     free(strained->activation);
     free(strained->active_energy);
     free(strained->pressed);
@@ -194,7 +199,7 @@ static double soften(const lar_domain *domain, lar_gid e, double stiffness, doub
 
 /* Half of the work of what an element was damped with: contact takes it. What a barrier lacks that
  * is softer than its energy says is done to the body from outside. */
-static void add_half_work(const double rest[8][3], const double now[8][3], const double v[8][3],
+static bool add_half_work(const double rest[8][3], const double now[8][3], const double v[8][3],
                           const lar_damped *damped, lar_state *state) {
     double damper[8], lack[8];
     bool lacks = false;
@@ -206,17 +211,62 @@ static void add_half_work(const double rest[8][3], const double now[8][3], const
     state->contact += (double)damped->half_mean * lar_hex8_guard_power(rest, now, v, damper);
     if (lacks)
         state->external += (double)damped->half_mean * lar_hex8_guard_power(rest, now, v, lack);
+    return lacks;
+}
+
+/* The energy of an element's barriers, and its change with time when they move with v [J/s]. */
+__attribute__((cold)) static double rise_of(const lar_material *material, const double rest[8][3],
+                                            const double place[8][3], const double v[8][3],
+                                            double *energy) {
+    double force[8][3] = {{0}}, power = 0;
+    lar_guard guard;
+    lar_hex8_guard_force(rest, place, NULL, material, (lar_guard_lead){0}, LAR_ALL_CORNERS, force,
+                         &guard);
+    for (int a = 0; a < 8; a++) power += lar_dot(force[a], v[a]);
+    *energy = guard.energy;
+    return power;
+}
+
+/* What a barrier lacks is counted by its slopes at both ends of a step, each for the time that its
+ * force acts. Where it comes up within one, that is far from what its energy becomes, and the rest
+ * is done from outside as well. Nodes went from `then` to `now` with v. */
+__attribute__((cold)) static void add_rise(const lar_material *material, const double rest[8][3],
+                                           const double then[8][3], const double now[8][3],
+                                           const double v[8][3], const double acts[2],
+                                           lar_state *state) {
+    double before, after;
+    double slopes = acts[0] * rise_of(material, rest, then, v, &before);
+    slopes += acts[1] * rise_of(material, rest, now, v, &after);
+    state->external += after - before - 0.5 * slopes;
+}
+
+/* The same before a barrier is softer for the first time. */
+__attribute__((cold)) static void add_first_rise(const lar_material *material,
+                                                 const double rest[8][3], const double now[8][3],
+                                                 const double v[8][3], double mean,
+                                                 lar_state *state) {
+    double then[8][3];
+    for (int a = 0; a < 8; a++)
+        for (int i = 0; i < 3; i++) then[a][i] = now[a][i] - state->past * v[a][i];
+    add_rise(material, rest, (const double(*)[3])then, now, v, (double[]){state->past, mean},
+             state);
+}
+
+/* For how long forces act now [s]. */
+static double mean_step(const lar_domain *domain, const lar_state *state) {
+    double step = domain->time_step / state->parts;
+    return state->past > 0 ? 0.5 * (state->past + step) : step;
 }
 
 /* Returns whether barriers are at work. What damps has half of its work done with the velocities
  * before the nodes move; `damped` says what the other half comes from, NULL: nothing counts. What
  * opens is damped as in a whole step: it gives back no more than it took while the step was not
  * divided yet. (A damper that never pulls cannot make a corner swing, however much it leads.) */
-static bool apply(const lar_domain *domain, lar_gid e, unsigned corners, lar_damped *damped,
-                  lar_state *state, double *stiffness) {
+static bool apply(const lar_domain *domain, lar_gid e, unsigned corners, bool lacked,
+                  lar_damped *damped, lar_state *state, double *stiffness) {
     double rest[8][3], now[8][3], v[8][3], force[8][3] = {{0}};
     double step = domain->time_step / state->parts;
-    double mean = state->past > 0 ? 0.5 * (state->past + step) : step;
+    double mean = mean_step(domain, state);
     const lar_guard_lead lead = {.closing = LEAD * step, .opening = LEAD * domain->time_step};
     lar_guard guard;
     corners_of(domain, state, e, rest, now);
@@ -239,13 +289,17 @@ static bool apply(const lar_domain *domain, lar_gid e, unsigned corners, lar_dam
     }
     add_half_work((const double(*)[3])rest, (const double(*)[3])now, (const double(*)[3])v, damped,
                   state);
+    if (part < 1 && !lacked && state->past > 0)
+        add_first_rise(lar_domain_material(domain, e), (const double(*)[3])rest,
+                       (const double(*)[3])now, (const double(*)[3])v, mean, state);
     return true;
 }
 
 /* Energies count barriers, there or not: what those of an element that are gone would have had done
  * on them in a step comes from outside. */
-static void add_difference(const lar_material *material, const double rest[8][3],
-                           const double then[8][3], const double now[8][3], lar_state *state) {
+__attribute__((cold)) static void add_difference(const lar_material *material,
+                                                 const double rest[8][3], const double then[8][3],
+                                                 const double now[8][3], lar_state *state) {
     lar_guard before, after;
     lar_hex8_guard(rest, then, material, &before);
     lar_hex8_guard(rest, now, material, &after);
@@ -257,6 +311,8 @@ static void add_difference(const lar_material *material, const double rest[8][3]
  * velocities before it alone. */
 static void finish_damping(const lar_domain *domain, int32_t r, lar_state *state) {
     lar_strained *strained = state->strained;
+    int32_t *lacked = strained->lacked + LAR_BLOCK * (size_t)domain->run_first[r];
+    strained->lacked_count[r] = 0;
     const lar_damped *damped = strained->damped + LAR_BLOCK * (size_t)domain->run_first[r];
     for (int32_t i = 0; i < strained->damped_count[r] && state->listed; i++) {
         double rest[8][3], now[8][3], then[8][3], v[8][3];
@@ -268,9 +324,13 @@ static void finish_damping(const lar_domain *domain, int32_t r, lar_state *state
         if (damped[i].gone)
             add_difference(lar_domain_material(domain, damped[i].element), (const double(*)[3])rest,
                            (const double(*)[3])then, (const double(*)[3])now, state);
-        else
-            add_half_work((const double(*)[3])rest, (const double(*)[3])then, (const double(*)[3])v,
-                          &damped[i], state);
+        else if (add_half_work((const double(*)[3])rest, (const double(*)[3])then,
+                               (const double(*)[3])v, &damped[i], state)) {
+            add_rise(lar_domain_material(domain, damped[i].element), (const double(*)[3])rest,
+                     (const double(*)[3])then, (const double(*)[3])now, (const double(*)[3])v,
+                     (double[]){2 * (double)damped[i].half_mean, mean_step(domain, state)}, state);
+            lacked[strained->lacked_count[r]++] = damped[i].element;
+        }
     }
     strained->damped_count[r] = 0;
 }
@@ -279,6 +339,13 @@ static void finish_damping(const lar_domain *domain, int32_t r, lar_state *state
  * at most; that is below 7.28 L^2 d for d up to L / 10. So far may nodes go. */
 static double may_go(double above, double longest) {
     return above > 0 ? fmin(0.1 * sqrt(longest), above / (7.28 * longest)) : 0;
+}
+
+/* They are few. */
+static bool is_among(lar_gid e, const int32_t *list, int32_t count) {
+    for (int32_t i = 0; i < count; i++)
+        if (list[i] == e) return true;
+    return false;
 }
 
 /* Looks at the corners of a group, which is empty then: adds the forces of their barriers. With
@@ -297,7 +364,9 @@ static void apply_group(const lar_domain *domain, int32_t r, bool lists, straine
         strained->sound[place] = strained->travel + may_go(look.above[k], look.longest[k]);
         if (below >> k & 1) {
             unsigned corners = corners_in_mesh(domain, r, group->lane[k], look.at[k]);
-            *damped += apply(domain, group->element[k], corners,
+            bool lacked =
+                is_among(group->element[k], strained->lacked + first, strained->lacked_count[r]);
+            *damped += apply(domain, group->element[k], corners, lacked,
                              &strained->damped[first + (size_t)*damped], state, &stiffness);
         }
         if (!lists || !(below >> (k + LAR_BLOCK) & 1)) continue;
@@ -459,7 +528,7 @@ void lar_guard_apply(const lar_domain *domain, int32_t r, lar_state *state) {
 
 void lar_guard_apply_all(const lar_domain *domain, lar_state *state) {
     for (lar_gid e = 0; e < domain->model->mesh.element_count; e++)
-        apply(domain, e, LAR_ALL_CORNERS, NULL, state, NULL);
+        apply(domain, e, LAR_ALL_CORNERS, false, NULL, state, NULL);
 }
 
 double lar_guard_energy(const lar_domain *domain, const lar_state *state, lar_gid e) {

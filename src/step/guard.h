@@ -36,6 +36,9 @@ struct lar_strained {
     double *sound;      /* [8 for each block] `travel` until which no corner is below twice START */
     lar_damped *damped; /* [8 for each block] with half of their work to come */
     int32_t *damped_count; /* [run_count] of these, as above */
+    int32_t *lacked;       /* [8 for each block] scratch: elements whose barriers were softer than
+                              their energy says in the step before */
+    int32_t *lacked_count; /* [run_count] of these, as above */
     double *activation;    /* [8 for each block] scratch (step/activation.h), */
     double *active_energy; /* likewise; NULL where nothing is active */
     uint8_t *pressed;      /* [elements of the model] step/mass/pressed.h; NULL: none is heavier */
