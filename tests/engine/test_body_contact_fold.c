@@ -267,6 +267,7 @@ static void fold_shut(double shear, int layers) {
 static void a_crease_that_folds_shut_goes_on_to_rest(void **unused) {
     (void)unused;
     fold_shut(1e3, 2);
+    if (test_every(2) > 1) return;
     fold_shut(3e3, 2);
     fold_shut(3e3, 3);
 }
