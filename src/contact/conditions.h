@@ -96,7 +96,6 @@ typedef struct lar_condition_context {
     double whole_step;            /* [s] */
     double mean_step;             /* of which forces change velocities: time_step, but where parts
                                      become longer or shorter; for work [s] */
-    double hardness;              /* of tools: lar_step_division */
     int32_t shares;               /* of LAR_STEP_SHARES, that the part of the step is */
     double stable_step;           /* the elements' bound at rest [s] */
     const double *springs;        /* the masses that springs of contact are fitted to */

@@ -76,6 +76,8 @@ static void begin(const lar_tool_list *list, int32_t tool, lar_tools *tools) {
     const lar_tool_pose *rest = &list->tool[tool].rest;
     tools->motion[tool] = (lar_tool_motion){.from = *rest, .to = *rest};
     tools->follower[tool] = (lar_tool_follower){.hand = tools->motion[tool]};
+    tools->hardness[tool] = 1;
+    tools->deep[tool] = 0;
 }
 
 void lar_spare_put(int32_t place, const lar_tool *tool, lar_tool_list *list, lar_tools *tools) {

@@ -230,7 +230,7 @@ static bool follow(const lar_tool *tool, const lar_tool_limits *limits, lar_tool
     lar_tool_at(&follower->hand, step, time_step, &hand, NULL);
     lar_tool_at(&follower->hand, until, time_step, &then, NULL);
     double steps = (double)(until - step), seconds = steps * time_step;
-    const follow_law law = {.drag = limits->drag * tools->division.hardness,
+    const follow_law law = {.drag = limits->drag * tools->hardness[index],
                             .seconds = seconds,
                             .farthest = fmin(SHARE * tool->radius * steps, FASTEST * seconds)};
     bool held_back = follower->load > 1 || springs_open(tool, limits, mean, &law, &now, &then);
@@ -251,38 +251,54 @@ static bool follow(const lar_tool *tool, const lar_tool_limits *limits, lar_tool
     return true;
 }
 
-/* What becomes of how hard tools are, by one of them; of several the last in this list counts. */
+static const double DANGER = 0.65; /* radii: tissue is close to the middle of a tool */
+
+/* What becomes of how hard a tool is. */
 typedef enum hardness_change { FADES, YIELDS, STAYS, HARDENS } hardness_change;
 
-/* Tissue that is deep in a tool, although the tool presses no harder than it may, makes tools
- * harder. One that presses too hard gives way instead, and presses softer until it does not; but
- * not where tissue is deep already, which comes deeper by that faster than a tool hardens. */
-static hardness_change change_for(double depth, double load) {
-    static const double SOFT = 0.3, HARD = 0.15, NEAR = 0.4, DANGER = 0.65; /* radii */
-    static const double HEAVY = 3;                                          /* limits */
-    if (depth > DANGER) return HARDENS;
+/* Tissue that is deep in a tool, although the tool presses no harder than it may, makes it harder.
+ * One that presses too hard gives way instead, and presses softer until it does not; but not where
+ * tissue is deep already, which comes deeper by that faster than a tool hardens. Close to the
+ * middle a tool becomes harder whatever it presses with, as long as tissue still comes deeper: it
+ * was `before` there in the last interval, 0 if not so close. */
+static hardness_change change_for(double depth, double before, double load) {
+    static const double SOFT = 0.3, HARD = 0.15, NEAR = 0.4; /* radii */
+    static const double HEAVY = 3;                           /* limits */
+    if (depth > DANGER && depth > before) return HARDENS;
     if (load > HEAVY && depth < NEAR) return YIELDS;
     if (depth > SOFT) return load > 1 ? STAYS : HARDENS;
     return depth < HARD ? FADES : STAYS;
 }
 
 /* Not at once: what is already in the tool is driven out by that. */
-double lar_tools_harden(const lar_tool_list *list, const lar_tools *tools, double fading,
-                        double seconds, double unit) {
+static double hardened(double hardness, hardness_change change, double fading, double seconds) {
     static const double RISE = 1e-3; /* [s] */
-    double factor = 1 + seconds / RISE, hardness = tools->division.hardness;
-    hardness_change change = FADES;
-    for (int32_t i = 0; i < tools->count; i++) {
-        const lar_tool_felt *felt = &tools->follower[i].felt;
-        double load, depth = felt->depth / list->tool[i].radius;
-        if (!(depth > 0)) continue;
-        mean_load mean = mean_of(felt, &list->limits[i], (jaws_state){0}, 0, unit, &load);
-        hardness_change own = change_for(depth, lar_length(mean.force) / list->limits[i].force);
-        if (own > change) change = own;
-    }
+    double factor = 1 + seconds / RISE;
     if (change == HARDENS) return fmin(factor * hardness, LAR_HARDNESS_MAX);
     if (change == YIELDS) return fmax(1, hardness / factor);
     return change == FADES ? fmax(1, fading * hardness) : hardness;
+}
+
+lar_hardened lar_tools_harden(const lar_tool_list *list, lar_tools *tools, double fading,
+                              double seconds, double unit) {
+    lar_hardened all = {.most = 1};
+    for (int32_t i = 0; i < tools->count; i++) {
+        const lar_tool_felt *felt = &tools->follower[i].felt;
+        double load, depth = felt->depth / list->tool[i].radius, before = tools->hardness[i];
+        hardness_change change = FADES;
+        if (depth > 0) {
+            mean_load mean = mean_of(felt, &list->limits[i], (jaws_state){0}, 0, unit, &load);
+            change = change_for(depth, tools->deep[i] / list->tool[i].radius,
+                                lar_length(mean.force) / list->limits[i].force);
+        }
+        tools->deep[i] = depth > DANGER ? felt->depth : 0;
+        double now = hardened(before, change, fading, seconds);
+        tools->hardness[i] = now;
+        all.most = fmax(all.most, now);
+        all.harder = all.harder || now > before;
+        all.changed = all.changed || now != before;
+    }
+    return all;
 }
 
 /* How far any part of a tool goes in a step of the interval that begins at step `step` [m]. */

@@ -37,20 +37,24 @@ typedef struct lar_tissue_scale {
 void lar_tool_limits_set(const lar_tissue_scale *scale, lar_tool_list *list);
 
 /* Steps of an interval: a power of two, at most LAR_INTERVAL_MAX. */
-enum { LAR_INTERVAL_MAX = 8, LAR_PARTS_MAX = 32 };
-/* How hard tools become, and up to what elements' need is remembered: more than any number of parts
- * bears makes no difference, and must be over some time. */
-enum { LAR_HARDNESS_MAX = 64, LAR_NEED_MAX = LAR_PARTS_MAX * LAR_PARTS_MAX };
+enum { LAR_INTERVAL_MAX = 8 };
 uint64_t lar_tool_interval(double time_step);
 
 /* Asks a tool to go where `motion` says; it does when nothing keeps it. */
 void lar_tool_ask(lar_tools *tools, int32_t tool, const lar_tool_motion *motion);
 
-/* At the beginning of an interval: how hard tools are from now on. Where tissue is deep in one, all
- * become harder, which takes parts of a step. `fading`: what is left of something over the time
- * since the last decision, `seconds`; `unit`: newtons of a force unit. */
-double lar_tools_harden(const lar_tool_list *list, const lar_tools *tools, double fading,
-                        double seconds, double unit);
+/* What tools have become: as hard as the hardest, some harder than before, some other than before.
+ */
+typedef struct lar_hardened {
+    double most;
+    bool harder, changed;
+} lar_hardened;
+
+/* At the beginning of an interval: how hard each tool is from now on (lar_tools.hardness). One that
+ * tissue is deep in becomes harder, which takes parts of a step. `fading`: what is left of
+ * something over the time since the last decision, `seconds`; `unit`: newtons of a force unit. */
+lar_hardened lar_tools_harden(const lar_tool_list *list, lar_tools *tools, double fading,
+                              double seconds, double unit);
 
 /* How far a tool that tissue is in goes in a step, from step `step` on [m]. */
 double lar_tools_way(const lar_tool_list *list, const lar_tools *tools, uint64_t step);

@@ -403,8 +403,7 @@ static double step_travel(const lar_tool_contact *contact, const lar_condition_c
 }
 
 static void apply_tool(lar_tool_contact *contact, const lar_condition_context *context,
-                       const lar_state *state, int32_t t, double travel,
-                       const lar_contact_law *law) {
+                       const lar_state *state, int32_t t, double travel, lar_contact_law law) {
     const lar_tool *tool = &contact->list->tool[t];
     lar_tool_vicinity *vicinity = &contact->vicinity[t];
     int32_t serial = lar_spare_serial(contact->list, contact->tools, t);
@@ -416,7 +415,8 @@ static void apply_tool(lar_tool_contact *contact, const lar_condition_context *c
         lar_tool_contact_search(
             contact, t, state,
             travel + lar_tool_way(vicinity->body.now, vicinity->body.next, vicinity->body.count));
-    touch_near(contact, context, state, t, law);
+    law.stiffness *= contact->tools->hardness[t];
+    touch_near(contact, context, state, t, &law);
     contact->seen.possible += (uint64_t)contact->faces->face_count;
 }
 
@@ -444,7 +444,6 @@ void lar_tool_contact_apply(lar_tool_contact *contact, const lar_condition_conte
     if (contact->faces->face_count == 0) return;
     lar_contact_law law = lar_contact_law_for(context->whole_step, context->stable_step);
     lar_contact_law tool_law = lar_contact_tool_law_for(context->whole_step, context->stable_step);
-    tool_law.stiffness *= context->hardness;
     tool_law.lead *= context->time_step / context->whole_step;
     double travel = step_travel(contact, context, state);
     bool known = isfinite(travel);
@@ -454,7 +453,7 @@ void lar_tool_contact_apply(lar_tool_contact *contact, const lar_condition_conte
     for (int32_t t = 0; t < contact->list->count; t++) {
         contact->sum[t].touching = contact->sum[t].held = 0;
         if (lar_tool_touches(&contact->list->tool[t]))
-            apply_tool(contact, context, state, t, known ? travel : 0, &tool_law);
+            apply_tool(contact, context, state, t, known ? travel : 0, tool_law);
     }
     apply_grasps(contact, context, state, &law);
     add_forces(contact, state);

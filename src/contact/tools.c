@@ -2,8 +2,10 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
+#include "base/pose.h"
 #include "contact/spares.h"
 
 /* How far a hand reaches: about a finger's breadth. */
@@ -46,11 +48,82 @@ void lar_tools_reset(const lar_tool_list *list, lar_tools *tools) {
     memcpy(fresh.spare, tools->spare, sizeof fresh.spare);
     *tools = fresh;
     lar_settings_reset(&tools->settings);
+    for (int32_t i = 0; i < LAR_TOOLS_MAX; i++) tools->hardness[i] = 1;
     for (int32_t i = 0; i < list->count; i++) {
         tools->motion[i] = (lar_tool_motion){.from = list->tool[i].rest, .to = list->tool[i].rest};
         tools->follower[i].hand = tools->motion[i];
     }
 }
+
+bool lar_tools_differ(const lar_tools *tools, int32_t count) {
+    bool differ = false;
+    for (int32_t i = 0; i < count; i++)
+        differ = differ || tools->hardness[i] != tools->division.hardness || tools->deep[i] != 0;
+    return differ;
+}
+
+/* ---- whether what a file says of them may be ----------------------------------------------------
+ */
+
+/* A way between two places is a number. Empty hands, which go no way, may be anywhere. */
+static bool near_enough(const lar_tool *tool, const lar_tool_motion *motion) {
+    static const double FARTHEST = 1e100;
+    bool near = true;
+    for (int i = 0; i < 3 && tool->shape != LAR_TOOL_HAND; i++)
+        near = near && fabs(motion->from.position[i]) <= FARTHEST &&
+               fabs(motion->to.position[i]) <= FARTHEST;
+    return near;
+}
+
+bool lar_tool_motion_good(const lar_tool *tool, const lar_tool_motion *motion) {
+    return lar_pose_is_normal(&motion->from) && lar_pose_is_normal(&motion->to) &&
+           motion->start <= motion->end && motion->end <= LAR_STEPS_MAX &&
+           (motion->holding == 0 || motion->holding == 1) && motion->padding == 0 &&
+           near_enough(tool, motion);
+}
+
+/* Sums are whatever they are; tissue is no deeper in a tool than its middle. Hands never lag. */
+bool lar_tool_follower_good(const lar_tool *tool, const lar_tool_follower *follower) {
+    const lar_tool_felt *felt = &follower->felt;
+    int32_t lagging_max = tool->shape != LAR_TOOL_HAND;
+    return lar_tool_motion_good(tool, &follower->hand) && follower->hand.holding == 0 &&
+           felt->depth >= 0 && felt->depth <= tool->radius && felt->steps <= LAR_STEPS_MAX &&
+           follower->load >= 0 && isfinite(follower->load) && follower->lagging >= 0 &&
+           follower->lagging <= lagging_max && follower->padding == 0;
+}
+
+bool lar_grasp_good(const lar_grasp *grasp, int32_t tools, const lar_model *model) {
+    double sum = grasp->weight[0] + grasp->weight[1] + grasp->weight[2] + grasp->weight[3];
+    bool finite = isfinite(grasp->stiffness);
+    for (int a = 0; a < 4; a++) finite = finite && isfinite(grasp->weight[a]);
+    for (int i = 0; i < 3; i++) finite = finite && isfinite(grasp->anchor[i]);
+    return finite && grasp->tool >= 0 && grasp->tool < tools && grasp->face >= 0 &&
+           grasp->face < model->surface.face_count && fabs(sum - 1) <= 1e-6 &&
+           grasp->stiffness >= 0;
+}
+
+static bool good_parts(int32_t parts) {
+    int32_t some = 1;
+    while (some < parts && some < LAR_PARTS_MAX) some = lar_more_parts(some);
+    return some == parts;
+}
+
+bool lar_division_good(const lar_step_division *d, uint64_t step) {
+    return good_parts(d->parts) && good_parts(d->before) && d->since <= step &&
+           d->decided <= step && d->hardness >= 1 && d->hardness <= 4.0 * d->parts * d->parts &&
+           d->hardness <= LAR_HARDNESS_MAX && d->need >= 0 && d->lately >= 0 &&
+           d->lately <= LAR_NEED_MAX && d->base >= 1 && d->base <= LAR_PARTS_MAX &&
+           (d->base & (d->base - 1)) == 0 && (d->due == 0 || d->due == 1) &&
+           abs(d->still) <= LAR_STILL_LONG && d->untouched >= 0;
+}
+
+bool lar_hardness_good(const lar_tools *tools, int32_t tool, double radius) {
+    double hardness = tools->hardness[tool], deep = tools->deep[tool];
+    return hardness >= 1 && hardness <= tools->division.hardness && deep >= 0 && deep <= radius;
+}
+
+/* ---- where they are ----------------------------------------------------------------------------
+ */
 
 /* Straight line of unit quaternions, brought back to length one: exact at both ends, and between
  * two ticks the turn is small. */

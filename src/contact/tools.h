@@ -53,6 +53,11 @@ typedef struct lar_tool_felt {
  * it is. Every number of parts divides them. */
 enum { LAR_STEP_SHARES = 96 };
 
+/* Into how many parts a step is divided, how hard tools become, and up to what elements' need is
+ * remembered: more than any number of parts bears makes no difference, and must be over some time.
+ */
+enum { LAR_PARTS_MAX = 32, LAR_HARDNESS_MAX = 64 };
+enum { LAR_NEED_MAX = LAR_PARTS_MAX * LAR_PARTS_MAX };
 enum { LAR_UNTOUCHED_LONG = INT16_MAX, LAR_STILL_LONG = 32 };
 
 /* How steps are divided, for a while, where elements are strained or tools press hard. */
@@ -60,8 +65,8 @@ typedef struct lar_step_division {
     int32_t parts;   /* of a step: 1, 2, 3, 4, 6, 8, 12, ... (lar_more_parts) */
     int32_t before;  /* as many until `since` */
     uint64_t since;  /* step */
-    double hardness; /* how many times as stiff tools are as at rest, at most parts^2 or, where
-                        elements may be heavier, four times that */
+    double hardness; /* of the hardest tool (lar_tools), at most parts^2 or, where elements may be
+                        heavier, four times that */
     double need;   /* of the last interval: (omega dt / 2)^2 of the fastest element, dt undivided */
     double lately; /* the largest `need`, fading */
     uint64_t decided;  /* the step when it was decided last */
@@ -162,9 +167,12 @@ typedef struct lar_tools {
     lar_heavy_now heavier;
     lar_spare_tool spare[LAR_SPARES_MAX];
     lar_tool_motion motion[LAR_TOOLS_MAX]; /* where tools really go */
+    double hardness[LAR_TOOLS_MAX];        /* how many times as stiff as at rest they are */
     lar_grasp grasps[LAR_GRASPS_MAX];
     lar_tool_follower follower[LAR_TOOLS_MAX]; /* of processor zero only, */
-    lar_heavy_list strained;                   /* as this */
+    lar_heavy_list strained;                   /* as this, */
+    double deep[LAR_TOOLS_MAX]; /* and this: the tissue in tools in the last interval [m], where it
+                                   was close to their middle; else 0 */
 } lar_tools;
 
 /* What a tool may bear before it stays behind its hand, and how it then moves. */
@@ -205,6 +213,25 @@ static inline bool lar_tool_touches(const lar_tool *tool) {
 static inline size_t lar_tools_bytes(const lar_tools *tools) {
     return offsetof(lar_tools, grasps) + (size_t)tools->grasp_count * sizeof tools->grasps[0];
 }
+
+/* Whether tools, of the first `count`, are not all as hard as the hardest, or tissue is close to
+ * the middle of one. */
+bool lar_tools_differ(const lar_tools *tools, int32_t count);
+
+/* ---- whether what a file says of them may be, at a step, of so many tools -----------------------
+ */
+
+/* Numbers of steps are far below this: sums of two of them do not overflow. */
+#define LAR_STEPS_MAX ((uint64_t)1 << 60)
+
+bool lar_tool_motion_good(const lar_tool *tool, const lar_tool_motion *motion);
+bool lar_tool_follower_good(const lar_tool *tool, const lar_tool_follower *follower);
+bool lar_grasp_good(const lar_grasp *grasp, int32_t tools, const lar_model *model);
+bool lar_division_good(const lar_step_division *division, uint64_t step);
+bool lar_hardness_good(const lar_tools *tools, int32_t tool, double radius);
+
+/* ---- where they are ----------------------------------------------------------------------------
+ */
 
 /* Pose and velocity (of the tip, [m/s]; may be NULL) of a tool at a step. */
 void lar_tool_at(const lar_tool_motion *motion, uint64_t step, double time_step,

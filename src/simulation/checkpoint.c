@@ -25,9 +25,10 @@
  * with forces that were set on nodes has version 8 or 9, one with an activation that was set 10 or
  * 11, with forces or without, one with strained elements that are heavier, or may soon be, 12 or
  * 13, with supports that were set 14 or 15, with parameters of materials that were set 16 or 17,
- * each with all of the others; others are written as they always were. */
+ * with tools of which some are harder than others 18 or 19, each with all of the others; others are
+ * written as they always were. */
 enum { BEFORE_SETTINGS = 3, BEFORE_THIRDS = 5, VERSION = 6, FORCES = 8, ACTIVE = 10 };
-enum { HEAVIER = 12, SUPPORTED = 14, PARAMETERS = 16, NEWEST = 17 };
+enum { HEAVIER = 12, SUPPORTED = 14, PARAMETERS = 16, HARDNESS = 18, NEWEST = 19 };
 enum { BYTE_ORDER_MARK = 0x01020304 };
 
 typedef struct file_head {
@@ -109,11 +110,16 @@ static size_t parameters_bytes(const file_shape *shape) {
            (size_t)shape->parameters * sizeof(lar_parameter_entry);
 }
 
+/* How hard each tool is, and how deep tissue is close to its middle. */
+static size_t hardness_bytes(const file_shape *shape) {
+    return shape->version < HARDNESS ? 0 : 2 * (size_t)shape->tools * sizeof(double);
+}
+
 static size_t file_bytes(const file_shape *shape, size_t nodes) {
     size_t tools = (size_t)shape->tools, grasps = (size_t)shape->grasps;
     return sizeof(file_head) + settings_bytes(shape->version) + forces_bytes(shape) +
            heavier_bytes(shape) + supports_bytes(shape) + parameters_bytes(shape) +
-           tools * (sizeof(lar_tool_motion) + sizeof(lar_tool_follower)) +
+           hardness_bytes(shape) + tools * (sizeof(lar_tool_motion) + sizeof(lar_tool_follower)) +
            grasps * sizeof(lar_grasp) + nodes * LAR_NODE_VALUES * sizeof(double) +
            shape->history * sizeof(double) + sizeof(uint64_t);
 }
@@ -168,8 +174,10 @@ static bool some_strained(const lar_heavy_list *list) {
 static file_shape shape_of(const lar_domain *whole, const lar_tools *tools) {
     const lar_tool_list *list = whole->surroundings.list;
     int32_t spares = lar_spares_needed(tools->spare);
+    int32_t count = (list ? lar_spares_first(list) : 0) + spares;
     const lar_heavy_list *heavier = &tools->strained;
-    uint32_t version = tools->parameters.count > 0               ? PARAMETERS
+    uint32_t version = lar_tools_differ(tools, count)            ? HARDNESS
+                       : tools->parameters.count > 0             ? PARAMETERS
                        : tools->supports.count > 0               ? SUPPORTED
                        : some_strained(heavier)                  ? HEAVIER
                        : lar_settings_activate(&tools->settings) ? ACTIVE
@@ -180,7 +188,7 @@ static file_shape shape_of(const lar_domain *whole, const lar_tools *tools) {
                         .heavier = heavier->count,
                         .supports = tools->supports.count,
                         .parameters = tools->parameters.count,
-                        .tools = (list ? lar_spares_first(list) : 0) + spares,
+                        .tools = count,
                         .grasps = tools->grasp_count,
                         .history = lar_viscous_total(whole)};
 }
@@ -196,9 +204,21 @@ static unsigned char *fill_tools(unsigned char *at, const file_shape *shape,
     at = append(at, &tools->strained, heavier_bytes(shape));
     at = append(at, &tools->supports, supports_bytes(shape));
     at = append(at, &tools->parameters, parameters_bytes(shape));
+    at = append(at, tools->hardness, hardness_bytes(shape) / 2);
+    at = append(at, tools->deep, hardness_bytes(shape) / 2);
     at = append(at, tools->motion, count * sizeof tools->motion[0]);
     at = append(at, tools->follower, count * sizeof tools->follower[0]);
     return append(at, tools->grasps, grasps * sizeof tools->grasps[0]);
+}
+
+/* Whether something was set on sets of nodes. */
+static bool has_sets(const lar_tools *tools) {
+    bool has = false;
+    for (int32_t i = 0; i < tools->forces.count; i++)
+        has = has || tools->forces.entry[i].on_set != 0;
+    for (int32_t i = 0; i < tools->supports.count; i++)
+        has = has || tools->supports.entry[i].on_set != 0;
+    return has;
 }
 
 static unsigned char *fill(const lar_domain *whole, const lar_state *state, const lar_tools *tools,
@@ -227,6 +247,8 @@ static unsigned char *fill(const lar_domain *whole, const lar_state *state, cons
                       .grasps = shape->grasps};
     memcpy(head.magic, LAR_CHECKPOINT_MAGIC, LAR_CHECKPOINT_MAGIC_BYTES);
     lar_model_identify(whole, &head.identity);
+    if (has_sets(tools))
+        head.identity.conditions = lar_conditions_with_sets(&head.identity, whole->model);
     memcpy(data, &head, sizeof head);
     uint64_t sum = lar_checkpoint_sum(data, bytes / 8 - 1);
     memcpy(data + bytes - 8, &sum, sizeof sum);
@@ -360,8 +382,12 @@ static lar_status check_model(const char *path, const file_head *head, const lar
         return refuse_model(error, path, "its nodes or elements are at other places");
     if (there->materials != here.materials)
         return refuse_model(error, path, "its materials are others");
-    if (there->conditions != here.conditions)
-        return refuse_model(error, path, "its supports, loads, damping or gravity are others");
+    /* Files of before November 2026 do not tell sets. */
+    if (there->conditions != here.conditions &&
+        there->conditions != lar_conditions_with_sets(&here, whole->model))
+        return refuse_model(error, path,
+                            "its supports, loads, damping or gravity are others, or sets of nodes "
+                            "on which something was set");
     if (there->contact != here.contact)
         return refuse_model(error, path, "what may touch what is different");
     if (there->tools != here.tools)
@@ -378,61 +404,6 @@ static lar_status check_model(const char *path, const file_head *head, const lar
                         "choose the same",
                         path, there->time_step, here.time_step);
     return LAR_OK;
-}
-
-/* Numbers of steps are far below this: sums of two of them do not overflow. */
-static const uint64_t STEPS_MAX = (uint64_t)1 << 60;
-
-static bool good_motion(const lar_tool_motion *motion) {
-    return lar_pose_is_normal(&motion->from) && lar_pose_is_normal(&motion->to) &&
-           motion->start <= motion->end && motion->end <= STEPS_MAX &&
-           (motion->holding == 0 || motion->holding == 1) && motion->padding == 0;
-}
-
-static bool good_grasp(const lar_grasp *grasp, const file_head *head, const lar_model *model) {
-    double sum = grasp->weight[0] + grasp->weight[1] + grasp->weight[2] + grasp->weight[3];
-    return grasp->tool >= 0 && grasp->tool < head->tools && grasp->face >= 0 &&
-           grasp->face < model->surface.face_count && all_finite(grasp->weight, 4) &&
-           fabs(sum - 1) <= 1e-6 && all_finite(grasp->anchor, 3) && isfinite(grasp->stiffness) &&
-           grasp->stiffness >= 0;
-}
-
-static bool power_of_two(int32_t parts) {
-    return parts >= 1 && parts <= LAR_PARTS_MAX && (parts & (parts - 1)) == 0;
-}
-
-static bool good_parts(int32_t parts) {
-    int32_t some = 1;
-    while (some < parts && some < LAR_PARTS_MAX) some = lar_more_parts(some);
-    return some == parts;
-}
-
-static bool good_division(const lar_step_division *d, const file_head *head) {
-    return good_parts(d->parts) && good_parts(d->before) && d->since <= head->step &&
-           d->decided <= head->step && d->hardness >= 1 &&
-           d->hardness <= 4.0 * d->parts * d->parts && d->hardness <= LAR_HARDNESS_MAX &&
-           d->need >= 0 && d->lately >= 0 && d->lately <= LAR_NEED_MAX && power_of_two(d->base) &&
-           (d->due == 0 || d->due == 1) && abs(d->still) <= LAR_STILL_LONG && d->untouched >= 0;
-}
-
-/* A way between two places is a number. Empty hands, which go no way, may be anywhere. */
-static bool near_enough(const lar_tool *tool, const lar_tool_motion *motion) {
-    static const double FARTHEST = 1e100;
-    bool near = true;
-    for (int i = 0; i < 3 && tool->shape != LAR_TOOL_HAND; i++)
-        near = near && fabs(motion->from.position[i]) <= FARTHEST &&
-               fabs(motion->to.position[i]) <= FARTHEST;
-    return near;
-}
-
-/* Sums are whatever they are; tissue is no deeper in a tool than its middle. Hands never lag. */
-static bool good_follower(const lar_tool *tool, const lar_tool_follower *follower) {
-    const lar_tool_felt *felt = &follower->felt;
-    int32_t lagging_max = tool->shape != LAR_TOOL_HAND;
-    return good_motion(&follower->hand) && follower->hand.holding == 0 &&
-           near_enough(tool, &follower->hand) && felt->depth >= 0 && felt->depth <= tool->radius &&
-           felt->steps <= STEPS_MAX && follower->load >= 0 && isfinite(follower->load) &&
-           follower->lagging >= 0 && follower->lagging <= lagging_max && follower->padding == 0;
 }
 
 /* Files of version 5 or before count a step 32 times. */
@@ -499,30 +470,37 @@ static bool take_tools(const file_head *head, const file_shape *shape, const lar
     *at = extract(*at, &tools->strained, heavier_bytes(shape));
     *at = extract(*at, &tools->supports, supports_bytes(shape));
     *at = extract(*at, &tools->parameters, parameters_bytes(shape));
+    for (size_t i = 0; i < LAR_TOOLS_MAX; i++)
+        tools->hardness[i] = i < count ? tools->division.hardness : 1;
+    *at = extract(*at, tools->hardness, hardness_bytes(shape) / 2);
+    *at = extract(*at, tools->deep, hardness_bytes(shape) / 2);
     *at = extract(*at, tools->motion, count * sizeof tools->motion[0]);
     *at = extract(*at, tools->follower, count * sizeof tools->follower[0]);
     for (size_t i = 0; i < count && head->version <= BEFORE_THIRDS; i++)
         count_in_shares(&tools->follower[i]);
     *at = extract(*at, tools->grasps, grasps * sizeof tools->grasps[0]);
-    bool good = good_division(&tools->division, head) &&
+    bool good = lar_division_good(&tools->division, head->step) &&
                 lar_settings_good(&tools->settings, whole->time_step) &&
                 lar_forces_good(&tools->forces, whole->model, lar_domain_force_max(whole)) &&
                 lar_spares_good(tools->spare, list ? list->spares : 0) &&
                 lar_heavier_good(whole, &tools->strained) &&
                 lar_supports_good(&tools->supports, whole->model) &&
                 lar_parameters_good(&tools->parameters, &tools->settings, whole->model) &&
-                (tools->parameters.count > 0) == (head->version >= PARAMETERS) &&
+                lar_tools_differ(tools, tools->count) == (head->version >= HARDNESS) &&
+                (head->version >= HARDNESS ||
+                 (tools->parameters.count > 0) == (head->version >= PARAMETERS)) &&
                 (head->version >= PARAMETERS ||
                  (tools->supports.count > 0) == (head->version >= SUPPORTED)) &&
                 (head->version >= SUPPORTED ||
                  some_strained(&tools->strained) == (head->version >= HEAVIER));
     for (int32_t i = 0; good && i < tools->count; i++) {
         const lar_tool tool = lar_spare_tool_of(list, tools->spare, i);
-        good = good_motion(&tools->motion[i]) && near_enough(&tool, &tools->motion[i]) &&
-               good_follower(&tool, &tools->follower[i]);
+        good = lar_hardness_good(tools, i, tool.radius) &&
+               lar_tool_motion_good(&tool, &tools->motion[i]) &&
+               lar_tool_follower_good(&tool, &tools->follower[i]);
     }
     for (int32_t i = 0; good && i < tools->grasp_count; i++)
-        good = good_grasp(&tools->grasps[i], head, whole->model) &&
+        good = lar_grasp_good(&tools->grasps[i], head->tools, whole->model) &&
                lar_spare_tool_of(list, tools->spare, tools->grasps[i].tool).shape != LAR_TOOL_NONE;
     if (good) lar_heavier_name(&tools->strained, &tools->heavier);
     fill_up(list, tools);
@@ -567,7 +545,7 @@ lar_status lar_checkpoint_parse(const char *path, const lar_bytes *bytes, const 
     bool finite = isfinite(head.external) && isfinite(head.damped) && isfinite(head.contact);
     found.history = found.rows + LAR_NODE_VALUES * nodes;
     if (!finite || !all_finite(found.rows, LAR_NODE_VALUES * nodes + shape.history) ||
-        !lar_checkpoint_none_negative(found.rows, nodes) || head.step > STEPS_MAX)
+        !lar_checkpoint_none_negative(found.rows, nodes) || head.step > LAR_STEPS_MAX)
         return refuse(error, path, "has numbers beyond all range; take another checkpoint");
     uint64_t hash = lar_checkpoint_hash(head.step, found.rows, nodes);
     if (head.hash != lar_viscous_hash_values(hash, found.history, shape.history))

@@ -217,6 +217,15 @@ void lar_model_identify(const lar_domain *whole, lar_model_identity *identity) {
                                      .tools = hash_tools(whole->surroundings.list)};
 }
 
+uint64_t lar_conditions_with_sets(const lar_model_identity *identity, const lar_model *model) {
+    uint64_t hash = lar_hash_word(identity->conditions, (uint64_t)model->mesh.set_count);
+    for (int i = 0; i < model->mesh.set_count; i++) {
+        const lar_set *set = &model->mesh.set[i];
+        hash = hash_indices(lar_hash_word(hash, (uint64_t)set->kind), set->index, set->count);
+    }
+    return hash;
+}
+
 /* ---- of a computer ------------------------------------------------------------------------- */
 
 uint64_t lar_identity(const lar_domain *whole, const lar_state *start, uint64_t division) {

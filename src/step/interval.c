@@ -132,9 +132,9 @@ static bool goes_too_far(const lar_domain *whole, double way, int32_t parts) {
 /* For how many decisions nothing has moved, this one counted. A tool that becomes harder moves what
  * it presses on. */
 static int8_t still_now(const lar_domain *whole, const lar_tools *tools, uint64_t step,
-                        double hardness) {
+                        bool harder) {
     const lar_step_division *d = &tools->division;
-    if (d->still < 0 || d->due || hardness > d->hardness ||
+    if (d->still < 0 || d->due || harder ||
         !lar_tools_are_slow(whole->surroundings.list, tools, step, whole->time_step,
                             slow(whole, d)))
         return 0;
@@ -174,29 +174,29 @@ bool lar_interval_divide(const lar_domain *whole, uint64_t step, double seconds,
     static const double MEMORY = 0.05;
     lar_step_division *d = &tools->division;
     double fading = fmax(0.5, 1 - seconds / MEMORY);
-    double hardness =
+    const lar_hardened tool =
         lar_tools_harden(whole->surroundings.list, tools, fading, seconds, 1 / whole->scale);
     const double way = lar_tools_way(whole->surroundings.list, tools, step);
     const double reach = lar_division_reach(d);
     bool close = lar_division_is_close(d), let_go = lar_division_lets_go(d);
-    d->still = still_now(whole, tools, step, hardness);
+    d->still = still_now(whole, tools, step, tool.harder);
     d->untouched = untouched_now(whole, tools, (double)step * whole->time_step, seconds);
     d->lately = fmax(fmin(d->need, LAR_NEED_MAX), fading * d->lately);
     d->need = 0;
     lar_heavier_fade(fading, &tools->strained);
     int32_t wanted = d->base;
     while (wanted < LAR_PARTS_MAX &&
-           (!bears(whole, tools, hardness, wanted) || goes_too_far(whole, way, wanted)))
+           (!bears(whole, tools, tool.most, wanted) || goes_too_far(whole, way, wanted)))
         wanted = lar_more_parts(wanted);
-    bool changed = hardness != d->hardness || wanted != d->parts ||
-                   close != lar_division_is_close(d) || let_go != lar_division_lets_go(d) ||
+    bool changed = tool.changed || wanted != d->parts || close != lar_division_is_close(d) ||
+                   let_go != lar_division_lets_go(d) ||
                    (tools->grasp_count > 0 && reach != lar_division_reach(d));
     if (whole->burden) {
-        const lar_heavy_room beside = room_beside(whole, tools, hardness, wanted);
+        const lar_heavy_room beside = room_beside(whole, tools, tool.most, wanted);
         lar_heavier_settle(whole, &beside, fading, &tools->strained);
         changed = lar_heavier_name(&tools->strained, &tools->heavier) || changed;
     }
-    d->hardness = hardness;
+    d->hardness = tool.most;
     if (wanted == d->parts) return changed;
     d->before = d->parts;
     d->parts = wanted;

@@ -190,7 +190,6 @@ void lar_step_enter(const lar_domain *domain, const lar_interactions *interactio
     context->settings = lar_settings_of(interactions);
     context->forces =
         interactions->tool_contact.tools ? &interactions->tool_contact.tools->forces : NULL;
-    context->hardness = division->hardness;
     context->held = interactions->notes.mark;
     state->hardness = division->hardness;
     state->pressed = state->strained ? state->strained->pressed : NULL;

@@ -123,7 +123,6 @@ static inline lar_condition_context lar_domain_context_of(const lar_domain *doma
                                    .time_step = domain->time_step,
                                    .whole_step = domain->time_step,
                                    .mean_step = domain->time_step,
-                                   .hardness = 1,
                                    .shares = LAR_STEP_SHARES,
                                    .stable_step = domain->stable_step,
                                    .mass = domain->mass,

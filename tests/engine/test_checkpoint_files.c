@@ -59,9 +59,9 @@ static void damaged_files_are_refused(void **unused) {
         refuse(simulation, BAD, LAR_ERROR_FORMAT, "checksum");
         bad.data[at] ^= 0x10;
     }
-    bad.data[8] = 18;
+    bad.data[8] = 20;
     write_bytes(BAD, &bad);
-    refuse(simulation, BAD, LAR_ERROR_UNSUPPORTED, "version 18");
+    refuse(simulation, BAD, LAR_ERROR_UNSUPPORTED, "version 20");
     bad.data[8] = good.data[8];
     memcpy(bad.data + 12, (unsigned char[]){1, 2, 3, 4}, 4);
     write_bytes(BAD, &bad);
@@ -81,9 +81,10 @@ static void forged_files_are_refused(void **unused) {
     act(simulation, 0, 8);
     lar_bytes bytes = saved_bytes(simulation);
     size_t offset = bytes.size - 8 - 56 * (size_t)model->mesh.node_count; /* of the first node */
-    /* A tool presses: version 12, without forces. */
+    /* A tool presses, and hard: version 18, without forces, supports, parameters. */
     enum { DIVISION = 144, SETTINGS = DIVISION + 56, PRESSED = SETTINGS + 1064 + 8 };
-    enum { TOOL = PRESSED + 24 };
+    enum { HARD = PRESSED + 24 + 8 + 8, TOOL = HARD + 16 * TEST_TOOLS };
+    assert_int_equal(bytes.data[8], 18);
     enum { FOLLOWER = TOOL + 152 * TEST_TOOLS, FELT = FOLLOWER + 152 };
     enum { HAND = FOLLOWER + 240 * TEST_HAND };
     const struct {
@@ -126,6 +127,12 @@ static void forged_files_are_refused(void **unused) {
         {PRESSED, 4, 1, "sizes"},      /* heavier elements */
         {PRESSED + 8, 8, NAN, "tool"}, /* what pressed ones need */
         {PRESSED + 16, 8, -1, "tool"},
+        {PRESSED + 24, 4, 1, "sizes"}, /* supports, and parameters */
+        {PRESSED + 32, 4, 1, "sizes"},
+        {HARD, 8, NAN, "tool"},
+        {HARD + 8 * TEST_TOOLS, 8, -1e-9, "tool"},
+        {HARD + 8 * TEST_TOOLS, 8, 1, "tool"},
+        {HARD + 8 * TEST_TOOLS, 8, NAN, "tool"},
         {TOOL, 8, INFINITY, "tool"}, /* a position */
         {TOOL, 8, -1e200, "tool"},
         {TOOL + 24, 8, 0.5, "tool"},    /* an orientation */
@@ -166,6 +173,46 @@ static void forged_files_are_refused(void **unused) {
         lar_bytes_free(&bad);
     }
     lar_bytes_free(&bytes);
+    finish(simulation, model);
+}
+
+/* How hard tools are stands in files where they differ, and only there. */
+static void tools_differ_in_files(void **unused) {
+    (void)unused;
+    enum { VERSION = 8, HARD = 144 + 56 + 1064 + 8 + 24 + 8 + 8 };
+    static const double bad_ones[] = {NAN, 0.5, 2.5, -INFINITY};
+    lar_model *model = tool_model();
+    lar_simulation *simulation = start_with(model, setting(0)), *other;
+    lar_tools *tools = &simulation->tools;
+    lar_bytes bytes = saved_bytes(simulation);
+    assert_below(bytes.data[VERSION], 17);
+    lar_bytes_free(&bytes);
+    tools->division.hardness = tools->hardness[0] = 2;
+    tools->hardness[1] = 1.25;
+    tools->deep[0] = 1e-4;
+    bytes = saved_bytes(simulation);
+    assert_int_equal(bytes.data[VERSION], 18);
+    other = start_with(model, setting(0));
+    lar_error error;
+    if (lar_simulation_load(other, PATH, &error)) fail_msg("%s", error.message);
+    assert_memory_equal(other->tools.hardness, tools->hardness, sizeof tools->hardness);
+    assert_memory_equal(other->tools.deep, tools->deep, sizeof tools->deep);
+    for (size_t i = 0; i < sizeof bad_ones / sizeof *bad_ones; i++) {
+        memcpy(bytes.data + HARD + 8, &bad_ones[i], 8);
+        repair_sum(&bytes);
+        write_bytes(BAD, &bytes);
+        refuse(other, BAD, LAR_ERROR_FORMAT, "tool");
+    }
+    /* Without it all are as hard as the hardest: as files of before. */
+    for (int32_t i = 0; i < tools->count; i++) tools->hardness[i] = 2;
+    tools->deep[0] = 0;
+    lar_bytes_free(&bytes);
+    bytes = saved_bytes(simulation);
+    assert_below(bytes.data[VERSION], 17);
+    if (lar_simulation_load(other, PATH, &error)) fail_msg("%s", error.message);
+    assert_true(other->tools.hardness[0] == 2 && other->tools.hardness[1] == 2);
+    lar_bytes_free(&bytes);
+    lar_simulation_destroy(other);
     finish(simulation, model);
 }
 
@@ -296,9 +343,9 @@ static void several_save_to_one_path(void **unused) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(damaged_files_are_refused), cmocka_unit_test(forged_files_are_refused),
-        cmocka_unit_test(other_models_are_refused),  cmocka_unit_test(saving_spares_what_is_there),
-        cmocka_unit_test(several_save_to_one_path),
+        cmocka_unit_test(damaged_files_are_refused),   cmocka_unit_test(forged_files_are_refused),
+        cmocka_unit_test(tools_differ_in_files),       cmocka_unit_test(other_models_are_refused),
+        cmocka_unit_test(saving_spares_what_is_there), cmocka_unit_test(several_save_to_one_path),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -61,11 +61,11 @@ static lar_model *straight_tool_model(const brick *b) {
 
 /* ---- the same bits -------------------------------------------------------------------------- */
 
-static same_bits body = {fibrous_tool_model, PATH, {0xdf3c6310a5615686, 0x37fd0759dfad5174}};
+static same_bits body = {fibrous_tool_model, PATH, {0x875f633920d99d4b, 0x048c7c8b315255e9}};
 
 static same_bits straight = {straight_tool_model,
                              LAR_TEST_BUILD "/straight.checkpoint",
-                             {0x61dc819bc934c10a, 0xfa4c904808c206b3}};
+                             {0x083cc58c0c320324, 0xb665a392e662e0a8}};
 
 /* Parameters of each law beside tissue of some kilopascal. */
 static const double LAWS[LAR_FIBRE_LAWS][LAR_FIBRE_PARAMETERS] = {

@@ -243,6 +243,31 @@ static void a_damaged_one_is_refused(void **unused) {
     finish(simulation, model);
 }
 
+#define SETS LAR_TEST_BUILD "/sets.checkpoint"
+
+/* A set is a number in a file: in a model that has another one there, it is refused. */
+static void a_file_knows_its_sets(void **unused) {
+    (void)unused;
+    lar_model *model = make(false), *other = make(false);
+    lar_simulation *simulation = start_with(model, lar_options_default());
+    lar_error error = {0};
+    set_on(simulation, "end", 0.001, 0, 0);
+    assert_int_equal(lar_simulation_save(simulation, SETS, &error), LAR_OK);
+    if (lar_simulation_load(simulation, SETS, &error)) fail_msg("%s", error.message);
+    lar_simulation_destroy(simulation);
+    other->mesh.set[1].count--;
+    simulation = start_with(other, lar_options_default());
+    assert_int_equal(lar_simulation_load(simulation, SETS, &error), LAR_ERROR_MODEL);
+    assert_non_null(strstr(error.message, "sets of nodes"));
+    /* One in which nothing is set on them does not mind. */
+    assert_int_equal(lar_simulation_save(simulation, SETS, &error), LAR_OK);
+    lar_simulation_destroy(simulation);
+    simulation = start_with(model, lar_options_default());
+    if (lar_simulation_load(simulation, SETS, &error)) fail_msg("%s", error.message);
+    finish(simulation, model);
+    lar_model_destroy(other);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(they_are_loads_of_the_model),
                                        cmocka_unit_test(they_end_when_they_are_removed),
@@ -251,6 +276,7 @@ int main(void) {
                                        cmocka_unit_test(the_hash_is_the_same_everywhere),
                                        cmocka_unit_test(processes_agree),
                                        cmocka_unit_test(a_run_goes_on_with_its_forces),
-                                       cmocka_unit_test(a_damaged_one_is_refused)};
+                                       cmocka_unit_test(a_damaged_one_is_refused),
+                                       cmocka_unit_test(a_file_knows_its_sets)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

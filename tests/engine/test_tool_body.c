@@ -240,28 +240,34 @@ static void hardness_grows_with_time(void **unused) {
     lar_model_destroy(model);
 }
 
-/* Hardness after so many decisions in which a tool is so deep, in radii, and presses with so many
- * times its limit. */
-static double hardness_of(const lar_simulation *simulation, double from, double depth, double load,
-                          int decisions) {
+/* Hardness after so many decisions in which a tool is so deep, in radii, in each by so much deeper
+ * than in the last, and presses with so many times its limit. */
+static double hardness_by(const lar_simulation *simulation, double from, double depth,
+                          double deeper, double load, int decisions) {
     static const double SECONDS = 1e-4;
     const lar_domain *whole = &simulation->domain;
     const lar_tool_limits *limits = whole->surroundings.list->limits;
     lar_tools tools = simulation->tools;
     int64_t force = (int64_t)(load * limits->force * LAR_STEP_SHARES * whole->scale);
-    tools.division.hardness = from;
+    tools.hardness[0] = tools.division.hardness = from;
     for (int n = 1; n <= decisions; n++) {
         tools.follower[0].felt =
             (lar_tool_felt){.depth = depth * ball.radius, .steps = 1, .force = {0, 0, force}};
         lar_interval_divide(whole, (uint64_t)n, SECONDS, &tools);
+        depth += deeper;
     }
     return tools.division.hardness;
+}
+
+static double hardness_of(const lar_simulation *simulation, double from, double depth, double load,
+                          int decisions) {
+    return hardness_by(simulation, from, depth, 0, load, decisions);
 }
 
 /* A tool that presses too hard already becomes no harder, and softer if it presses far too hard:
  * what was met at 1 m/s was pressed by a hard ball with forty times its limit. Not where tissue is
  * deep in it: in two milliseconds it would be at the middle line (decision 147), close to which the
- * tool holds whatever it takes. */
+ * tool holds whatever it takes, but takes no more than what stops the tissue (decision 156). */
 static void a_tool_that_presses_too_hard_yields(void **unused) {
     (void)unused;
     lar_model *model = pressed_model();
@@ -272,7 +278,42 @@ static void a_tool_that_presses_too_hard_yields(void **unused) {
     assert_below(hardness_of(simulation, 10, 0.35, 4, 10), 4);
     assert_true(hardness_of(simulation, 10, 0.35, 4, 100) == 1);
     assert_true(hardness_of(simulation, 10, 0.5, 4, 10) == 10);
-    assert_below(20, hardness_of(simulation, 10, 0.7, 4, 10));
+    assert_below(20, hardness_by(simulation, 10, 0.7, 0.01, 4, 10));
+    assert_below(hardness_by(simulation, 10, 0.8, -0.01, 4, 10), 11.01); /* by the first alone */
+    assert_below(hardness_of(simulation, 10, 0.7, 4, 10), 11.01);
+    assert_below(20, hardness_of(simulation, 10, 0.7, 0.9, 10));
+    lar_simulation_destroy(simulation);
+    lar_model_destroy(model);
+}
+
+/* A ball that is deep in tissue becomes hard, and one that lies on it elsewhere does not. */
+static void only_the_tool_that_needs_it_becomes_hard(void **unused) {
+    (void)unused;
+    static const double beside[3] = {0.005, 0.005, 0.03};
+    lar_model *model = pressed_model();
+    touch_tool(model, "other", ball, beside);
+    lar_simulation *simulation = start(model);
+    const lar_domain *whole = &simulation->domain;
+    lar_tools tools = simulation->tools;
+    double before = 1;
+    for (int n = 1; n <= 40; n++) {
+        tools.follower[0].felt = (lar_tool_felt){.depth = 0.6 * ball.radius, .steps = 1};
+        tools.follower[1].felt = (lar_tool_felt){.depth = 0.1 * ball.radius, .steps = 1};
+        lar_interval_divide(whole, (uint64_t)n, 1e-4, &tools);
+        assert_true(tools.hardness[0] > before && tools.hardness[1] == 1);
+        assert_true(tools.division.hardness == tools.hardness[0]);
+        before = tools.hardness[0];
+    }
+    assert_true(before > 20);
+    /* The other begins as the first one fades: the hardest counts. */
+    for (int n = 41; n <= 60; n++) {
+        tools.follower[0].felt = (lar_tool_felt){.steps = 1};
+        tools.follower[1].felt = (lar_tool_felt){.depth = 0.6 * ball.radius, .steps = 1};
+        lar_interval_divide(whole, (uint64_t)n, 1e-4, &tools);
+        assert_true(tools.division.hardness == fmax(tools.hardness[0], tools.hardness[1]));
+        assert_int_equal(tools.division.still, 0);
+    }
+    assert_true(tools.hardness[0] < before && tools.hardness[1] > 5);
     lar_simulation_destroy(simulation);
     lar_model_destroy(model);
 }
@@ -289,7 +330,7 @@ static void nothing_holds_what_leaves_the_tissue(void **unused) {
     double went[2];
     for (int g = 0; g < 2; g++) {
         lar_tools tools = simulation->tools;
-        tools.division.hardness = LAR_HARDNESS_MAX;
+        tools.hardness[0] = tools.division.hardness = LAR_HARDNESS_MAX;
         lar_tool_motion *tool = &tools.motion[0];
         tool->from = tool->to = (lar_tool_pose){.orientation = {1, 0, 0, 0}, .opening = 1};
         memcpy(tool->from.position, inside, sizeof inside);
@@ -322,6 +363,7 @@ int main(void) {
         cmocka_unit_test(a_fast_tool_in_tissue_divides_steps),
         cmocka_unit_test(hardness_grows_with_time),
         cmocka_unit_test(a_tool_that_presses_too_hard_yields),
+        cmocka_unit_test(only_the_tool_that_needs_it_becomes_hard),
         cmocka_unit_test(nothing_holds_what_leaves_the_tissue),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
