@@ -472,17 +472,20 @@ static void add_part(lar_body_contact_part *part, lar_state *state, int32_t node
     part->count++;
 }
 
-/* To the node, or to both ends of the edge that the point is on. */
+/* To the node, or to both ends of the edge, or the corners of the face, that the point is on. */
 static void add_to_node(lar_body_contact *contact, const lar_condition_context *context,
                         lar_state *state, int32_t node, const int64_t sum[3],
                         lar_body_contact_part *part) {
-    int32_t parent[2];
-    double weight[2];
-    int64_t share[2][3] = {{0}};
+    int32_t parent[LAR_CONTACT_PARENTS];
+    double weight[LAR_CONTACT_PARENTS];
+    int64_t share[LAR_CONTACT_PARENTS][3];
     int count = lar_contact_parents(contact->surface, node, parent, weight);
     for (int i = 0; i < 3; i++) {
-        if (count == 2) share[1][i] = llrint(weight[1] * (double)sum[i]);
-        share[0][i] = sum[i] - share[1][i];
+        share[0][i] = sum[i];
+        for (int k = 1; k < count; k++) {
+            share[k][i] = llrint(weight[k] * (double)sum[i]);
+            share[0][i] -= share[k][i];
+        }
     }
     for (int k = 0; k < count; k++)
         if (!contact->adds_node || contact->adds_node[parent[k]])

@@ -73,7 +73,10 @@ typedef struct lar_contact_view {
 } lar_contact_view;
 
 /* Faces of a body that push a node together, at most, and whom they push. */
-enum { LAR_CONTACT_FACES = 4, LAR_CONTACT_PARTS = 2 + 4 * (LAR_CONTACT_FACES + 1) };
+enum {
+    LAR_CONTACT_FACES = 4,
+    LAR_CONTACT_PARTS = LAR_CONTACT_PARENTS + 4 * (LAR_CONTACT_FACES + 1)
+};
 
 /* What this thread adds in the step under way: forces on its local nodes. */
 typedef struct lar_body_contact_part {
@@ -155,20 +158,22 @@ static inline void lar_contact_place_of_node(const lar_body_contact *contact,
     if (v) lar_state_velocity(state, local, v);
 }
 
-/* Of a node or a point of an edge; v may be NULL. */
+/* Of a node or a point; v may be NULL. */
 static inline void lar_contact_place(const lar_body_contact *contact, const lar_state *state,
                                      int32_t node, double x[3], double v[3]) {
-    int32_t parent[2];
-    double weight[2], end[2][3], speed[2][3];
-    if (lar_contact_parents(contact->surface, node, parent, weight) == 1) {
+    int32_t parent[LAR_CONTACT_PARENTS];
+    double weight[LAR_CONTACT_PARENTS], one[3], speed[3];
+    int count = lar_contact_parents(contact->surface, node, parent, weight);
+    if (count == 1) {
         lar_contact_place_of_node(contact, state, node, x, v);
         return;
     }
-    for (int k = 0; k < 2; k++)
-        lar_contact_place_of_node(contact, state, parent[k], end[k], v ? speed[k] : NULL);
-    for (int i = 0; i < 3; i++) {
-        x[i] = weight[0] * end[0][i] + weight[1] * end[1][i];
-        if (v) v[i] = weight[0] * speed[0][i] + weight[1] * speed[1][i];
+    for (int k = 0; k < count; k++) {
+        lar_contact_place_of_node(contact, state, parent[k], one, v ? speed : NULL);
+        for (int i = 0; i < 3; i++) {
+            x[i] = k == 0 ? weight[0] * one[i] : x[i] + weight[k] * one[i];
+            if (v) v[i] = k == 0 ? weight[0] * speed[i] : v[i] + weight[k] * speed[i];
+        }
     }
 }
 

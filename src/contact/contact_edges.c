@@ -1,4 +1,4 @@
-/* Sharp edges of surfaces in contact, at rest.
+/* Sharp edges of surfaces in contact, at rest, and faces that have no others.
  *
  * What comes under a body from beside meets its sharp edge first. There springs are taken up and
  * let go little by little, over half a face, or each node that goes by would be a blow
@@ -65,9 +65,10 @@ static side *list_sides(const lar_contact_surface *s, size_t count) {
     return sides;
 }
 
+static const double MEETS = 0.5; /* edges that are blunter: faces are enough */
+
 /* Sharp edges to the front; returns how many. */
 static size_t find_edges(lar_contact_surface *s, side *sides, size_t count) {
-    static const double MEETS = 0.5; /* others are so blunt that faces are enough */
     size_t edges = 0;
     for (int32_t n = 0; n < s->node_count; n++) s->node[n].blunt = 1;
     for (size_t i = 0; i + 1 < count; i++) {
@@ -87,31 +88,61 @@ static size_t find_edges(lar_contact_surface *s, side *sides, size_t count) {
 
 /* Points of an edge: between nodes, which are points already. Each has so small a part of the mass
  * behind it, or two edges that lie along each other would have more springs than a step bears. */
-enum { EDGE_POINTS = 4, EDGE_PARTS = 12 };
+enum { EDGE_POINTS = 4, POINT_PARTS = 12 };
+
+static void add_point(lar_contact_surface *s, const lar_contact_point *point) {
+    int32_t at = s->point_count++;
+    s->point[at - s->node_count] = *point;
+    s->node[at] = s->node[point->node[0]];
+    for (int i = 0; i < 3; i++) s->rest[at][i] = 0;
+    for (int k = 0; k < point->count; k++) {
+        s->node[at].passes &= s->node[point->node[k]].passes;
+        for (int i = 0; i < 3; i++) s->rest[at][i] += point->weight[k] * s->rest[point->node[k]][i];
+    }
+    s->slave_count += s->node[at].passes != 0;
+}
+
+static void add_edge(lar_contact_surface *s, const side *edge) {
+    for (int k = 0; k < EDGE_POINTS; k++) {
+        double along = (k + 0.5) / EDGE_POINTS;
+        add_point(s, &(lar_contact_point){2, {edge->node[0], edge->node[1]}, {1 - along, along}});
+    }
+}
+
+/* Points of a face whose corners are all on sharp edges, as of a body that is one element wide: a
+ * node on an edge that has gone down exactly along the side of another body is on its surface, and
+ * nothing pushes it; a point amid a face knows where it has come in. */
+enum { FACE_POINTS = 4 };
+
+static bool among_edges(const lar_contact_surface *s, int32_t face) {
+    bool all = true;
+    for (int a = 0; a < 4; a++) all = all && s->node[s->face[face].corner[a]].blunt < MEETS;
+    return all;
+}
+
+static void add_face(lar_contact_surface *s, int32_t face) {
+    for (int k = 0; k < FACE_POINTS; k++) {
+        lar_contact_point point = {.count = 4};
+        memcpy(point.node, s->face[face].corner, sizeof point.node);
+        lar_face_weights(k % 2 ? 0.5 : -0.5, k / 2 ? 0.5 : -0.5, point.weight);
+        add_point(s, &point);
+    }
+}
 
 static lar_status add_points(lar_contact_surface *s, const side *edge, size_t edges,
                              lar_error *error) {
     size_t nodes = (size_t)s->node_count, count = nodes + EDGE_POINTS * edges;
+    for (int32_t f = 0; f < s->face_count; f++) count += among_edges(s, f) ? FACE_POINTS : 0;
     lar_contact_node *node = realloc(s->node, count * sizeof *node);
     if (node) s->node = node;
     double(*rest)[3] = realloc(s->rest, count * sizeof *rest);
     if (rest) s->rest = rest;
-    s->point = lar_calloc(EDGE_POINTS * edges, sizeof *s->point);
+    s->point = lar_calloc(count - nodes, sizeof *s->point);
     if (!node || !rest || !s->point)
         return lar_fail_memory(error, count * sizeof *node, "points of edges");
-    for (size_t e = 0; e < edges; e++)
-        for (int k = 0; k < EDGE_POINTS; k++) {
-            int32_t at = s->point_count++;
-            double along = (k + 0.5) / EDGE_POINTS;
-            lar_contact_point *point = &s->point[at - s->node_count];
-            *point = (lar_contact_point){{edge[e].node[0], edge[e].node[1]}, {1 - along, along}};
-            node[at] = node[point->node[0]];
-            node[at].passes &= node[point->node[1]].passes;
-            for (int i = 0; i < 3; i++)
-                rest[at][i] = point->weight[0] * rest[point->node[0]][i] +
-                              point->weight[1] * rest[point->node[1]][i];
-            s->slave_count += node[at].passes != 0;
-        }
+    for (size_t e = 0; e < edges; e++) add_edge(s, &edge[e]);
+    for (int32_t f = 0; f < s->face_count; f++)
+        if (among_edges(s, f)) add_face(s, f);
     return LAR_OK;
 }
 
@@ -130,7 +161,8 @@ void lar_contact_edges_fit(lar_contact_surface *s) {
     for (int32_t n = s->node_count; n < s->point_count; n++) {
         const lar_contact_point *point = &s->point[n - s->node_count];
         double compliance = 0;
-        for (int i = 0; i < 2; i++) compliance += point->weight[i] / s->node[point->node[i]].mass;
-        s->node[n].mass = 1 / (EDGE_PARTS * compliance);
+        for (int i = 0; i < point->count; i++)
+            compliance += point->weight[i] / s->node[point->node[i]].mass;
+        s->node[n].mass = 1 / (POINT_PARTS * compliance);
     }
 }

@@ -227,12 +227,13 @@ static bool add_groups(lar_contact_search *search, int32_t node, const double x[
 }
 
 static void find_place(const lar_contact_search *search, int32_t node, double x[3]) {
-    int32_t parent[2];
-    double weight[2];
+    int32_t parent[LAR_CONTACT_PARENTS];
+    double weight[LAR_CONTACT_PARENTS];
     int count = lar_contact_parents(&search->tree->surface, node, parent, weight);
-    const double *one = search->x[parent[0]], *other = search->x[parent[1]];
-    for (int i = 0; i < 3; i++)
-        x[i] = count == 1 ? one[i] : weight[0] * one[i] + weight[1] * other[i];
+    for (int i = 0; i < 3; i++) {
+        x[i] = weight[0] * search->x[parent[0]][i];
+        for (int k = 1; k < count; k++) x[i] += weight[k] * search->x[parent[k]][i];
+    }
 }
 
 void lar_contact_search_begin(lar_contact_search *search, const double (*x)[3], double skin) {

@@ -52,15 +52,18 @@ typedef struct lar_contact_node {
     double blunt;    /* 1, or less where it is on a sharp edge, down to 0: contact_edges.c */
 } lar_contact_node;
 
-/* A point of a sharp edge, which meets faces of other bodies as nodes do. */
+/* A point of a sharp edge, or of a face among such edges, which meets faces of other bodies as
+ * nodes do. */
+enum { LAR_CONTACT_PARENTS = 4 };
 typedef struct lar_contact_point {
-    int32_t node[2];  /* contact nodes */
-    double weight[2]; /* their shares, sum 1 */
+    int32_t count;                      /* 2 or 4 */
+    int32_t node[LAR_CONTACT_PARENTS];  /* contact nodes */
+    double weight[LAR_CONTACT_PARENTS]; /* their shares, sum 1 */
 } lar_contact_point;
 
 typedef struct lar_contact_surface {
     int32_t node_count, face_count, body_count;
-    int32_t point_count;      /* nodes, and behind them points of edges */
+    int32_t point_count;      /* nodes, and behind them points of edges and faces */
     int32_t slave_count;      /* those with passes */
     lar_contact_node *node;   /* [point_count] nodes ascending */
     lar_contact_point *point; /* [point_count - node_count] */
@@ -124,25 +127,25 @@ static inline double lar_contact_friction(const lar_contact_surface *surface,
 lar_status lar_contact_surface_fit(const lar_model *model, double time_step, double stable_step,
                                    lar_contact_surface *surface, lar_error *error);
 
-/* The nodes of which a node or point of an edge is made, and their shares; returns how many. */
+/* The nodes of which a node or point is made, and their shares; returns how many. */
 static inline int lar_contact_parents(const lar_contact_surface *surface, int32_t node,
-                                      int32_t parent[2], double weight[2]) {
-    parent[0] = parent[1] = node;
+                                      int32_t parent[LAR_CONTACT_PARENTS],
+                                      double weight[LAR_CONTACT_PARENTS]) {
+    parent[0] = node;
     weight[0] = 1;
-    weight[1] = 0;
     if (node < surface->node_count) return 1;
     const lar_contact_point *point = &surface->point[node - surface->node_count];
-    for (int i = 0; i < 2; i++) {
+    for (int i = 0; i < point->count; i++) {
         parent[i] = point->node[i];
         weight[i] = point->weight[i];
     }
-    return 2;
+    return point->count;
 }
 
-/* Finds the sharp edges at rest: sets `blunt` and `fades`, and adds the edges' points. */
+/* Finds the sharp edges at rest: sets `blunt` and `fades`, and adds points of edges and faces. */
 lar_status lar_contact_surface_edges(lar_contact_surface *surface, lar_error *error);
 
-/* Masses of the edges' points, from those of nodes. */
+/* Masses of these points, from those of nodes. */
 void lar_contact_edges_fit(lar_contact_surface *surface);
 
 /* Whether a node and a face are never together. */

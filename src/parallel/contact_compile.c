@@ -93,8 +93,8 @@ static bool is_own_body(const lar_contact_surface *s, const lar_contact_list *li
 static bool concerns(const lar_contact_map *map, const lar_contact_list *list,
                      const lar_contact_group *group, int32_t processor) {
     const lar_contact_surface *s = map->surface;
-    int32_t parent[2];
-    double weight[2];
+    int32_t parent[LAR_CONTACT_PARENTS];
+    double weight[LAR_CONTACT_PARENTS];
     int count = lar_contact_parents(s, group->node, parent, weight);
     for (int k = 0; k < count; k++)
         if (map->reporter[parent[k]] == processor ||
@@ -113,10 +113,10 @@ static bool concerns(const lar_contact_map *map, const lar_contact_list *list,
 /* Marks the nodes of a group. */
 static void mark_nodes(const lar_contact_map *map, const lar_contact_list *list,
                        const lar_contact_group *group, uint8_t *marked) {
-    int32_t parent[2];
-    double weight[2];
-    lar_contact_parents(map->surface, group->node, parent, weight);
-    marked[parent[0]] = marked[parent[1]] = 1;
+    int32_t parent[LAR_CONTACT_PARENTS];
+    double weight[LAR_CONTACT_PARENTS];
+    int count = lar_contact_parents(map->surface, group->node, parent, weight);
+    for (int k = 0; k < count; k++) marked[parent[k]] = 1;
     for (int32_t i = group->first; i < group->first + group->count; i++)
         for (int a = 0; a < 4; a++) marked[map->surface->face[list->face[i]].corner[a]] = 1;
 }
@@ -169,13 +169,14 @@ static void take_groups(lar_worker *worker, const lar_contact_list *list) {
     for (int32_t g = 0; g < list->group_count; g++) {
         const lar_contact_group *group = &list->group[g];
         const int32_t *face = list->face + group->first;
-        int32_t parent[2];
-        double weight[2];
-        lar_contact_parents(contact->surface, group->node, parent, weight);
-        bool keeps = contact->keeps[parent[0]] || contact->keeps[parent[1]];
+        int32_t parent[LAR_CONTACT_PARENTS];
+        double weight[LAR_CONTACT_PARENTS];
+        int count = lar_contact_parents(contact->surface, group->node, parent, weight);
         bool remembers = contact->friction || is_own_body(contact->surface, list, group);
-        bool takes =
-            contact->adds_node[parent[0]] || contact->adds_node[parent[1]] || (remembers && keeps);
+        bool takes = false;
+        for (int k = 0; k < count; k++)
+            takes =
+                takes || contact->adds_node[parent[k]] || (remembers && contact->keeps[parent[k]]);
         for (int32_t i = 0; i < group->count && !takes; i++)
             takes = contact->adds_corner[face[i]] &&
                     lar_contact_active(&contact->surface->node[group->node],

@@ -27,12 +27,13 @@ static void create(lar_model *model) {
     free(local);
 }
 
-/* Of a node, or a point of a sharp edge between two of them. */
+/* Of a node, or a point of a sharp edge or a face between some of them. */
 static double distance(const double (*x)[3], int32_t node, int32_t face) {
-    double corner[4][3], at[3], weight[2];
-    int32_t parent[2];
-    lar_contact_parents(&tree.surface, node, parent, weight);
-    for (int i = 0; i < 3; i++) at[i] = weight[0] * x[parent[0]][i] + weight[1] * x[parent[1]][i];
+    double corner[4][3], at[3] = {0}, weight[LAR_CONTACT_PARENTS];
+    int32_t parent[LAR_CONTACT_PARENTS];
+    int count = lar_contact_parents(&tree.surface, node, parent, weight);
+    for (int k = 0; k < count; k++)
+        for (int i = 0; i < 3; i++) at[i] += weight[k] * x[parent[k]][i];
     for (int a = 0; a < 4; a++)
         memcpy(corner[a], x[tree.surface.face[face].corner[a]], sizeof corner[a]);
     return lar_face_distance(at, (const double(*)[3])corner);

@@ -1,4 +1,4 @@
-/* Bars that cross with their sharp edges first stay outside each other. */
+/* Bars that meet with their sharp edges stay outside each other. */
 #include "engine/body_contact_test.h"
 #include "engine/tool_contact_test.h"
 #include "mechanics/face_contact.h"
@@ -238,10 +238,72 @@ static void bars_that_are_pushed_stay_outside(void **unused) {
     }
 }
 
+/* ---- laid on each other ------------------------------------------------------------------------
+ */
+
+/* Two bars that are one element wide, the upper one over the lower, so that edges lie over edges:
+ * all their nodes go down exactly along the other's sides. */
+static lar_model *pile(const brick *b, double gap, const double shift[2]) {
+    lar_model *model = empty_model(b);
+    add_brick(model, b, (double[]){0, 0, 0});
+    int32_t split = model->mesh.element_count;
+    add_brick(model, b, (double[]){shift[0], shift[1], b->edge * b->cells[2] + gap});
+    lar_node_list ground = {0, lar_calloc((size_t)model->mesh.node_count, sizeof(int32_t))};
+    for (int32_t n = 0; n < model->mesh.node_count; n++)
+        if (model->mesh.position[n][2] == 0) ground.node[ground.count++] = n;
+    fix_nodes(model, ground, LAR_AXIS_ALL);
+    touch_between(model, split);
+    model->gravity[2] = -9.81;
+    model->damping = 20;
+    return model;
+}
+
+/* How far the middle of the upper bar has gone down. */
+static double sunk(const lar_simulation *s, int32_t first) {
+    const int32_t end = s->domain.model->mesh.node_count;
+    double sum = 0;
+    for (int32_t n = first; n < end; n++) sum -= node_u(s, n)[2];
+    return sum / (end - first);
+}
+
+static void bars_that_lie_edge_on_edge_hold_each_other(void **unused) {
+    (void)unused;
+    static const brick cube = {{1, 1, 1}, 0.01, 0, LAR_LAW_neo_hookean, 2e3, 4e4, 1050};
+    static const brick bar = {{3, 1, 1}, 0.01, 0, LAR_LAW_neo_hookean, 2e3, 4e4, 1050};
+    static const struct {
+        const brick *b;
+        double gap, shift[2];
+    } piles[] = {{&cube, 0, {0, 0}},       {&cube, 1e-4, {0, 0}}, {&cube, 2e-4, {1e-4, 0}},
+                 {&cube, 1e-4, {5e-4, 0}}, {&bar, 1e-4, {0, 0}},  {&bar, 0, {0.005, 0}},
+                 {&cube, 0.02, {0, 0}}};
+    for (size_t i = 0; i < sizeof piles / sizeof *piles; i++) {
+        const brick *b = piles[i].b;
+        lar_model *model = pile(b, piles[i].gap, piles[i].shift);
+        const int32_t first = model->mesh.node_count / 2;
+        uint64_t hash[2];
+        double went[2];
+        for (int g = 0; g < 2; g++) {
+            lar_options options = lar_options_default();
+            options.grid = g ? "2x1x1" : NULL;
+            lar_simulation *s = start_with(model, options);
+            advance(s, (int64_t)(0.3 / lar_simulation_time_step(s)));
+            hash[g] = lar_simulation_hash(s);
+            went[g] = sunk(s, first);
+            lar_simulation_destroy(s);
+        }
+        print_message("%d elements, gap %g mm, shifted by %g mm: %.2f mm down\n", b->cells[0],
+                      1e3 * piles[i].gap, 1e3 * piles[i].shift[0], 1e3 * went[0]);
+        assert_true(hash[0] == hash[1]);
+        assert_below(went[0], piles[i].gap + 0.25 * b->edge);
+        lar_model_destroy(model);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(bars_that_are_thrown_stay_outside),
         cmocka_unit_test(bars_that_are_pushed_stay_outside),
+        cmocka_unit_test(bars_that_lie_edge_on_edge_hold_each_other),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

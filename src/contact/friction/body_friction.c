@@ -151,8 +151,8 @@ bool lar_body_friction_rub(lar_body_contact *contact, const lar_state *state, co
     const double lead = contact->law.lead / contact->time_step;
     for (int i = 0; i < 3; i++) moved[i] *= contact->time_step;
 
-    int32_t parent[2];
-    double weight[2];
+    int32_t parent[LAR_CONTACT_PARENTS];
+    double weight[LAR_CONTACT_PARENTS];
     int count = lar_contact_parents(surface, rub->node, parent, weight);
     for (int k = 0; k < count; k++) {
         const double *stick = stick_of(contact, state, parent[k]);
