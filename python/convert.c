@@ -17,6 +17,19 @@ bool python_steps(PyObject *source, const char *name, unsigned long long *steps)
     return python_refuse("%s: expected a whole number from 0 on, got %R", name, source);
 }
 
+bool python_is_no(PyObject *answer) {
+    static const char *const numpy[] = {"bool_", "bool"}; /* before version 2, and since */
+    if (answer == Py_True || answer == Py_None) return false;
+    if (answer == Py_False) return true;
+    PyObject *name = PyObject_GetAttrString((PyObject *)Py_TYPE(answer), "__name__");
+    bool is_bool = name && (PyUnicode_CompareWithASCIIString(name, numpy[0]) == 0 ||
+                            PyUnicode_CompareWithASCIIString(name, numpy[1]) == 0);
+    Py_XDECREF(name);
+    int yes = is_bool ? PyObject_IsTrue(answer) : 1;
+    PyErr_Clear();
+    return yes == 0;
+}
+
 bool python_number(PyObject *source, const char *name, double *number) {
     *number = PyFloat_AsDouble(source);
     if (*number == -1.0 && PyErr_Occurred()) {

@@ -336,7 +336,7 @@ static int tell(void *context, const char *what, double part) {
     PyObject *answer =
         PyErr_CheckSignals() ? NULL : PyObject_CallFunction(r->progress, "sd", what, part);
     r->watch.stopped = !answer;
-    r->stopped = answer == Py_False;
+    r->stopped = answer && python_is_no(answer);
     Py_XDECREF(answer);
     r->watch.thread = PyEval_SaveThread();
     return !r->watch.stopped && !r->stopped;

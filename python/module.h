@@ -143,6 +143,8 @@ bool python_refuse_type(const char *format, ...);
 /* `name` begins the message: "steps: expected ..." */
 bool python_steps(PyObject *source, const char *name, unsigned long long *steps);
 bool python_number(PyObject *source, const char *name, double *number);
+/* Whether a callback's answer is False, or numpy's: what a comparison of arrays gives. */
+bool python_is_no(PyObject *answer);
 /* `count` finite numbers from any sequence. */
 bool python_vector(PyObject *source, const char *name, int count, double *out);
 PyObject *python_tuple(const double *value, int count);

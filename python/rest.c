@@ -34,7 +34,7 @@ static bool run(python_simulation *self, lar_rest *rest, unsigned long long last
                                ? Py_NewRef(Py_None)
                                : PyObject_CallFunctionObjArgs(callback, (PyObject *)self, NULL);
         if (!answer) return false;
-        *ended = answer == Py_False;
+        *ended = python_is_no(answer);
         Py_DECREF(answer);
         lar_simulation *simulation = python_simulation_look(self, "rest");
         if (!simulation) return false;

@@ -258,7 +258,7 @@ bool python_simulation_advance(python_simulation *self, unsigned long long steps
 /* In pieces of `every` steps, with a call between: true while it shall go on. */
 static bool call_back(PyObject *me, PyObject *callback, bool *goes_on) {
     PyObject *answer = PyObject_CallFunctionObjArgs(callback, me, NULL);
-    *goes_on = answer != Py_False;
+    *goes_on = !answer || !python_is_no(answer);
     Py_XDECREF(answer);
     return answer != NULL;
 }

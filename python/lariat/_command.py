@@ -25,6 +25,11 @@ _FAILED, _USAGE, _UNSTABLE, _INTERRUPTED = 1, 2, 3, 130
 _versions = {}  # (path, time, inode): what it says it is
 
 
+def _is_no(answer):
+    """False, or numpy's: what a comparison of arrays gives."""
+    return answer is False or (type(answer).__name__ in ("bool_", "bool") and not answer)
+
+
 def _candidates():
     """Where the program of this package is: of a build folder, of a prefix or a virtual
     environment, of `pip install --target`; then wherever the PATH has one."""
@@ -142,7 +147,7 @@ def _follow(child, progress):
                 return messages, stopped
             if not line.startswith("{"):
                 messages.append(line)
-            elif progress and not stopped and progress(json.loads(line)) is False:
+            elif progress and not stopped and _is_no(progress(json.loads(line))):
                 stopped = "progress"
                 child.stop()
         except KeyboardInterrupt:

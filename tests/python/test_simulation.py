@@ -48,6 +48,13 @@ class Bits(unittest.TestCase):
                 self.assertEqual([step for step, _ in seen], [*range(7, 100, 7), 100])
         self.assertEqual(len(set(hashes)), 1)
 
+    @unittest.skipIf(numpy is None, WITHOUT_NUMPY)
+    def test_what_a_comparison_of_arrays_gives_ends_an_advance_too(self):
+        with lariat.Simulation(block()) as sim:
+            for answer, steps in ((numpy.bool_(False), 5), (numpy.bool_(True), 20), (0, 20)):
+                self.assertEqual(sim.advance(20, callback=lambda s: answer, every=5), steps)
+            self.assertFalse(sim.rest(callback=lambda s: numpy.bool_(False))["reached"])
+
 
 class Rest(unittest.TestCase):
     def test_a_block_sags_to_the_same_rest_on_every_grid(self):
