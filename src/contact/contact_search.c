@@ -370,6 +370,59 @@ static void measure_clearance(lar_contact_surface *s, const lar_contact_list *li
     }
 }
 
+/* Whether a face lies over one of another body, in its plane, and looks the same way. */
+static bool lies_on(const lar_contact_surface *s, int32_t face, int32_t other, double rounding) {
+    static const double middle[4] = {0.25, 0.25, 0.25, 0.25};
+    double own[4][3], corner[4][3], x[3], way[2][3];
+    lar_face_point point;
+    for (int a = 0; a < 4; a++) {
+        memcpy(own[a], s->rest[s->face[face].corner[a]], sizeof own[a]);
+        memcpy(corner[a], s->rest[s->face[other].corner[a]], sizeof corner[a]);
+    }
+    lar_face_mean((const double(*)[3])own, middle, x);
+    lar_face_closest(x, (const double(*)[3])corner, LAR_FACE_TIE * s->face[other].size, &point);
+    lar_face_normal((const double(*)[3])own, way[0]);
+    lar_face_normal((const double(*)[3])corner, way[1]);
+    double along = way[0][0] * way[1][0] + way[0][1] * way[1][1] + way[0][2] * way[1][2];
+    return point.distance <= rounding && along > 0;
+}
+
+/* Bodies may be in each other with all nodes on each other's surfaces: a mesh that was given twice,
+ * bars of one width that are shifted along. Then faces of both lie in one plane, one over the
+ * other, and look the same way. Groups come by node. */
+static lar_status refuse_twice(const lar_model *model, const lar_contact_search *search,
+                               lar_error *error) {
+    const lar_contact_surface *s = &search->tree->surface;
+    const lar_contact_list *list = &search->list;
+    double rounding = lar_overlap_rounding(&model->mesh);
+    int32_t *first = lar_calloc((size_t)s->point_count + 1, sizeof *first);
+    if (!first) return lar_fail_memory(error, 4 * (size_t)s->point_count, "bodies at rest");
+    for (int32_t g = 0; g < list->group_count; g++) first[list->group[g].node + 1] = g + 1;
+    for (int32_t n = 0; n < s->point_count; n++)
+        if (first[n + 1] < first[n]) first[n + 1] = first[n];
+    for (int32_t f = 0; f < s->face_count; f++)
+        for (int32_t a = 0, n = s->face[f].corner[0]; a < 4; n = s->face[f].corner[++a % 4])
+            for (int32_t g = first[n]; g < first[n + 1]; g++)
+                for (int32_t i = 0; i < list->group[g].count; i++) {
+                    int32_t other = list->face[list->group[g].first + i];
+                    if (s->face[other].body == s->face[f].body ||
+                        !lar_contact_active(&s->node[n], &s->face[other]) ||
+                        !lies_on(s, f, other, rounding))
+                        continue;
+                    free(first);
+                    return lar_fail(
+                        error, LAR_ERROR_MODEL,
+                        "%s: elements %lld and %lld, of two bodies that may touch, lie in each "
+                        "other at the start, and contact could not tell which way is out; move the "
+                        "bodies apart (was a mesh given twice?), or leave contact between them out",
+                        lar_model_source(model),
+                        (long long)model->mesh.element_id[s->face[f].element],
+                        (long long)model->mesh.element_id[s->face[other].element]);
+                }
+    free(first);
+    return LAR_OK;
+}
+
 /* Contact would throw the two apart, with energy from nowhere. */
 static lar_status refuse_overlap(const lar_model *model, const lar_contact_search *search,
                                  lar_error *error) {
@@ -402,6 +455,7 @@ static lar_status keep_shape(const lar_model *model, lar_contact_search *search,
                         "many places; take a mesh whose bodies lie beside each other",
                         LAR_PAIRS_PER_NODE);
     lar_status status = refuse_overlap(model, search, error);
+    if (!status) status = refuse_twice(model, search, error);
     if (status) return status;
     measure_clearance(s, list, lar_overlap_rounding(&model->mesh));
     int32_t(*pair)[2] = lar_calloc((size_t)list->face_count, sizeof *pair), count = 0;

@@ -19,9 +19,9 @@ static lar_status check(const lar_simulation *simulation, int32_t material, doub
                                : lar_fibre_active(&model->material[material].fibre);
     if (!active)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
-                        "%s no active stress; give it one in the model, in a scene as fibres: "
+                        "%s active stress; give it one in the model, in a scene as fibres: "
                         "{active: {along: 2.0e3}, ...}",
-                        material < 0 ? "no material has" : "this material has");
+                        material < 0 ? "no material has any" : "this material has no");
     if (!(value >= 0 && value <= 1))
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "an activation of %g; it is from 0, nothing is active, to 1, as much as "

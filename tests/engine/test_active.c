@@ -196,7 +196,7 @@ static void what_cannot_be_set_is_refused(void **unused) {
     assert_true(lar_simulation_activation(simulation, LAR_LAW_yeoh) == 1);
     finish(simulation, model);
     simulation = start(still);
-    expect_bad(simulation, -1, 0.5, "no material has no active stress");
+    expect_bad(simulation, -1, 0.5, "no material has any active stress");
     finish(simulation, still);
 }
 

@@ -132,6 +132,25 @@ static void refuse_start(double gap, bool self, const char *how_deep) {
     lar_model_destroy(model);
 }
 
+/* A body that is given twice: no node of it is below a face. */
+static void a_body_given_twice_is_refused(void **unused) {
+    (void)unused;
+    const double moved[][3] = {{0, 0, 0}, {lower_brick.edge, 0, 0}};
+    for (int i = 0; i < 2; i++) {
+        lar_model *model = empty_model(&lower_brick);
+        lar_simulation *s = NULL;
+        lar_error error = {0};
+        add_brick(model, &lower_brick, (double[]){0, 0, 0});
+        add_brick(model, &lower_brick, moved[i]);
+        touch_self(model);
+        assert_int_equal(lar_model_check(model, &error), LAR_OK);
+        assert_int_equal(lar_simulation_create(model, NULL, &s, &error), LAR_ERROR_MODEL);
+        if (!strstr(error.message, i ? "inside another body" : "was a mesh given twice?"))
+            fail_msg("%s", error.message);
+        lar_model_destroy(model);
+    }
+}
+
 /* What lies in each other would burst; what touches, but for rounding, may begin. */
 static void bodies_in_each_other_are_refused(void **unused) {
     (void)unused;
@@ -469,6 +488,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_collision_keeps_momentum),
         cmocka_unit_test(forces_come_in_pairs),
+        cmocka_unit_test(a_body_given_twice_is_refused),
         cmocka_unit_test(bodies_in_each_other_are_refused),
         cmocka_unit_test(what_is_no_number_is_the_most),
         cmocka_unit_test(a_collision_adds_no_energy),

@@ -157,6 +157,9 @@ static void test_bad_materials(void **state) {
                                  "<E>1</E></material>"),
                    LAR_ERROR_FORMAT, 6, "no parameter <v>");
     expect_failure(WITH_MATERIAL("<material id=\"1\" name=\"soft\" type=\"neo-Hookean\">\n"
+                                 "<E>7</E><v>0.3</v>\n<E>1</E></material>"),
+                   LAR_ERROR_FORMAT, 8, "a second <E> in one material");
+    expect_failure(WITH_MATERIAL("<material id=\"1\" name=\"soft\" type=\"neo-Hookean\">\n"
                                  "<E>1</E><v>0.5</v></material>"),
                    LAR_ERROR_MODEL, 6, "Poisson's ratio");
     expect_failure(WITH_MATERIAL("<material id=\"1\" name=\"soft\" type=\"neo-Hookean\">\n"

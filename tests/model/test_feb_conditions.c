@@ -83,6 +83,8 @@ static void test_loads(void **state) {
 
 static void test_bad_supports(void **state) {
     (void)state;
+    expect_failure(BC("zero displacement", "wall", "<xdof>1</xdof>"), LAR_ERROR_FORMAT, BC_LINE,
+                   "does not say which axes it holds");
     expect_failure(BC("zero displacement", "none", "<x_dof>1</x_dof>"), LAR_ERROR_FORMAT, BC_LINE,
                    "node set 'none'");
     expect_failure(BC("zero displacement", "@edge:e", "<x_dof>1</x_dof>"), LAR_ERROR_UNSUPPORTED,

@@ -210,6 +210,7 @@ static void test_contact(void **state) {
             "*FRICTION belongs to no *SURFACE INTERACTION");
     refused(TWO "*CONTACT PAIR, INTERACTION=a\nPoints, Top\n", LAR_ERROR_UNSUPPORTED, line + 1,
             "the surface 'Points' is one of nodes");
+    refused(TWO "*CONTACT PAIR, INTERACTION=a\n", LAR_ERROR_FORMAT, line, "names no surfaces");
     refused(TWO "*CONTACT PAIR, TIED\nUnder, Top\n", LAR_ERROR_UNSUPPORTED, line, "TIED");
     refused(TWO "*CONTACT PAIR\nUnder, Nothing\n", LAR_ERROR_FORMAT, line + 1,
             "there is no surface 'Nothing' of faces");

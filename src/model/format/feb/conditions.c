@@ -93,6 +93,12 @@ static lar_status read_fix(lar_feb *feb, const xmlNode *at) {
     unsigned axes;
     lar_status status = dofs ? read_axis_list(feb, dofs, &axes) : read_axis_flags(feb, at, &axes);
     lar_node_list nodes = {0};
+    if (!status && !dofs && !lar_feb_child(at, "x_dof") && !lar_feb_child(at, "y_dof") &&
+        !lar_feb_child(at, "z_dof"))
+        return lar_feb_fail(feb, at, LAR_ERROR_FORMAT,
+                            "<%s> does not say which axes it holds; add <x_dof>, <y_dof> or "
+                            "<z_dof> with 1",
+                            (const char *)at->name);
     if (!status) status = lar_feb_notice_others(feb, at, known);
     if (!status) status = read_node_set(feb, at, &nodes);
     if (!status && (axes == 0 || nodes.count == 0)) {

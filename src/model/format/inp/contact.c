@@ -84,7 +84,13 @@ lar_status inp_read_contact_pair(inp_deck *deck, const inp_card *card) {
                             "SMALL SLIDING was left out: Lariat's surfaces may slide any way");
     if (!status && inp_parameter(card, "ADJUST", &value))
         status = inp_notice(deck, card->line, "ADJUST was left out: no node is moved at the start");
-    while (!status && inp_data_line(&deck->reader, &line)) status = read_pair(deck, line, friction);
+    int pairs = 0;
+    for (; !status && inp_data_line(&deck->reader, &line); pairs++)
+        status = read_pair(deck, line, friction);
+    if (!status && pairs == 0)
+        return inp_fail(deck, card->line, LAR_ERROR_FORMAT,
+                        "*CONTACT PAIR names no surfaces; write the two that touch in the line "
+                        "below it");
     if (!status && named && !interaction)
         return inp_fail(
             deck, card->line, LAR_ERROR_FORMAT,
