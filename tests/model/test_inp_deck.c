@@ -118,6 +118,10 @@ static void test_loads(void **state) {
     assert_true(model->damping == 0);
     lar_model_destroy(model);
 
+    model = read_deck(MESH SOFT STATIC "*DLOAD\n, GRAV, 2, 0.6, 0, 0.8\nLEFT, GRAV, 2, 0.6, 0, "
+                                       "0.8\n" END);
+    assert_int_equal(notices_with(model, "not twice as much"), 1);
+    lar_model_destroy(model);
     model = read_deck(MESH SOFT STATIC "*DLOAD\n, GRAV, 2, 0.6, 0, 0.8\n" END);
     near(model->gravity[0], 1.2);
     near(at(model, model->gravity_curve[0], 1), 0.5); /* grows, in a static step */

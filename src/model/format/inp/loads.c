@@ -129,18 +129,22 @@ static lar_status read_gravity(inp_deck *deck, const lar_span *field, int count,
                         deck->gravity_line);
     if (!deck->heavy) deck->heavy = lar_calloc((size_t)deck->mesh->element_count, 1);
     if (!deck->heavy) return inp_no_memory(deck, "gravity");
+    const bool whole = field[0].length == 0;
     if (deck->gravity_line == 0) deck->gravity_line = deck->reader.line;
     memcpy(deck->gravity, gravity, sizeof gravity);
     deck->gravity_curve = curve;
-    if (field[0].length == 0) {
-        memset(deck->heavy, 1, (size_t)deck->mesh->element_count);
-        return LAR_OK;
+    const int32_t *index = NULL;
+    int32_t own, elements = deck->mesh->element_count, twice = 0;
+    if (!whole) status = inp_elements(deck, field[0], &own, &index, &elements);
+    for (int32_t e = 0; e < elements && !status; e++) {
+        char *heavy = &deck->heavy[whole ? e : index[e]];
+        twice += *heavy;
+        *heavy = 1;
     }
-    const int32_t *index;
-    int32_t own, elements;
-    status = inp_elements(deck, field[0], &own, &index, &elements);
-    for (int32_t e = 0; e < elements && !status; e++) deck->heavy[index[e]] = 1;
-    return status;
+    if (status || twice == 0) return status;
+    return inp_notice(
+        deck, deck->reader.line,
+        "%d elements have GRAV already; together it is one gravity, not twice as much", (int)twice);
 }
 
 static lar_status finish_gravity(inp_deck *deck) {
