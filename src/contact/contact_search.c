@@ -387,40 +387,51 @@ static bool lies_on(const lar_contact_surface *s, int32_t face, int32_t other, d
     return point.distance <= rounding && along > 0;
 }
 
+/* A face of another body that this one lies on, among those near its corners; -1: none. Groups come
+ * by node: those of node n are first[n] up to first[n + 1]. */
+static int32_t find_under(const lar_contact_surface *s, const lar_contact_list *list,
+                          const int32_t *first, int32_t face, double rounding) {
+    for (int a = 0; a < 4; a++) {
+        int32_t n = s->face[face].corner[a];
+        for (int32_t g = first[n]; g < first[n + 1]; g++)
+            for (int32_t i = 0; i < list->group[g].count; i++) {
+                int32_t other = list->face[list->group[g].first + i];
+                if (s->face[other].body != s->face[face].body &&
+                    lar_contact_active(&s->node[n], &s->face[other]) &&
+                    lies_on(s, face, other, rounding))
+                    return other;
+            }
+    }
+    return -1;
+}
+
 /* Bodies may be in each other with all nodes on each other's surfaces: a mesh that was given twice,
  * bars of one width that are shifted along. Then faces of both lie in one plane, one over the
- * other, and look the same way. Groups come by node. */
+ * other, and look the same way. */
 static lar_status refuse_twice(const lar_model *model, const lar_contact_search *search,
                                lar_error *error) {
     const lar_contact_surface *s = &search->tree->surface;
     const lar_contact_list *list = &search->list;
     double rounding = lar_overlap_rounding(&model->mesh);
+    int32_t own = -1, other = -1;
     int32_t *first = lar_calloc((size_t)s->point_count + 1, sizeof *first);
     if (!first) return lar_fail_memory(error, 4 * (size_t)s->point_count, "bodies at rest");
     for (int32_t g = 0; g < list->group_count; g++) first[list->group[g].node + 1] = g + 1;
     for (int32_t n = 0; n < s->point_count; n++)
         if (first[n + 1] < first[n]) first[n + 1] = first[n];
-    for (int32_t f = 0; f < s->face_count; f++)
-        for (int32_t a = 0, n = s->face[f].corner[0]; a < 4; n = s->face[f].corner[++a % 4])
-            for (int32_t g = first[n]; g < first[n + 1]; g++)
-                for (int32_t i = 0; i < list->group[g].count; i++) {
-                    int32_t other = list->face[list->group[g].first + i];
-                    if (s->face[other].body == s->face[f].body ||
-                        !lar_contact_active(&s->node[n], &s->face[other]) ||
-                        !lies_on(s, f, other, rounding))
-                        continue;
-                    free(first);
-                    return lar_fail(
-                        error, LAR_ERROR_MODEL,
-                        "%s: elements %lld and %lld, of two bodies that may touch, lie in each "
-                        "other at the start, and contact could not tell which way is out; move the "
-                        "bodies apart (was a mesh given twice?), or leave contact between them out",
-                        lar_model_source(model),
-                        (long long)model->mesh.element_id[s->face[f].element],
-                        (long long)model->mesh.element_id[s->face[other].element]);
-                }
+    for (int32_t f = 0; f < s->face_count && other < 0; f++) {
+        own = f;
+        other = find_under(s, list, first, f, rounding);
+    }
     free(first);
-    return LAR_OK;
+    if (other < 0) return LAR_OK;
+    return lar_fail(error, LAR_ERROR_MODEL,
+                    "%s: elements %lld and %lld, of two bodies that may touch, lie in each other "
+                    "at the start, and contact could not tell which way is out; move the bodies "
+                    "apart (was a mesh given twice?), or leave contact between them out",
+                    lar_model_source(model),
+                    (long long)model->mesh.element_id[s->face[own].element],
+                    (long long)model->mesh.element_id[s->face[other].element]);
 }
 
 /* Contact would throw the two apart, with energy from nowhere. */
