@@ -122,13 +122,12 @@ LAR_INLINE void lar_one_add(int64_t *p, __m128i add) {
     _mm_storel_epi64((__m128i *)p, _mm_add_epi64(_mm_loadl_epi64((const __m128i *)p), add));
 }
 
-/* One turn moves every right force to the next lane, and the last one into the first, from where it
- * is stored without another. */
-LAR_INLINE void lar_axis_add_row(int64_t *axis, const int32_t *left_node, const int32_t *right_node,
-                                 bool half, lar_ilane left, lar_ilane right) {
-    (void)right_node;
+/* Adds forces of a row of eight whose first left node is at a, or of two rows of four (`half`), the
+ * second from b on. One turn moves every right force to the next lane, and the last one into the
+ * first, from where it is stored without another. */
+LAR_INLINE void lar_axis_add_row(int64_t *a, int64_t *b, bool half, lar_ilane left,
+                                 lar_ilane right) {
     const __m512i l = (__m512i)left, r = (__m512i)right;
-    int64_t *a = axis + left_node[0], *b = axis + left_node[4];
     if (!half) {
         __m512i turned = _mm512_alignr_epi64(r, r, 7);
         __m512i sum = _mm512_mask_add_epi64(l, 0xfe, l, turned);
@@ -225,15 +224,15 @@ LAR_INLINE lar_lane lar_axis_gather(const double *axis, const int32_t *node) {
 }
 
 /* As above: r3, r0, r1, r2. */
-LAR_INLINE void lar_axis_add_row(int64_t *axis, const int32_t *left_node, const int32_t *right_node,
-                                 bool half, lar_ilane left, lar_ilane right) {
-    (void)half, (void)right_node;
-    __m256i *a = (__m256i *)(axis + left_node[0]);
-    __m128i *end = (__m128i *)(axis + left_node[0] + 4);
+LAR_INLINE void lar_axis_add_row(int64_t *a, int64_t *b, bool half, lar_ilane left,
+                                 lar_ilane right) {
+    (void)half, (void)b;
+    __m256i *row = (__m256i *)a;
+    __m128i *end = (__m128i *)(a + 4);
     __m256i turned = _mm256_permute4x64_epi64((__m256i)right, 0x93);
     __m256i before = _mm256_blend_epi32(turned, _mm256_setzero_si256(), 3);
     __m256i sum = _mm256_add_epi64((__m256i)left, before);
-    _mm256_storeu_si256(a, _mm256_add_epi64(_mm256_loadu_si256(a), sum));
+    _mm256_storeu_si256(row, _mm256_add_epi64(_mm256_loadu_si256(row), sum));
     _mm_storel_epi64(end, _mm_add_epi64(_mm_loadl_epi64(end), _mm256_castsi256_si128(turned)));
 }
 
@@ -298,10 +297,9 @@ LAR_INLINE lar_lane lar_axis_gather(const double *axis, const int32_t *node) {
     return (lar_lane)vcombine_f64(vld1_f64(axis + node[0]), vld1_f64(axis + node[1]));
 }
 
-LAR_INLINE void lar_axis_add_row(int64_t *axis, const int32_t *left_node, const int32_t *right_node,
-                                 bool half, lar_ilane left, lar_ilane right) {
-    (void)half, (void)right_node;
-    int64_t *a = axis + left_node[0];
+LAR_INLINE void lar_axis_add_row(int64_t *a, int64_t *b, bool half, lar_ilane left,
+                                 lar_ilane right) {
+    (void)half, (void)b;
     int64x2_t before = vextq_s64(vdupq_n_s64(0), (int64x2_t)right, 1); /* nothing, r0 */
     vst1q_s64(a, vaddq_s64(vld1q_s64(a), vaddq_s64((int64x2_t)left, before)));
     a[2] += right[1];
@@ -370,11 +368,11 @@ LAR_INLINE lar_lane lar_axis_gather(const double *axis, const int32_t *node) {
     return axis[node[0]];
 }
 
-LAR_INLINE void lar_axis_add_row(int64_t *axis, const int32_t *left_node, const int32_t *right_node,
-                                 bool half, lar_ilane left, lar_ilane right) {
+LAR_INLINE void lar_axis_add_row(int64_t *a, int64_t *b, bool half, lar_ilane left,
+                                 lar_ilane right) {
     (void)half;
-    axis[left_node[0]] += left;
-    axis[right_node[0]] += right;
+    *a += left;
+    *b += right;
 }
 
 #endif
@@ -420,9 +418,12 @@ LAR_INLINE void lar_lane_gather_row(const double *nodes, size_t stride, const in
 LAR_INLINE void lar_ilane_scatter_row(int64_t *nodes, size_t stride, const int32_t *left_node,
                                       const int32_t *right_node, bool half, const lar_ilane left[3],
                                       const lar_ilane right[3]) {
-    for (int i = 0; i < 3; i++)
-        lar_axis_add_row(nodes + (size_t)i * stride, left_node, right_node, half, left[i],
-                         right[i]);
+    /* Read once: what is stored between the axes might be places, for all that a compiler knows. */
+    const int64_t a = left_node[0], b = half ? left_node[4] : right_node[0];
+    for (int i = 0; i < 3; i++) {
+        int64_t *axis = nodes + (size_t)i * stride;
+        lar_axis_add_row(axis + a, axis + b, half, left[i], right[i]);
+    }
 }
 
 /* A load whose value stays in a register. Compilers like to fold a load into every instruction

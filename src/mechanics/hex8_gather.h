@@ -63,34 +63,29 @@ typedef struct lane_sums {
 #define LANES_KNOW_FOURS (LAR_LANES == 8)
 #endif
 
-/* What other lanes have at their corners is picked up, and later handed out, node by node. */
+/* What other lanes have at their corners is picked up, and later handed out, node by node: of the
+ * four edges along xi first the left, then the right one. */
 typedef struct picked_corners {
-    double of[8][3][LAR_LANES] __attribute__((aligned(64)));
+    double of[4][2][3][LAR_LANES] __attribute__((aligned(64)));
 } picked_corners;
+enum { PICKED_EDGE = 2 * 3 * LAR_LANES };
 static const int32_t picked_place[8][LAR_BLOCK] = {
-    {0},
-    {3 * LAR_LANES},
-    {6 * LAR_LANES},
-    {9 * LAR_LANES},
-    {12 * LAR_LANES},
-    {15 * LAR_LANES},
-    {18 * LAR_LANES},
-    {21 * LAR_LANES},
-};
+    [0] = {0}, [3] = {PICKED_EDGE}, [4] = {2 * PICKED_EDGE}, [7] = {3 * PICKED_EDGE}};
 
 /* A function of its own and a loop: three loads for each node of each lane are many instructions,
  * and every phase would have them. */
 __attribute__((noinline)) static void pick_corners(const lar_block_head *head, int lane,
                                                    lar_block_rows rows, lane_nodes u,
                                                    picked_corners *picked) {
-    for (int a = 0; a < 8; a++) {
+    for (int k = 0; k < 8; k++) {
+        int edge = k / 2, right = k % 2;
         lar_lane corner[3];
-        const int32_t *node = head->node[a] + lane;
+        const int32_t *node = head->node[right ? right_node[edge] : left_node[edge]] + lane;
         if (rows == LAR_ROWS_NONE)
             lar_lane_gather(u.value, u.stride, node, corner);
         else
             lar_lane_gather_row(u.value, u.stride, node, rows == LAR_ROWS_FOUR, corner);
-        UNROLL3 for (int i = 0; i < 3; i++) lar_lane_store(picked->of[a][i], corner[i]);
+        UNROLL3 for (int i = 0; i < 3; i++) lar_lane_store(picked->of[edge][right][i], corner[i]);
     }
 }
 
@@ -110,40 +105,52 @@ __attribute__((noinline)) static void hand_out(const lar_block_head *head, int l
     }
 }
 
-/* Where the corners of some lanes are: corner a begins at value[at[a * LAR_BLOCK]]. */
+/* Where the corners of some lanes are: those of the edge with left corner a at left[axis] and
+ * right[axis], at[a * LAR_BLOCK] values further. Six pointers and one place for each edge are what
+ * registers hold; with a place for each corner a third of a phase's instructions were addresses. A
+ * single lane need not lie in a row: its right corners have places of their own. */
+enum { ONE_LANE = LAR_LANES == 1 };
 typedef struct lane_corners {
-    const double *value;
-    size_t stride;
+    const double *left[3], *right[3];
     const int32_t *at;
 } lane_corners;
 
 LAR_INLINE lane_corners find_corners(const lar_block_head *head, int lane, lar_block_rows rows,
                                      bool fours, lane_nodes u, picked_corners *picked) {
-    if (fours || LANES_LIE_IN_ROWS(rows))
-        return (lane_corners){u.value, u.stride, head->node[0] + lane};
-    pick_corners(head, lane, rows, u, picked);
-    return (lane_corners){picked->of[0][0], LAR_LANES, picked_place[0]};
+    lane_corners found = {.at = head->node[0] + lane};
+    size_t axis = u.stride, next = ONE_LANE ? 0 : 1;
+    const double *first = u.value;
+    if (!fours && !LANES_LIE_IN_ROWS(rows)) {
+        pick_corners(head, lane, rows, u, picked);
+        found.at = picked_place[0];
+        axis = LAR_LANES;
+        next = (size_t)3 * LAR_LANES;
+        first = picked->of[0][0][0];
+    }
+    UNROLL3 for (int i = 0; i < 3; i++) {
+        found.left[i] = first + (size_t)i * axis;
+        found.right[i] = found.left[i] + next;
+    }
+    return found;
 }
 
-LAR_INLINE void load_corner(lane_corners from, int a, bool fours, lar_lane corner[3]) {
-    const int32_t *at = from.at + a * LAR_BLOCK;
+LAR_INLINE lar_lane load_corner(const double *axis, const int32_t *at, bool fours) {
 #if LANES_KNOW_FOURS
-    if (fours) {
-        lar_lane_gather_row(from.value, from.stride, at, true, corner);
-        return;
-    }
+    if (fours) return lar_axis_fours(axis, at);
 #endif
     (void)fours;
-    const double *axis = from.value + at[0];
-    UNROLL3 for (int i = 0; i < 3; i++) corner[i] =
-        lar_lane_load_row(axis + (size_t)i * from.stride);
+    return lar_lane_load_row(axis + at[0]);
 }
 
 LAR_INLINE void gather_edge(lane_corners from, int edge, bool fours, lar_lane sum[3],
                             lar_lane difference[3]) {
     lar_lane left[3], right[3];
-    load_corner(from, left_node[edge], fours, left);
-    load_corner(from, right_node[edge], fours, right);
+    const int32_t *at = from.at + left_node[edge] * LAR_BLOCK;
+    const int32_t *at_right = ONE_LANE ? from.at + right_node[edge] * LAR_BLOCK : at;
+    UNROLL3 for (int i = 0; i < 3; i++) {
+        left[i] = load_corner(from.left[i], at, fours);
+        right[i] = load_corner(from.right[i], at_right, fours);
+    }
     UNROLL3 for (int i = 0; i < 3; i++) {
         sum[i] = right[i] + left[i];
         difference[i] = right[i] - left[i];
