@@ -37,7 +37,7 @@ LAR_INLINE lar_lane lar_arruda_boyce_stress(const lar_lane F[9], lar_lane P[9], 
     lar_lane y2 = y * y;
     lar_lane a =
         lar_lane_set(2) * p[0] * lar_arruda_boyce_slope(lar_arruda_boyce_share(I1 * y2, p)) * y2;
-    lar_lane b = lar_lane_fnma(a * I1, lar_lane_set(1.0 / 3), p[2] * lar_lane_log(J)) / J;
+    lar_lane b = lar_lane_fnma(a * I1, lar_lane_set(1.0 / 3), p[2] * lar_lane_log(J)) * (y * y2);
 #pragma GCC unroll 9
     for (int k = 0; k < 9; k++) P[k] = lar_lane_fma(b, P[k], a * F[k]);
     lar_lane bI1 = b * I1;

@@ -1,7 +1,8 @@
 /* The law of Holmes and Mow (1990) for cartilage, Lame's mu and lambda at rest, M = lambda + 2 mu:
  *     W = M / (4 beta) (e^Q - 1),     Q = beta R / M,
  *     R = (2 mu - lambda)(I1 - 3) + lambda (I2 - 3) - 2 M ln J,     I2 = |cof F|^2
- *     P = e^Q / 2 ((2 mu - lambda + lambda I1) F - lambda F F^T F - M / J cof F)
+ *     P = e^Q / 2 ((2 mu - lambda) F + lambda cof F x F - M / J cof F),
+ *     cof F x F = I1 F - F F^T F (lar_lane_area_slope)
  * p[0] = mu, p[1] = lambda, p[2] = beta, a number. It is not divided into volume and shape, and
  * stiffens without an end whatever is done to it. law/lanes.h says what is called how.
  */
@@ -26,14 +27,14 @@ LAR_INLINE lar_lane lar_holmes_mow_exponent(lar_lane J, lar_lane I1, lar_lane I2
 
 LAR_INLINE lar_lane lar_holmes_mow_stress(const lar_lane F[9], lar_lane P[9], lar_lane J,
                                           lar_lane I1, const lar_lane *p) {
-    lar_lane I2 = lar_lane_square_sum(P), cubic[9];
+    lar_lane I2 = lar_lane_square_sum(P), slope[9];
     lar_lane half = lar_lane_set(0.5) * lar_lane_exp(lar_holmes_mow_exponent(J, I1, I2, p));
     lar_lane c = half * p[1], M = lar_holmes_mow_modulus(p);
-    lar_lane a = half * lar_lane_fma(p[1], I1, lar_lane_fma(lar_lane_set(2), p[0], -p[1]));
+    lar_lane a = half * lar_lane_fma(lar_lane_set(2), p[0], -p[1]);
     lar_lane b = half * M / J;
-    lar_lane_cubic(F, cubic);
+    lar_lane_area_slope(F, P, slope);
 #pragma GCC unroll 9
-    for (int k = 0; k < 9; k++) P[k] = lar_lane_fnma(b, P[k], lar_lane_fnma(c, cubic[k], a * F[k]));
+    for (int k = 0; k < 9; k++) P[k] = lar_lane_fnma(b, P[k], lar_lane_fma(c, slope[k], a * F[k]));
     return lar_lane_square_sum(P); /* its terms are large at rest, and cancel */
 }
 

@@ -26,24 +26,20 @@ LAR_INLINE lar_lane lar_lane_square_sum(const lar_lane F[9]) {
     return a + b + c;
 }
 
-/* F F^T F. */
-LAR_INLINE void lar_lane_cubic(const lar_lane F[9], lar_lane cubic[9]) {
-    static const int symmetric[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}};
-    lar_lane left[6]; /* F F^T: xx xy xz yy yz zz */
-#pragma GCC unroll 3
-    for (int i = 0, n = 0; i < 3; i++)
-#pragma GCC unroll 3
-        for (int j = i; j < 3; j++, n++)
-            left[n] =
-                lar_lane_fma(F[3 * i], F[3 * j],
-                             lar_lane_fma(F[3 * i + 1], F[3 * j + 1], F[3 * i + 2] * F[3 * j + 2]));
+/* How |cof F|^2, the second invariant of C, grows: half its derivative, which is the tensor cross
+ * product of cof F and F (Bonet, Gil and Ortigosa 2015), e_imn e_jpq cof_mp F_nq, or I1 F - F F^T F
+ * with a fifth of the operations less. */
+LAR_INLINE void lar_lane_area_slope(const lar_lane F[9], const lar_lane cof[9], lar_lane slope[9]) {
 #pragma GCC unroll 3
     for (int i = 0; i < 3; i++)
 #pragma GCC unroll 3
-        for (int j = 0; j < 3; j++)
-            cubic[3 * i + j] = lar_lane_fma(
-                left[symmetric[i][0]], F[j],
-                lar_lane_fma(left[symmetric[i][1]], F[3 + j], left[symmetric[i][2]] * F[6 + j]));
+        for (int j = 0; j < 3; j++) {
+            const int m = 3 * ((i + 1) % 3), n = 3 * ((i + 2) % 3), p = (j + 1) % 3,
+                      q = (j + 2) % 3;
+            lar_lane sum = lar_lane_fma(cof[m + p], F[n + q], cof[n + q] * F[m + p]);
+            sum = lar_lane_fnma(cof[m + q], F[n + p], sum);
+            slope[3 * i + j] = lar_lane_fnma(cof[n + p], F[m + q], sum);
+        }
 }
 
 #endif

@@ -1,47 +1,32 @@
 /* Mooney-Rivlin in reduced invariants with the logarithmic volume term of FEBio:
  *     W = c1 (I1 J^(-2/3) - 3) + c2 (I2 J^(-4/3) - 3) + K/2 (ln J)^2,     I2 = |cof F|^2
- *     P = 2 c1 J^(-2/3) F + 2 c2 J^(-4/3) (I1 F - F F^T F)
+ *     P = 2 c1 J^(-2/3) F + 2 c2 J^(-4/3) cof F x F
  *         + (K ln J - 2/3 c1 I1 J^(-2/3) - 4/3 c2 I2 J^(-4/3)) / J cof F
+ * with cof F x F = I1 F - F F^T F (lar_lane_area_slope).
  * p[0] = c1, p[1] = c2, p[2] = K. law/lanes.h says what is called how.
  */
 #ifndef LAR_LAW_MOONEY_RIVLIN_H
 #define LAR_LAW_MOONEY_RIVLIN_H
 
+#include "law/kinematics.h"
 #include "law/lane_math.h"
 
 LAR_INLINE lar_lane lar_mooney_rivlin_stress(const lar_lane F[9], lar_lane P[9], lar_lane J,
                                              lar_lane I1, const lar_lane *p) {
     lar_lane y = lar_lane_rcbrt(J);
     lar_lane y2 = y * y, y4 = y2 * y2;
-    lar_lane I2 = lar_lane_set(0);
-#pragma GCC unroll 9
-    for (int k = 0; k < 9; k++) I2 = lar_lane_fma(P[k], P[k], I2);
+    lar_lane I2 = lar_lane_square_sum(P);
 
     lar_lane first = p[0] * y2, second = p[1] * y4;
     lar_lane deviatoric = lar_lane_fma(first, I1, lar_lane_set(2) * (second * I2));
-    lar_lane b = lar_lane_fma(lar_lane_set(-2.0 / 3), deviatoric, p[2] * lar_lane_log(J)) / J;
-    lar_lane a = lar_lane_set(2) * lar_lane_fma(second, I1, first);
-    lar_lane c = lar_lane_set(-2) * second;
+    lar_lane b =
+        lar_lane_fma(lar_lane_set(-2.0 / 3), deviatoric, p[2] * lar_lane_log(J)) * (y * y2);
+    lar_lane a = lar_lane_set(2) * first, c = lar_lane_set(2) * second;
 
-    lar_lane left[6]; /* F F^T: xx xy xz yy yz zz */
-#pragma GCC unroll 3
-    for (int i = 0, n = 0; i < 3; i++)
-#pragma GCC unroll 3
-        for (int j = i; j < 3; j++, n++)
-            left[n] =
-                lar_lane_fma(F[3 * i], F[3 * j],
-                             lar_lane_fma(F[3 * i + 1], F[3 * j + 1], F[3 * i + 2] * F[3 * j + 2]));
-    static const int symmetric[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}};
-#pragma GCC unroll 3
-    for (int i = 0; i < 3; i++)
-#pragma GCC unroll 3
-        for (int j = 0; j < 3; j++) {
-            lar_lane cubic = lar_lane_fma(
-                left[symmetric[i][0]], F[j],
-                lar_lane_fma(left[symmetric[i][1]], F[3 + j], left[symmetric[i][2]] * F[6 + j]));
-            lar_lane rest = lar_lane_fma(c, cubic, a * F[3 * i + j]);
-            P[3 * i + j] = lar_lane_fma(b, P[3 * i + j], rest);
-        }
+    lar_lane slope[9];
+    lar_lane_area_slope(F, P, slope);
+#pragma GCC unroll 9
+    for (int k = 0; k < 9; k++) P[k] = lar_lane_fma(b, P[k], lar_lane_fma(c, slope[k], a * F[k]));
     lar_lane bI1 = b * I1, cI1 = c * I1;
     return lar_lane_fma(bI1, bI1, lar_lane_fma(cI1 * cI1, I1, a * a * I1));
 }

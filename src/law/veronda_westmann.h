@@ -14,19 +14,20 @@
 
 LAR_INLINE lar_lane lar_veronda_westmann_stress(const lar_lane F[9], lar_lane P[9], lar_lane J,
                                                 lar_lane I1, const lar_lane *p) {
-    lar_lane y = lar_lane_rcbrt(J), I2 = lar_lane_square_sum(P), cubic[9];
+    lar_lane y = lar_lane_rcbrt(J), I2 = lar_lane_square_sum(P), slope[9];
     lar_lane y2 = y * y, modulus = p[0] * p[1];
     lar_lane x = lar_lane_fma(I1, y2, lar_lane_set(-3));
     lar_lane first = lar_lane_set(2) * modulus * lar_lane_exp(p[1] * x) * y2;
     lar_lane c = modulus * y2 * y2;
     lar_lane deviatoric = lar_lane_fnma(lar_lane_set(2) * c, I2, first * I1);
-    lar_lane b = lar_lane_fma(lar_lane_set(-1.0 / 3), deviatoric, p[2] * lar_lane_log(J)) / J;
-    lar_lane a = lar_lane_fnma(c, I1, first);
-    lar_lane_cubic(F, cubic);
+    lar_lane b =
+        lar_lane_fma(lar_lane_set(-1.0 / 3), deviatoric, p[2] * lar_lane_log(J)) * (y * y2);
+    lar_lane_area_slope(F, P, slope);
 #pragma GCC unroll 9
-    for (int k = 0; k < 9; k++) P[k] = lar_lane_fma(b, P[k], lar_lane_fma(c, cubic[k], a * F[k]));
+    for (int k = 0; k < 9; k++)
+        P[k] = lar_lane_fma(b, P[k], lar_lane_fnma(c, slope[k], first * F[k]));
     lar_lane bI1 = b * I1, cI1 = c * I1;
-    return lar_lane_fma(bI1, bI1, lar_lane_fma(cI1 * cI1, I1, a * a * I1));
+    return lar_lane_fma(bI1, bI1, lar_lane_fma(cI1 * cI1, I1, first * first * I1));
 }
 
 LAR_INLINE lar_lane lar_veronda_westmann_energy(const lar_lane F[9], lar_lane J, lar_lane I1,

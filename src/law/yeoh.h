@@ -16,7 +16,7 @@ LAR_INLINE lar_lane lar_yeoh_stress(const lar_lane F[9], lar_lane P[9], lar_lane
     lar_lane x = lar_lane_fma(I1, y2, lar_lane_set(-3));
     lar_lane rise = lar_lane_fma(lar_lane_set(3) * p[2], x, lar_lane_set(2) * p[1]);
     lar_lane a = lar_lane_set(2) * lar_lane_fma(rise, x, p[0]) * y2;
-    lar_lane b = lar_lane_fnma(a * I1, lar_lane_set(1.0 / 3), p[3] * lar_lane_log(J)) / J;
+    lar_lane b = lar_lane_fnma(a * I1, lar_lane_set(1.0 / 3), p[3] * lar_lane_log(J)) * (y * y2);
 #pragma GCC unroll 9
     for (int k = 0; k < 9; k++) P[k] = lar_lane_fma(b, P[k], a * F[k]);
     lar_lane bI1 = b * I1;
