@@ -13,8 +13,11 @@
 static const double PRESSURE_MAX = 6;
 /* Contact must bear the limit at a depth at which the tool's middle is well outside. */
 static const double DEPTH_MAX = 0.5, BEARS = 0.45;
-/* And elements must bear it: (omega dt / 2)^2 of the fastest, dt undivided, for some ten parts. */
-static const double BORNE_RATE = 100;
+/* And elements must bear it: (omega dt / 2)^2 of the fastest, dt undivided, for some ten parts.
+ * Hands press with less the faster elements have been lately, from some two parts on, and with no
+ * more than tissue pushes with already from five on: a tool that went on until it had to give way,
+ * and came back, would shake the organ and the hand. */
+static const double BORNE_RATE = 100, HELD_RATE = 25, FREE_RATE = 2.5;
 static const double GRASP_SHARE = 0.5;
 /* Jaws press less the faster elements have become by that, as BORNE_RATE counts, down to so many
  * shear moduli on half of a jaw's side. */
@@ -72,7 +75,13 @@ typedef struct mean_load {
     double squeeze;             /* [N] */
     double grasp_force;         /* how hard jaws may close [N] */
     double excess;              /* how many times more than may be, at least 1 */
+    double more; /* part of what may be beyond that force which hands press with, 0 to 1 */
 } mean_load;
+
+/* How fast elements are, as lar_step_division.need says, and have been. */
+typedef struct element_need {
+    double now, lately;
+} element_need;
 
 /* What closes on a fold crushes it with less than what a tool may press with from one side: between
  * two jaws tissue gives way to nowhere but out of them. (Steeper in `need` and jaws swing.) */
@@ -96,8 +105,8 @@ static jaws_state jaws_of(const lar_tool_follower *follower, const lar_tool_moti
 /* Where other things than forces ask a tool to give way, it does so where it is pushed hardest; but
  * jaws that are wide open cannot. */
 static mean_load mean_of(const lar_tool_felt *felt, const lar_tool_limits *limits, jaws_state jaws,
-                         double need, double unit, double *load) {
-    mean_load mean = {.excess = 1, .grasp_force = grasp_limit(limits, need)};
+                         element_need need, double unit, double *load) {
+    mean_load mean = {.excess = 1, .grasp_force = grasp_limit(limits, need.lately)};
     double share = felt->steps ? unit / (LAR_STEP_SHARES * (double)felt->steps) : 0;
     for (int i = 0; i < 3; i++) {
         mean.force[i] = (double)felt->force[i] * share;
@@ -110,8 +119,10 @@ static mean_load mean_of(const lar_tool_felt *felt, const lar_tool_limits *limit
     double depth = felt->depth / limits->depth;
     double max = fmax(fmax(force, turn), grasp);
     double gives = fmax(fmax(force, turn), jaws.room * grasp);
-    double other = fmax(depth, max > 0 ? need / BORNE_RATE : 0);
+    double other = fmax(depth, max > 0 ? need.now / BORNE_RATE : 0);
     *load = fmax(max, other);
+    double more = (HELD_RATE - need.lately) / (HELD_RATE - FREE_RATE);
+    mean.more = max > 0 ? fmin(1, fmax(0, more)) : 1;
     if (other > 1 && other > gives && gives > 0) mean.excess = other / gives;
     return mean;
 }
@@ -173,6 +184,12 @@ static void turn_between(const double from[4], const double to[4], double vector
     for (int i = 0; i < 3; i++) vector[i] = (turn[0] < 0 ? -2 : 2) * turn[1 + i];
 }
 
+/* What the hand may draw with against what tissue pushes with along three coordinates. */
+static double draws(const mean_load *mean, const lar_tool_limits *limits, const double *pushed) {
+    double force = fmin(sqrt(dot(3, pushed, pushed)), limits->force);
+    return force + mean->more * (limits->force - force);
+}
+
 /* The pose at the end of the interval: that of the hand, or as far towards it as may be. */
 static void step_pose(const lar_tool *tool, const lar_tool_limits *limits, const mean_load *mean,
                       const follow_law *law, const lar_tool_pose *now, const lar_tool_pose *hand,
@@ -181,7 +198,7 @@ static void step_pose(const lar_tool *tool, const lar_tool_limits *limits, const
     *next = *hand;
     lar_minus(hand->position, now->position, gap);
     for (int i = 0; i < 3; i++) pushed[i] = mean->excess * mean->force[i];
-    if (!go(law, 3, gap, pushed, limits->force, way))
+    if (!go(law, 3, gap, pushed, draws(mean, limits, pushed), way))
         for (int i = 0; i < 3; i++) next->position[i] = now->position[i] + way[i];
     /* Turns as ways of a point at the lever's end. */
     turn_between(now->orientation, hand->orientation, gap);
@@ -189,7 +206,7 @@ static void step_pose(const lar_tool *tool, const lar_tool_limits *limits, const
         gap[i] *= lever;
         pushed[i] = mean->excess * mean->torque[i] / lever;
     }
-    if (!go(law, 3, gap, pushed, limits->force, way)) {
+    if (!go(law, 3, gap, pushed, draws(mean, limits, pushed), way)) {
         for (int i = 0; i < 3; i++) way[i] /= lever;
         turn_by(now->orientation, way, next->orientation);
     }
@@ -224,7 +241,8 @@ static bool follow(const lar_tool *tool, const lar_tool_limits *limits, lar_tool
     static const double FASTEST = 0.5; /* [m/s]: no blows */
     lar_tool_follower *follower = &tools->follower[index];
     lar_tool_motion *motion = &tools->motion[index];
-    if (!follower->lagging && follower->load <= 1 && !(mean->squeeze > 0)) return false;
+    const bool slower = mean->more < 1;
+    if (!follower->lagging && follower->load <= 1 && !(mean->squeeze > 0) && !slower) return false;
     lar_tool_pose now, hand, then, next;
     lar_tool_at(motion, step, time_step, &now, NULL);
     lar_tool_at(&follower->hand, step, time_step, &hand, NULL);
@@ -233,7 +251,9 @@ static bool follow(const lar_tool *tool, const lar_tool_limits *limits, lar_tool
     const follow_law law = {.drag = limits->drag * tools->hardness[index],
                             .seconds = seconds,
                             .farthest = fmin(SHARE * tool->radius * steps, FASTEST * seconds)};
-    bool held_back = follower->load > 1 || springs_open(tool, limits, mean, &law, &now, &then);
+    step_pose(tool, limits, mean, &law, &now, &then, &next);
+    bool held_back = follower->load > 1 || (slower && !same_pose(&next, &then)) ||
+                     springs_open(tool, limits, mean, &law, &now, &then);
     if (!held_back && !follower->lagging) return false;
     if (!held_back && same_pose(&now, &hand)) {
         int32_t holding = motion->holding;
@@ -242,7 +262,6 @@ static bool follow(const lar_tool *tool, const lar_tool_limits *limits, lar_tool
         follower->lagging = 0;
         return true;
     }
-    step_pose(tool, limits, mean, &law, &now, &then, &next);
     motion->from = now;
     motion->to = next;
     motion->start = step;
@@ -287,7 +306,8 @@ lar_hardened lar_tools_harden(const lar_tool_list *list, lar_tools *tools, doubl
         double load, depth = felt->depth / list->tool[i].radius, before = tools->hardness[i];
         hardness_change change = FADES;
         if (depth > 0) {
-            mean_load mean = mean_of(felt, &list->limits[i], (jaws_state){0}, 0, unit, &load);
+            mean_load mean =
+                mean_of(felt, &list->limits[i], (jaws_state){0}, (element_need){0}, unit, &load);
             change = change_for(depth, tools->deep[i] / list->tool[i].radius,
                                 lar_length(mean.force) / list->limits[i].force);
         }
@@ -330,8 +350,8 @@ double lar_tools_way(const lar_tool_list *list, const lar_tools *tools, uint64_t
 }
 
 bool lar_tools_follow(const lar_tool_list *list, lar_tools *tools, uint64_t step, uint64_t until,
-                      double time_step, double unit) {
-    double need = lar_division_need(&tools->division);
+                      double time_step, double need, double unit) {
+    const element_need needs = {need, lar_division_need(&tools->division)};
     bool changed = false;
     for (int32_t i = 0; i < tools->count; i++) {
         const lar_tool_limits *limits = &list->limits[i];
@@ -340,7 +360,7 @@ bool lar_tools_follow(const lar_tool_list *list, lar_tools *tools, uint64_t step
         follower->felt = (lar_tool_felt){0};
         if (!lar_tool_touches(&list->tool[i]) || !(limits->drag > 0)) continue;
         jaws_state jaws = jaws_of(follower, &tools->motion[i]);
-        mean_load mean = mean_of(&felt, limits, jaws, need, unit, &follower->load);
+        mean_load mean = mean_of(&felt, limits, jaws, needs, unit, &follower->load);
         changed |= follow(&list->tool[i], limits, tools, i, &mean, step, until, time_step);
     }
     return changed;

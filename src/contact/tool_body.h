@@ -14,7 +14,8 @@
  * so it stays where the tissue bears the limit, and is pushed back where it bears more. The same
  * for the turn (torques about the tip) and for the jaws (their moment against closing). Where the
  * tissue is too deep in the tool F counts for more than it is: contact can hold a tool outside only
- * as long as the tool's middle line is outside (mechanics/contact.h).
+ * as long as the tool's middle line is outside (mechanics/contact.h). Where elements come close to
+ * what steps bear the limit sinks to F, and the tool stays.
  *
  * This is decided at the beginning of INTERVALS of a few steps, the same steps everywhere, from
  * sums of whole numbers: the way of a tool does not depend on who computes, nor on how many steps
@@ -65,9 +66,9 @@ bool lar_tools_are_slow(const lar_tool_list *list, const lar_tools *tools, uint6
                         double time_step, double speed);
 
 /* At the beginning of an interval that ends at step `until`: decides where tools go in it, and
- * forgets what they have felt. `unit`: newtons of a force unit. True when a tool does not go where
- * it went before. */
+ * forgets what they have felt. `need`: of elements in the interval before it (lar_step_division);
+ * `unit`: newtons of a force unit. True when a tool does not go where it went before. */
 bool lar_tools_follow(const lar_tool_list *list, lar_tools *tools, uint64_t step, uint64_t until,
-                      double time_step, double unit);
+                      double time_step, double need, double unit);
 
 #endif

@@ -109,9 +109,14 @@ static inline int32_t lar_more_parts(int32_t parts) {
     return (parts & (parts - 1)) != 0 ? parts / 3 * 4 : parts == 1 ? 2 : parts / 2 * 3;
 }
 
-/* How fast elements have been lately, as `need` counts, beside what stiffer materials make them. */
+/* A need beside what stiffer materials make it. */
+static inline double lar_division_beside(const lar_step_division *division, double need) {
+    return need / ((double)division->base * division->base);
+}
+
+/* How fast elements have been lately, as `need` counts, likewise. */
 static inline double lar_division_need(const lar_step_division *division) {
-    return division->lately / ((double)division->base * division->base);
+    return lar_division_beside(division, division->lately);
 }
 
 /* How long the spring of a hold may be, as a part of what it may be in sound tissue: what is torn

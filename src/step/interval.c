@@ -213,9 +213,11 @@ bool lar_interval_decide(const lar_domain *whole, uint64_t step, lar_tools *tool
     if (division->due) division->base = base_of(whole);
     double seconds = (double)(step - division->decided) * whole->time_step;
     division->decided = step;
+    const double need = division->need;
     bool changed = lar_interval_divide(whole, step, seconds, tools);
     division->due = 0;
     return lar_tools_follow(list, tools, step, lar_interval_end(whole, division, step),
-                            whole->time_step, 1 / whole->scale) ||
+                            whole->time_step, lar_division_beside(division, need),
+                            1 / whole->scale) ||
            changed;
 }

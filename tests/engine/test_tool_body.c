@@ -58,6 +58,49 @@ static pushed vicinity(lar_simulation *simulation, uint64_t steps) {
     return seen;
 }
 
+/* A ball larger than elements, which elements bear less of than the tissue as a whole: while its
+ * hand waits far beyond, it stands, and what is felt stays. (It gave way until elements had been
+ * slow for a while, out of the tissue, and came back, ten times a second: 0.03 to 9.4 N, 32 to 101
+ * mm.) */
+static void a_held_tool_stands_still(void **unused) {
+    (void)unused;
+    static const brick soft = {{10, 10, 10}, 0.008, 0.05, LAR_LAW_neo_hookean, 1e3, 2e5, 1000};
+    static const double out[3] = {0.039, 0.041, 0.102}, beyond[3] = {0.039, 0.041, -0.06};
+    lar_tool large = ball;
+    large.radius = 0.02;
+    lar_model *model = brick_model(&soft);
+    fix_nodes(model, brick_side(&soft, 2, 0), LAR_AXIS_ALL);
+    model->damping = 20;
+    touch_tool(model, "ball", large, out);
+    lar_simulation *simulation = start(model);
+    uint64_t second = (uint64_t)(1 / lar_simulation_time_step(simulation));
+    place(simulation, 0, beyond, upright, 1, second / 2);
+    advance(simulation, second / 2);
+    const double limit = force_of(simulation).limit;
+    double low = INFINITY, high = 0, least = INFINITY, most = 0;
+    int32_t parts = 0;
+    for (uint64_t i = 0; i < second / 4 / TICK; i++) {
+        lar_tool_pose pose;
+        advance(simulation, TICK);
+        double force = size_of(force_of(simulation).force);
+        lar_simulation_tool_pose(simulation, 0, &pose, NULL);
+        low = fmin(low, pose.position[2]);
+        high = fmax(high, pose.position[2]);
+        least = fmin(least, force);
+        most = fmax(most, force);
+        if (lar_simulation_step_parts(simulation) > parts)
+            parts = lar_simulation_step_parts(simulation);
+    }
+    print_message("%.2f to %.2f N of %.2f, %.2f to %.2f mm, %d parts\n", least, most, limit,
+                  1e3 * low, 1e3 * high, parts);
+    assert_below(0.5 * limit, least);
+    assert_below(most, limit);
+    assert_below(most - least, 0.02 * limit);
+    assert_below(high - low, 0.1e-3);
+    assert_true(parts > 1 && parts <= 8);
+    finish(simulation, model);
+}
+
 /* Pushed 30 mm, which is more than the block is high, kept there, and withdrawn. */
 static void a_pushed_tool_stays_outside_and_comes_back(void **unused) {
     (void)unused;
@@ -170,7 +213,7 @@ static void a_tool_pushed_aside_is_not_free_to_go_on(void **unused) {
             double force = 2 * simulation->list.limits[0].force * PUSHED[c][i];
             follower->felt.force[2 * i] = (int64_t)(force * scale);
         }
-        assert_true(lar_tools_follow(&simulation->list, &tools, 0, STEPS, dt,
+        assert_true(lar_tools_follow(&simulation->list, &tools, 0, STEPS, dt, 0,
                                      1 / simulation->domain.scale));
         double way[3], length;
         lar_minus(tools.motion[0].to.position, tools.motion[0].from.position, way);
@@ -343,7 +386,7 @@ static void nothing_holds_what_leaves_the_tissue(void **unused) {
             (lar_tool_felt){.depth = 0.6 * ball.radius,
                             .steps = 1,
                             .force = {0, 0, (int64_t)(0.2 * limit * LAR_STEP_SHARES / UNIT)}};
-        lar_tools_follow(list, &tools, 0, 8, SECONDS / 8, UNIT);
+        lar_tools_follow(list, &tools, 0, 8, SECONDS / 8, 0, UNIT);
         went[g] = tools.motion[0].to.position[2] - inside[2];
     }
     print_message("outwards %.3g m/s, inwards %.3g m/s\n", went[0] / SECONDS, -went[1] / SECONDS);
@@ -357,6 +400,7 @@ static void nothing_holds_what_leaves_the_tissue(void **unused) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_pushed_tool_stays_outside_and_comes_back),
+        cmocka_unit_test(a_held_tool_stands_still),
         cmocka_unit_test(what_is_said_does_not_depend_on_the_grid),
         cmocka_unit_test(a_touch_at_rest_needs_no_parts),
         cmocka_unit_test(a_tool_pushed_aside_is_not_free_to_go_on),

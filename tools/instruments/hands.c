@@ -324,7 +324,7 @@ static void print_row(const lar_hands *h, uint64_t seed) {
     const char *why = strstr(o->message, "): ");
     uint64_t refused = 0;
     for (int t = 0; t < h->tools; t++) refused += h->guide[t].refused;
-    printf("| %s | %d | %llu | %d | %d | %d | %.0f | %.0f | %.0f | %d | %d | %.3g | %.2g | %.2g "
+    printf("| %s | %d | %llu | %d | %d | %d | %.0f | %.0f | %.0f | %d | %d | %.3g | %.3g | %.2g "
            "| %.3g | %llu | %.0f | %016llx | ",
            h->options->name, h->body->elements, (unsigned long long)seed, o->stops, o->resets,
            o->grips, o->inside[PROBE], o->inside[GRASPER], o->inverted_ms, o->inverted, o->negative,
