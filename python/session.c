@@ -58,14 +58,16 @@ static bool parse_options(PyObject *args, PyObject *keywords, PyObject **simulat
     static char *names[] = {"simulation", "tick",   "pace",     "paused",     "tool_speed",
                             "hand_force", "record", "priority", "hash_every", "stop_when_unstable",
                             NULL};
-    unsigned long long hash_every = 0;
+    long long hash_every = 0;
     *o = lar_session_options_default();
-    if (!PyArg_ParseTupleAndKeywords(args, keywords, "O!|$ddpddOiKp:Session", names,
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, "O!|$ddpddOiLp:Session", names,
                                      python_simulation_type, simulation, &o->tick, &o->pace,
                                      &o->paused, &o->tool_speed, &o->hand_force, record,
                                      &o->priority, &hash_every, &o->stop_when_unstable))
         return false;
-    o->hash_every = hash_every;
+    if (hash_every < 0)
+        return python_refuse("hash_every: expected 0 or more steps, got %lld", hash_every);
+    o->hash_every = (uint64_t)hash_every;
     return true;
 }
 

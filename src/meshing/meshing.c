@@ -2,6 +2,7 @@
  * the line of steps behind them (meshing/grid/voxel_grid.h draws it). */
 #include <ctype.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -250,11 +251,31 @@ static lar_status boundary_of_mesh(work *w) {
     return status;
 }
 
+/* Regions of one name get their tags behind it: a scene has each material once. */
+static lar_status tell_names_apart(lar_boundary *boundary, lar_error *error) {
+    for (int32_t r = 2; r <= boundary->region_count; r++) {
+        lar_region *region = &boundary->region[r];
+        for (int32_t s = 1; s < r; s++) {
+            const char *known = boundary->region[s].name;
+            if (!known || !region->name || strcmp(known, region->name) != 0) continue;
+            size_t size = strlen(known) + 24;
+            char *name = lar_calloc(size, 1);
+            if (!name) return lar_fail_memory(error, size, "a name");
+            snprintf(name, size, "%s (%d)", known, (int)region->tag);
+            free(region->name);
+            region->name = name;
+            s = 0; /* that may be another one's */
+        }
+    }
+    return LAR_OK;
+}
+
 static lar_status make_boundary(work *w) {
     lar_meshing *m = w->meshing;
     lar_status status = m->image    ? boundary_of_image(w)
                         : m->solids ? boundary_of_mesh(w)
                                     : boundary_of_surfaces(w);
+    if (!status) status = tell_names_apart(&m->boundary, w->error);
     if (!status) status = name_meshing(w);
     if (!status && w->options.principal)
         status = lar_boundary_principal_axes(&m->boundary, w->error);

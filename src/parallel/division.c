@@ -69,8 +69,8 @@ bool lar_division_asked(const lar_options *options) {
            options->comm || options->verify;
 }
 
-static lar_status read_options(const lar_options *options, lar_schedule_options *out,
-                               lar_error *error) {
+lar_status lar_division_options(const lar_options *options, lar_schedule_options *out,
+                                lar_error *error) {
     *out = lar_schedule_options_default();
     if (options->threads) out->threads = options->threads;
     int scheme = options->scheme ? find_name(lar_scheme_name, LAR_SCHEMES, options->scheme) : 0;
@@ -109,7 +109,7 @@ static lar_status build_schedules(const lar_mesh *mesh, const lar_incidence *inc
     lar_schedule_options wanted;
     lar_grid grid;
     lar_distribution distribution = {0};
-    lar_status status = read_options(options, &wanted, error);
+    lar_status status = lar_division_options(options, &wanted, error);
     if (!status) status = lar_grid_parse(options->grid ? options->grid : "1x1x1", &grid, error);
     if (!status)
         status =

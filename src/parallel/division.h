@@ -21,6 +21,10 @@ typedef struct lar_division {
 /* Whether the options ask for a division at all. */
 bool lar_division_asked(const lar_options *options);
 
+/* What they say of threads, scheme and channels; an error names the word that is none. */
+lar_status lar_division_options(const lar_options *options, lar_schedule_options *out,
+                                lar_error *error);
+
 /* Whether a distribution is a file's path: not NULL, and not the name of a way to make one. */
 bool lar_distribution_is_file(const char *distribution);
 

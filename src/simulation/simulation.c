@@ -80,7 +80,12 @@ static lar_status check_options(const lar_options *options, lar_error *error) {
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "%d threads of a processor; there can be 1 to %d, and more processors",
                         (int)options->threads, LAR_THREADS_MAX);
-    return LAR_OK;
+    if (options->pin < 0 || options->pin > 2)
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "pin is %d; it is 0 (never), 1 (always) or 2 (when all cores are taken)",
+                        options->pin);
+    lar_schedule_options words; /* unknown ones are, also where nothing is divided */
+    return lar_division_options(options, &words, error);
 }
 
 /* How much the tissue bears of a tool: see contact/tool_body.h. */

@@ -132,6 +132,31 @@ static void test_loads(void **state) {
     lar_model_destroy(model);
 }
 
+/* A mirrored cube: its corners are taken the other way round, and faces stay where they are. */
+static void test_left_handed(void **state) {
+    (void)state;
+    lar_model *model = read_deck(
+        "*NODE\n1, 0, 0, 0\n2, 1, 0, 0\n3, 1, 1, 0\n4, 0, 1, 0\n5, 0, 0, -1\n6, 1, 0, -1\n"
+        "7, 1, 1, -1\n8, 0, 1, -1\n*ELEMENT, TYPE=C3D8, ELSET=BOTH\n1, 1, 2, 3, 4, 5, 6, 7, 8\n"
+        "*SURFACE, NAME=End\n1, S2\n" SOFT DYNAMIC
+        "*DLOAD\nBOTH, P1, 100\n1, P3, 70\n*DSLOAD\nend, P, 5\n" END);
+    assert_int_equal(notices_with(model, "left-handed"), 1);
+    assert_int_equal(model->mesh.element[0][0], 4);
+    assert_int_equal(model->pressure_count, 3);
+    for (int i = 0; i < 3; i++) {
+        double place = 0, side = 0;
+        const lar_pressure_load *load = &model->pressure[i];
+        for (int k = 0; k < 4; k++) {
+            int32_t node = model->mesh.element[0][lar_face_node[load->face[0]][k]];
+            place += model->mesh.position[node][2] / 4;
+            side += model->mesh.position[node][1] / 4;
+        }
+        near(place, load->pressure == 100 ? 0 : load->pressure == 5 ? -1 : -0.5);
+        near(side, load->pressure == 70 ? 0 : 0.5);
+    }
+    lar_model_destroy(model);
+}
+
 static void test_bad_loads(void **state) {
     (void)state;
     const int in = AFTER_SOFT + 3;
@@ -350,17 +375,12 @@ static void test_damage(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_supports),
-        cmocka_unit_test(test_bad_supports),
-        cmocka_unit_test(test_loads),
-        cmocka_unit_test(test_bad_loads),
-        cmocka_unit_test(test_initial_velocity),
-        cmocka_unit_test(test_contact),
-        cmocka_unit_test(test_friction),
-        cmocka_unit_test(test_steps),
-        cmocka_unit_test(test_parts),
-        cmocka_unit_test(test_is_deck),
-        cmocka_unit_test(test_damage),
+        cmocka_unit_test(test_supports),  cmocka_unit_test(test_bad_supports),
+        cmocka_unit_test(test_loads),     cmocka_unit_test(test_left_handed),
+        cmocka_unit_test(test_bad_loads), cmocka_unit_test(test_initial_velocity),
+        cmocka_unit_test(test_contact),   cmocka_unit_test(test_friction),
+        cmocka_unit_test(test_steps),     cmocka_unit_test(test_parts),
+        cmocka_unit_test(test_is_deck),   cmocka_unit_test(test_damage),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

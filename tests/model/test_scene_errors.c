@@ -88,7 +88,7 @@ static void test_yaml(void **state) {
         {"{a: 1}: 2\n", "4:1", "a key must be a word"},
         {"fix: [\n", "5:1", "this is not YAML"},
         {"title: \"x\n", "5:1", "this is not YAML"},
-        {"\tfix: []\n", "4:1", "this is not YAML"},
+        {"\tfix: []\n", "4:1", "begins with a tab"},
         {"title: \"a\\0b\"\n", "4:8", "zero character"},
         {"output: {every: 1, every: 2}\n", "4:20", "the key \"every\" stands here twice"},
         {"title: \xff\xfe\n", "4:8", "this is not YAML"},
@@ -192,7 +192,13 @@ static void test_materials(void **state) {
          "4:5", "c3 of the law yeoh is -1e+300 Pa"},
         {"  - {cells: all, law: yeoh, density: 1, c1: 1, c2: 1, c3: 1, bulk_modulus: 1e999}\n",
          "4:76", "is not a finite number"},
+        {"  - {cells: all, law: neo-hookean, density: 1, shear_modulus: 4,5, bulk_modulus: 9}\n",
+         "4:65", "decimals have a point"},
         {"  - {cells: all, shearmodulus: 1}\n", "4:18", "did you mean shear_modulus?"},
+        {"  - {name: a, cells: all, law: neo-hookean, density: 1, shear_modulus: 4, bulk_modulus: "
+         "5}\n  - {name: a, cells: 2, law: neo-hookean, density: 1, shear_modulus: 4, "
+         "bulk_modulus: 5}\n",
+         "5:12", "a second material is called \"a\""},
         {"  - all\n", "4:5", "expected a material as a mapping"},
         {"  all\n", "4:3", "materials: expected a list of materials"},
         {"  - {cells: 3, law: neo-hookean, density: 1, shear_modulus: 4, bulk_modulus: 1}\n",

@@ -167,6 +167,8 @@ class Runs(unittest.TestCase):
 
     def test_unstable_runs_end_and_the_others_go_on(self):
         env = envs.VectorEnv(envs.Lift, 3, workers=2)
+        with self.assertRaisesRegex(lariat.StateError, "call reset"):
+            env.step(numpy.zeros((3, 4)))
         env.reset(seed=0)
         for node in range(20, 90):
             env.batch[1].set_force(node, (0, 0, 100))

@@ -33,6 +33,14 @@ class Callbacks(unittest.TestCase):
         self.sim.advance(20, callback=more, every=10)
         self.assertEqual(self.sim.step, 22)
 
+    def test_options_that_are_none(self):
+        model = block()
+        for option, words in ({"scheme": "x"}, "no communication scheme x"), ({"pin": 9}, "pin is 9"):
+            with self.assertRaisesRegex(lariat.ArgumentError, words):
+                lariat.Simulation(model, **option)
+        with self.assertRaisesRegex(lariat.ArgumentError, "0 or more steps"):
+            lariat.Session(self.sim, hash_every=-1)
+
     def test_closing_in_the_middle(self):
         with self.assertRaisesRegex(lariat.StateError, "closed"):
             self.sim.advance(20, callback=lambda s: s.close(), every=10)

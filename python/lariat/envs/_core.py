@@ -315,6 +315,7 @@ class VectorEnv(VectorBase):
     render_mode = None
     spec = None
     _core = None
+    _begun = False
 
     def __init__(self, env, num_envs, *, workers=0, model=None):
         if not (isinstance(env, type) and issubclass(env, Env) and env.task_class):
@@ -346,6 +347,7 @@ class VectorEnv(VectorBase):
         seed + i; or one for each. options as those of Env."""
         self._open()
         self._core.reset(self._all, self._seeds(seed), options)
+        self._begun = True
         self._core.observe()
         return self._core.observations.copy(), {"success": np.zeros(self.num_envs, bool),
                                                 "_success": np.ones(self.num_envs, bool)}
@@ -355,6 +357,8 @@ class VectorEnv(VectorBase):
         infos, arrays [n, ...]. infos["success"]: [n]; infos["unstable"], where there are any: why,
         [n], None for those that are sound (infos["_unstable"] says which)."""
         self._open()
+        if not self._begun:
+            raise lariat.StateError("step: no run has begun; call reset")
         core, n = self._core, self.num_envs
         actions = core.check_actions(actions, self.action_space.shape)
         rewards, terminated = np.zeros(n), np.zeros(n, bool)

@@ -251,6 +251,15 @@ static lar_status read_name(const lar_scene *scene, const lar_yaml *node, lar_ma
     if (!node) return LAR_OK;
     lar_status status = lar_scene_text(scene, node, "a name", &name);
     if (status) return status;
+    for (int i = 0; i < scene->model->material_count - 1; i++) {
+        const char *known = scene->model->material[i].name;
+        if (known && strcmp(known, name) == 0)
+            return lar_scene_fail(scene, node, LAR_ERROR_MODEL,
+                                  "a second material is called \"%s\"; name one of them "
+                                  "otherwise, or give both places in `cells` of one, for example "
+                                  "cells: [1, 2]",
+                                  name);
+    }
     material->name = lar_strdup(name);
     return material->name ? LAR_OK : lar_scene_no_memory(scene, strlen(name) + 1);
 }

@@ -78,9 +78,11 @@ lar_status lar_scene_unknown(const lar_scene *scene, const lar_yaml *at, lar_sta
     if (listed < count) snprintf(more, sizeof more, " and %d more", count - listed);
     const char *near = at->kind == LAR_YAML_SCALAR ? closest(at->text, names, count) : NULL;
     if (near) snprintf(meant, sizeof meant, "; did you mean %s?", near);
+    if (!near && at->kind == LAR_YAML_SCALAR && at->text[strspn(at->text, "0123456789")] == '\0')
+        snprintf(meant, sizeof meant, "; a comma ends a value, decimals have a point as in 2.5;");
     return lar_scene_fail(scene, at, status, "%s %s is unknown%s %s: %s%s", what,
-                          lar_yaml_show(at, shown), near ? meant : ";", list, count ? all : "none",
-                          more);
+                          lar_yaml_show(at, shown), *meant ? meant : ";", list,
+                          count ? all : "none", more);
 }
 
 static lar_status wrong_type(const lar_scene *scene, const lar_yaml *node, const char *expected) {

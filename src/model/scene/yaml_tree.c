@@ -179,6 +179,14 @@ static lar_status take_event(yaml_builder *builder, const yaml_event_t *event) {
     }
 }
 
+/* Whether a line is indented with a tab, which YAML does not allow. */
+static bool begins_with_tab(const lar_bytes *bytes, size_t line) {
+    size_t at = 0;
+    for (size_t l = 1; l < line && at < bytes->size; at++) l += bytes->data[at] == '\n';
+    while (at < bytes->size && bytes->data[at] == ' ') at++;
+    return at < bytes->size && bytes->data[at] == '\t';
+}
+
 /* What libyaml says when the text is no YAML. Its reader gives a byte offset, the rest a mark. */
 static lar_status explain(yaml_builder *builder, const yaml_parser_t *parser,
                           const lar_bytes *bytes) {
@@ -192,6 +200,10 @@ static lar_status explain(yaml_builder *builder, const yaml_parser_t *parser,
             if (bytes->data[i] == '\n') line++, column = 1;
         }
     }
+    if (begins_with_tab(bytes, line))
+        return lar_fail(builder->error, LAR_ERROR_FORMAT,
+                        "%s:%zu:%zu: the line begins with a tab; YAML is indented with blanks only",
+                        builder->path, line, column);
     return lar_fail(builder->error, LAR_ERROR_FORMAT,
                     "%s:%zu:%zu: this is not YAML: %s%s%s; check indentation, brackets, colons and "
                     "quotes here and in the line before",

@@ -298,6 +298,7 @@ static lar_status read_model(inp_deck *deck, const lar_bytes *bytes) {
     lar_text start = lar_text_from(bytes);
     deck->reader.entries_left = 4 * bytes->size + SPARE_ENTRIES;
     lar_status status = lar_inp_parse(deck->reader.path, bytes, deck->mesh, error);
+    if (!status) lar_mesh_turn(deck->mesh);
     if (!status) status = lar_mesh_check(deck->mesh, error);
     if (!status) status = prepare(deck);
     if (!status) status = walk(deck, start, false);

@@ -89,6 +89,7 @@ static lar_status read_pressure(inp_deck *deck, const lar_span *field, int count
     double pressure;
     lar_span label = field[1];
     int face = inp_face_of(label.at[1]);
+    if (face >= 4 && deck->mesh->turned) face ^= 1; /* as those of sets (lar_mesh_turn) */
     lar_status status = inp_number(deck, field, count, 2, "a pressure", &pressure);
     if (!status && count > 3)
         status = inp_expected(&deck->reader, deck->reader.line, "the end of the line", field[3]);
