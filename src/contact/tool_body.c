@@ -16,8 +16,9 @@ static const double DEPTH_MAX = 0.5, BEARS = 0.45;
 /* And elements must bear it: (omega dt / 2)^2 of the fastest, dt undivided, for some ten parts.
  * Hands press with less the faster elements have been lately, from some two parts on, and with no
  * more than tissue pushes with already from five on: a tool that went on until it had to give way,
- * and came back, would shake the organ and the hand. */
-static const double BORNE_RATE = 100, HELD_RATE = 25, FREE_RATE = 2.5;
+ * and came back, would shake the organ and the hand. What presses with little of its limit is not
+ * what made them fast, and may go on. */
+static const double BORNE_RATE = 100, HELD_RATE = 25, FREE_RATE = 2.5, LITTLE = 0.1;
 static const double GRASP_SHARE = 0.5;
 /* Jaws press less the faster elements have become by that, as BORNE_RATE counts, down to so many
  * shear moduli on half of a jaw's side. */
@@ -186,8 +187,9 @@ static void turn_between(const double from[4], const double to[4], double vector
 
 /* What the hand may draw with against what tissue pushes with along three coordinates. */
 static double draws(const mean_load *mean, const lar_tool_limits *limits, const double *pushed) {
-    double force = fmin(sqrt(dot(3, pushed, pushed)), limits->force);
-    return force + mean->more * (limits->force - force);
+    double max = limits->force, force = sqrt(dot(3, pushed, pushed));
+    force = fmin(fmax(force, LITTLE * max), max);
+    return force + mean->more * (max - force);
 }
 
 /* The pose at the end of the interval: that of the hand, or as far towards it as may be. */
