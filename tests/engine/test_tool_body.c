@@ -252,6 +252,36 @@ static void a_fast_tool_in_tissue_divides_steps(void **unused) {
     lar_model_destroy(model);
 }
 
+/* An element that is fast because it is squeezed becomes heavier where a scene allows it; in a blow
+ * steps are divided instead. */
+static void blows_divide_steps(void **unused) {
+    (void)unused;
+    lar_model *model = pressed_model();
+    model->strained_share = 0.02;
+    lar_simulation *simulation = start(model);
+    const lar_domain *whole = &simulation->domain;
+    int32_t parts[2], heavier[2];
+    for (int blow = 0; blow < 2; blow++) {
+        lar_tools tools = simulation->tools;
+        lar_interval interval = {0};
+        lar_report report = {.need = 6};
+        report.needs.fastest = blow ? 0.2 * whole->thinnest / whole->time_step : 0;
+        lar_needs_add(&report.needs, 7, report.need);
+        lar_interval_harvest(&interval, whole, &report, 1, &tools);
+        lar_interval_divide(whole, 8, 1e-4, &tools);
+        parts[blow] = tools.division.parts;
+        heavier[blow] = tools.heavier.count;
+    }
+    print_message("slow: %d parts and %d heavier, in a blow %d and %d\n", parts[0], heavier[0],
+                  parts[1], heavier[1]);
+    assert_int_equal(parts[0], 2);
+    assert_int_equal(heavier[0], 1);
+    assert_int_equal(parts[1], 3);
+    assert_int_equal(heavier[1], 0);
+    lar_simulation_destroy(simulation);
+    lar_model_destroy(model);
+}
+
 /* Hardness grows with time, not with the number of intervals, and is gone some time after. Parts of
  * steps bear it beside the fastest element, which is pressed. */
 static void hardness_grows_with_time(void **unused) {
@@ -405,6 +435,7 @@ int main(void) {
         cmocka_unit_test(a_touch_at_rest_needs_no_parts),
         cmocka_unit_test(a_tool_pushed_aside_is_not_free_to_go_on),
         cmocka_unit_test(a_fast_tool_in_tissue_divides_steps),
+        cmocka_unit_test(blows_divide_steps),
         cmocka_unit_test(hardness_grows_with_time),
         cmocka_unit_test(a_tool_that_presses_too_hard_yields),
         cmocka_unit_test(only_the_tool_that_needs_it_becomes_hard),
