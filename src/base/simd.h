@@ -419,10 +419,11 @@ LAR_INLINE void lar_ilane_scatter_row(int64_t *nodes, size_t stride, const int32
                                       const int32_t *right_node, bool half, const lar_ilane left[3],
                                       const lar_ilane right[3]) {
     /* Read once: what is stored between the axes might be places, for all that a compiler knows. */
-    const int64_t a = left_node[0], b = half ? left_node[4] : right_node[0];
+    const bool halves = half && LAR_LANES == 8; /* narrower lanes take a row of four as it is */
+    const int64_t a = left_node[0], b = halves ? left_node[4] : right_node[0];
     for (int i = 0; i < 3; i++) {
         int64_t *axis = nodes + (size_t)i * stride;
-        lar_axis_add_row(axis + a, axis + b, half, left[i], right[i]);
+        lar_axis_add_row(axis + a, axis + b, halves, left[i], right[i]);
     }
 }
 

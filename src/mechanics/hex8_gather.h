@@ -69,8 +69,14 @@ typedef struct picked_corners {
     double of[4][2][3][LAR_LANES] __attribute__((aligned(64)));
 } picked_corners;
 enum { PICKED_EDGE = 2 * 3 * LAR_LANES };
-static const int32_t picked_place[8][LAR_BLOCK] = {
-    [0] = {0}, [3] = {PICKED_EDGE}, [4] = {2 * PICKED_EDGE}, [7] = {3 * PICKED_EDGE}};
+static const int32_t picked_place[8][LAR_BLOCK] = {{0},
+                                                   {0},
+                                                   {PICKED_EDGE},
+                                                   {PICKED_EDGE},
+                                                   {2 * PICKED_EDGE},
+                                                   {2 * PICKED_EDGE},
+                                                   {3 * PICKED_EDGE},
+                                                   {3 * PICKED_EDGE}};
 
 /* A function of its own and a loop: three loads for each node of each lane are many instructions,
  * and every phase would have them. */

@@ -61,7 +61,7 @@ static lar_model *straight_tool_model(const brick *b) {
 
 /* ---- the same bits -------------------------------------------------------------------------- */
 
-static same_bits body = {fibrous_tool_model, PATH, {0x875f633920d99d4b, 0x048c7c8b315255e9}};
+static same_bits body = {fibrous_tool_model, PATH, {0xce03b8b724ddfd6e, 0x19fb3e32e3d436d7}};
 
 static same_bits straight = {straight_tool_model,
                              LAR_TEST_BUILD "/straight.checkpoint",
