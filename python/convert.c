@@ -203,11 +203,14 @@ bool python_material(const lar_model *model, PyObject *source, int32_t *index) {
     const char *wanted = python_text(source, "material");
     lar_material_info info;
     int32_t count = lar_model_material_count(model);
-    for (int32_t i = 0; wanted && i < count; i++)
-        if (!lar_model_material(model, i, &info, NULL) && strcmp(info.name, wanted) == 0) {
-            *index = i;
-            return true;
-        }
+    for (int32_t i = 0; wanted && i < count; i++) {
+        if (lar_model_material(model, i, &info, NULL) || strcmp(info.name, wanted) != 0) continue;
+        if (*index >= 0) /* in decks: scenes refuse it */
+            return python_refuse("material: %R is the name of %d and of %d; give the number",
+                                 source, *index, i);
+        *index = i;
+    }
+    if (*index >= 0) return true;
     return wanted &&
            python_refuse("material: there is none called %R; Model.materials lists them", source);
 }

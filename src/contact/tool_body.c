@@ -189,7 +189,8 @@ static void turn_between(const double from[4], const double to[4], double vector
 static double draws(const mean_load *mean, const lar_tool_limits *limits, const double *pushed) {
     double max = limits->force, force = sqrt(dot(3, pushed, pushed));
     force = fmin(fmax(force, LITTLE * max), max);
-    return force + mean->more * (max - force);
+    return max -
+           (1 - mean->more) * (max - force); /* to the bit the limit while elements are slow */
 }
 
 /* The pose at the end of the interval: that of the hand, or as far towards it as may be. */

@@ -78,11 +78,9 @@ lar_status lar_scene_unknown(const lar_scene *scene, const lar_yaml *at, lar_sta
     if (listed < count) snprintf(more, sizeof more, " and %d more", count - listed);
     const char *near = at->kind == LAR_YAML_SCALAR ? closest(at->text, names, count) : NULL;
     if (near) snprintf(meant, sizeof meant, "; did you mean %s?", near);
-    if (!near && at->kind == LAR_YAML_SCALAR && at->text[strspn(at->text, "0123456789")] == '\0')
-        snprintf(meant, sizeof meant, "; a comma ends a value, decimals have a point as in 2.5;");
     return lar_scene_fail(scene, at, status, "%s %s is unknown%s %s: %s%s", what,
-                          lar_yaml_show(at, shown), *meant ? meant : ";", list,
-                          count ? all : "none", more);
+                          lar_yaml_show(at, shown), near ? meant : ";", list, count ? all : "none",
+                          more);
 }
 
 static lar_status wrong_type(const lar_scene *scene, const lar_yaml *node, const char *expected) {
@@ -93,6 +91,11 @@ static lar_status wrong_type(const lar_scene *scene, const lar_yaml *node, const
 }
 
 /* ---- shapes ------------------------------------------------------------------------------- */
+
+/* What stands behind the comma of 2,5. */
+static bool is_digits(const char *text) {
+    return *text && text[strspn(text, "0123456789")] == '\0';
+}
 
 lar_status lar_scene_keys(const lar_scene *scene, const lar_yaml *node, const char *what,
                           const char *const *keys) {
@@ -107,7 +110,9 @@ lar_status lar_scene_keys(const lar_scene *scene, const lar_yaml *node, const ch
         int i = 0;
         while (i < count && strcmp(entry->key->text, keys[i]) != 0) i++;
         if (i == count) {
-            snprintf(text, sizeof text, "%s may have the keys", what);
+            snprintf(text, sizeof text, "%s%s may have the keys",
+                     is_digits(entry->key->text) ? "decimals have a point, as in 2.5, and " : "",
+                     what);
             return lar_scene_unknown(scene, entry->key, LAR_ERROR_FORMAT, "the key", text, keys,
                                      count);
         }

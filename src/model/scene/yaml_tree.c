@@ -200,7 +200,7 @@ static lar_status explain(yaml_builder *builder, const yaml_parser_t *parser,
             if (bytes->data[i] == '\n') line++, column = 1;
         }
     }
-    if (begins_with_tab(bytes, line))
+    if (parser->error == YAML_SCANNER_ERROR && begins_with_tab(bytes, line))
         return lar_fail(builder->error, LAR_ERROR_FORMAT,
                         "%s:%zu:%zu: the line begins with a tab; YAML is indented with blanks only",
                         builder->path, line, column);
