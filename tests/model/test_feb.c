@@ -258,6 +258,9 @@ static void test_bad_materials(void **state) {
                    LAR_ERROR_FORMAT, 6, "out of range");
     expect_failure(WITH_MATERIAL("<material id=\"1\" type=\"x\"/>\n<material id=\"1\"/>"),
                    LAR_ERROR_FORMAT, 7, "second material has the id 1");
+    expect_failure(WITH_MATERIAL("<material id=\"1\" name=\"soft\" type=\"neo-Hookean\"/>"
+                                 "<material id=\"2\" name=\"soft\" type=\"neo-Hookean\"/>"),
+                   LAR_ERROR_FORMAT, 0, "two in <Material> are called so");
     expect_failure(HEAD4 CONTROL("DYNAMIC") MATERIAL MESH4 TAIL, LAR_ERROR_MODEL, 2,
                    "element 1 has no material");
 }

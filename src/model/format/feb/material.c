@@ -71,8 +71,15 @@ lar_status lar_feb_part_material(lar_feb *feb, const xmlNode *elements,
     if (!wanted) wanted = domain_material(feb, lar_feb_attribute(feb, elements, "name"), &at);
     *material = NULL;
     if (!wanted) return LAR_OK;
-    for (int i = 0; i < feb->material_count && !*material; i++)
-        if (strcmp(feb->material[i].name, wanted) == 0) *material = &feb->material[i];
+    for (int i = 0; i < feb->material_count; i++) {
+        if (strcmp(feb->material[i].name, wanted) != 0) continue;
+        if (*material && feb->model)
+            return lar_feb_fail(feb, at, LAR_ERROR_FORMAT,
+                                "<%s> names the material '%.100s', and two in <Material> are "
+                                "called so; give them names of their own",
+                                (const char *)at->name, wanted);
+        if (!*material) *material = &feb->material[i];
+    }
     int64_t id;
     lar_span span = lar_span_trim((lar_span){wanted, strlen(wanted)});
     if (!*material && lar_span_int64(span, &id))
