@@ -149,9 +149,11 @@ static lar_status change_player(lar_session *session, const lar_request *request
 lar_status lar_session_apply(lar_session *session, const lar_setting *setting, lar_error *error) {
     lar_status status = lar_setting_apply(setting, session->simulation, error);
     if (status) return status;
-    lar_session_put_record(session, &(lar_record){.kind = LAR_RECORD_SET,
-                                                  .step = lar_simulation_steps(session->simulation),
-                                                  .setting = *setting});
+    lar_record record = {.kind = LAR_RECORD_SET,
+                         .step = lar_simulation_steps(session->simulation),
+                         .setting = *setting};
+    record.setting.members = lar_setting_members(setting, session->simulation);
+    lar_session_put_record(session, &record);
     lar_session_look_at_spares(session);
     lar_session_publish(session, false);
     return LAR_OK;

@@ -1,6 +1,7 @@
 #include "session/setting.h"
 
 #include "simulation/simulation.h"
+#include "step/identity.h"
 
 static lar_status add_tool(const lar_setting *setting, lar_simulation *simulation,
                            lar_error *error) {
@@ -29,8 +30,22 @@ static lar_status set_parameter(const lar_setting *setting, lar_simulation *simu
                                            setting->value[0], error);
 }
 
+uint32_t lar_setting_members(const lar_setting *setting, const lar_simulation *simulation) {
+    const lar_mesh *mesh = &simulation->domain.model->mesh;
+    bool on_set = setting->kind == LAR_SETTING_FORCE_ON || setting->kind == LAR_SETTING_SUPPORT_ON;
+    if (!on_set || setting->of < 0 || setting->of >= mesh->set_count) return 0;
+    uint32_t hash = (uint32_t)lar_set_hash(&mesh->set[setting->of]);
+    return hash ? hash : 1;
+}
+
 lar_status lar_setting_apply(const lar_setting *setting, lar_simulation *simulation,
                              lar_error *error) {
+    if (setting->members && setting->members != lar_setting_members(setting, simulation))
+        return lar_fail(error, LAR_ERROR_MODEL,
+                        "the recording sets something on the nodes of set %ld, which has others "
+                        "here than where it was recorded; play it with the model that it was "
+                        "recorded with",
+                        (long)setting->of);
     switch (setting->kind) {
     case LAR_SETTING_GRAVITY:
         return lar_simulation_set_gravity(simulation, setting->value, error);

@@ -26,14 +26,20 @@ typedef enum lar_setting_kind {
 typedef struct lar_setting {
     lar_setting_kind kind;
     int32_t of;
+    uint32_t members; /* lar_setting_members of set `of`, as it was recorded; 0: not told */
     double value[3];
 } lar_setting;
+
+/* Tells sets apart that have the same number in two models: a hash of the nodes of the set that it
+ * is about; 0 where it is about none. */
+uint32_t lar_setting_members(const lar_setting *setting, const lar_simulation *simulation);
 
 /* Shape and place among the spares of a tool that is added, as one number. */
 static inline int32_t lar_setting_of_tool(int32_t shape, int32_t place) {
     return LAR_TOOL_HAND * place + shape;
 }
 
+/* LAR_ERROR_MODEL where it was recorded of another set; else as the call that it stands for. */
 lar_status lar_setting_apply(const lar_setting *setting, lar_simulation *simulation,
                              lar_error *error);
 

@@ -217,12 +217,17 @@ void lar_model_identify(const lar_domain *whole, lar_model_identity *identity) {
                                      .tools = hash_tools(whole->surroundings.list)};
 }
 
+static uint64_t hash_set(uint64_t hash, const lar_set *set) {
+    return hash_indices(lar_hash_word(hash, (uint64_t)set->kind), set->index, set->count);
+}
+
+uint64_t lar_set_hash(const lar_set *set) {
+    return hash_set(0, set);
+}
+
 uint64_t lar_conditions_with_sets(const lar_model_identity *identity, const lar_model *model) {
     uint64_t hash = lar_hash_word(identity->conditions, (uint64_t)model->mesh.set_count);
-    for (int i = 0; i < model->mesh.set_count; i++) {
-        const lar_set *set = &model->mesh.set[i];
-        hash = hash_indices(lar_hash_word(hash, (uint64_t)set->kind), set->index, set->count);
-    }
+    for (int i = 0; i < model->mesh.set_count; i++) hash = hash_set(hash, &model->mesh.set[i]);
     return hash;
 }
 

@@ -23,6 +23,9 @@ typedef struct lar_model_identity {
 
 void lar_model_identify(const lar_domain *whole, lar_model_identity *identity);
 
+/* Of kind and members of a set; names do not count. */
+uint64_t lar_set_hash(const lar_set *set);
+
 /* What `conditions` is of a state in which something was set on sets of nodes: these are numbers
  * there, and count by what they stand for. */
 uint64_t lar_conditions_with_sets(const lar_model_identity *identity, const lar_model *model);

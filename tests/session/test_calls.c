@@ -5,12 +5,32 @@
 
 #define PATH LAR_TEST_BUILD "/calls.recording"
 
-/* The block with its right side as the set "end". */
-static lar_model *named_block(void) {
+/* The block with the last side of an axis as the set "end". */
+static lar_model *block_with_end(int axis) {
     lar_model *model = hanging_block();
-    lar_node_list end = brick_side(&soft_brick, 0, -1);
+    lar_node_list end = brick_side(&soft_brick, axis, -1);
     DONE(lar_mesh_add_set(&model->mesh, "end", LAR_SET_NODES, end.node, end.count, &failure));
     return model;
+}
+
+static lar_model *named_block(void) {
+    return block_with_end(0);
+}
+
+/* Sets are numbers in a recording: where the number is that of other nodes, it says so. */
+static void refuses_other_set(void) {
+    lar_replay_report report;
+    lar_model *model = block_with_end(1);
+    lar_simulation *simulation = NULL;
+    const lar_options options = block_options(NULL, 1);
+    DONE(lar_simulation_create(model, &options, &simulation, &failure));
+    lar_error why;
+    assert_int_equal(lar_replay(simulation, PATH, NULL, NULL, &report, &why), LAR_ERROR_MODEL);
+    if (!strstr(why.message, "on the nodes of set 0, which has others here"))
+        fail_msg("%s", why.message);
+    assert_true(report.different == UINT64_MAX);
+    lar_simulation_destroy(simulation);
+    lar_model_destroy(model);
 }
 
 static void wait_steps(const bench *b, uint64_t steps) {
@@ -62,6 +82,7 @@ static void forces_are_played(void **unused) {
         lar_simulation_destroy(simulation);
         lar_model_destroy(model);
     }
+    refuses_other_set();
     options.record = NULL;
     b = open_bench_of(named_block(), NULL, 0, &options);
     DONE(lar_session_start(b.session, &failure));
@@ -115,6 +136,7 @@ static void supports_are_played(void **unused) {
         lar_simulation_destroy(simulation);
         lar_model_destroy(model);
     }
+    refuses_other_set();
 }
 
 /* The block as a muscle that shortens along the axis on which it hangs. */

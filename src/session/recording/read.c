@@ -142,12 +142,15 @@ static lar_status take_move(const lar_recording_reader *reader, const uint64_t *
 /* Whether the values make sense is said where they are set. */
 static lar_status take_setting(const lar_recording_reader *reader, const uint64_t *word,
                                lar_record *record, lar_error *error) {
-    int64_t of = (int64_t)word[2];
+    bool on_set = word[1] == LAR_SETTING_FORCE_ON || word[1] == LAR_SETTING_SUPPORT_ON;
+    uint64_t members = on_set ? word[2] >> 32 : 0;
+    int64_t of = (int64_t)(word[2] ^ members << 32);
     if (word[1] >= LAR_SETTING_KINDS || of < -1 || of > INT32_MAX)
         return lar_recording_refuse(reader, error, "sets what cannot be set; it was altered");
     record->setting = (lar_setting){
         .kind = (lar_setting_kind)word[1],
         .of = (int32_t)of,
+        .members = (uint32_t)members,
         .value = {lar_double_of(word[3]), lar_double_of(word[4]), lar_double_of(word[5])}};
     return LAR_OK;
 }

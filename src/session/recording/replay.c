@@ -140,7 +140,7 @@ static lar_status set(player *p, const lar_record *record, lar_error *error) {
     lar_status status = lar_setting_apply(&record->setting, p->simulation, &cause);
     if (status == LAR_ERROR_PEER && error) *error = cause;
     if (!status || status == LAR_ERROR_PEER) return status;
-    return lar_fail(error, LAR_ERROR_FORMAT,
+    return lar_fail(error, status == LAR_ERROR_MODEL ? status : LAR_ERROR_FORMAT,
                     "%s: record %" PRIu64 ", at step %" PRIu64 ", sets what cannot be: %s",
                     p->reader.path, p->reader.number, record->step, cause.message);
 }

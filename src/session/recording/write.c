@@ -83,7 +83,7 @@ void lar_recording_put(lar_recording_writer *writer, const lar_record *record) {
     }
     if (record->kind == LAR_RECORD_SET) {
         word[3] = (uint64_t)record->setting.kind;
-        word[4] = (uint64_t)(int64_t)record->setting.of;
+        word[4] = (uint64_t)(int64_t)record->setting.of ^ (uint64_t)record->setting.members << 32;
         for (int i = 0; i < 3; i++) word[5 + i] = lar_word_of(record->setting.value[i]);
     }
     put_words(writer, word, 2 + (size_t)words);
