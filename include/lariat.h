@@ -98,6 +98,7 @@ LAR_API lar_status lar_memory_set(const lar_memory_hooks *hooks, lar_error *erro
 
 /* Threads of the host: `start` makes one that calls run(data) once, and says into *thread what
  * `join` gets, which waits for its end. `priority`: what lar_session_options asks for, 0: nothing.
+ * Threads of a grid take the priority that a session's thread has for as long as it runs.
  * `start` returns 0, or an errno when there is no thread: loops do without, what needs one fails.
  */
 typedef struct lar_thread_hooks {
@@ -1113,7 +1114,8 @@ typedef struct lar_session_options {
     double hand_force;      /* hands pull no harder than this [N]; 0: 1 N */
     const char *record;     /* path of a recording to write, from the start; NULL: none */
     int priority;           /* 1 to 99: the engine's thread goes before all ordinary ones of the
-                               machine (SCHED_FIFO), where the system allows it; 0: ordinary */
+                               machine (SCHED_FIFO), where the system allows it, and the other
+                               threads of its simulation with it; 0: ordinary */
     uint64_t hash_every;    /* steps between the hashes of a recording; 0: 100 */
     int stop_when_unstable; /* not 0: a run that becomes unstable stops the session; 0: it goes back
                                to a sound state and on from there (lar_session_status.recoveries) */

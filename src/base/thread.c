@@ -40,6 +40,18 @@ int lar_thread_start_urgent(lar_thread *thread, int priority, void *(*run)(void 
     return cause;
 }
 
+int lar_thread_priority(void) {
+    struct sched_param urgency;
+    int policy = SCHED_OTHER;
+    bool known = pthread_getschedparam(pthread_self(), &policy, &urgency) == 0;
+    return known && (policy == SCHED_FIFO || policy == SCHED_RR) ? urgency.sched_priority : 0;
+}
+
+int lar_thread_set_priority(int priority) {
+    const struct sched_param urgency = {.sched_priority = priority};
+    return pthread_setschedparam(pthread_self(), priority > 0 ? SCHED_FIFO : SCHED_OTHER, &urgency);
+}
+
 void lar_thread_join(const lar_thread *thread) {
     if (thread->hosted)
         host.join(host.context, thread->hosts);

@@ -22,6 +22,11 @@ static inline int lar_thread_start(lar_thread *thread, void *(*run)(void *), voi
     return lar_thread_start_urgent(thread, 0, run, context);
 }
 
+/* How far the calling thread goes before ordinary ones, as above, and from now on. Returns 0 or an
+ * errno. */
+int lar_thread_priority(void);
+int lar_thread_set_priority(int priority);
+
 /* Waits for its end. */
 void lar_thread_join(const lar_thread *thread);
 

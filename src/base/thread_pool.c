@@ -1,5 +1,6 @@
 #include "base/thread_pool.h"
 
+#include <math.h>
 #include <pthread.h>
 #include <sched.h>
 #include <stdlib.h>
@@ -18,11 +19,15 @@ enum { POLLS = 50 };
  * next (1 ms), because being woken takes some 50 us, a tenth of a tick's work. Where threads are
  * more than cores, who stays awake takes time from the one that the next job comes from. */
 static const double AWAKE = 2.5e-3, AWAKE_OVERSUBSCRIBED = 0.2e-3;
+/* And where no other thread has the core meanwhile. */
+static const double AWAKE_URGENT = 0.05e-3;
 
 typedef struct worker {
     lar_thread_pool *pool;
     int32_t number;
     lar_thread thread;
+    int before;    /* its own priority */
+    double awake;  /* [s] */
     uint64_t done; /* atomic: jobs finished */
 } __attribute__((aligned(64))) worker;
 
@@ -30,7 +35,7 @@ struct lar_thread_pool {
     int32_t count, started; /* threads that run, the caller's not among them */
     bool pin;
     int32_t first_core;
-    double awake;             /* [s] */
+    double awake;             /* of ordinary threads [s] */
     lar_pin *caller;          /* where the caller's thread was before */
     uint64_t caller_slice;    /* as long as its turns were; see base/thread.h */
     lar_thread_pool_job *job; /* NULL: end */
@@ -52,8 +57,9 @@ static void sleep_until_order(lar_thread_pool *pool, uint64_t known) {
     pthread_mutex_unlock(&pool->lock);
 }
 
-static void wait_for_order(lar_thread_pool *pool, uint64_t known) {
-    double until = lar_clock_seconds() + pool->awake;
+static void wait_for_order(const worker *own, uint64_t known) {
+    lar_thread_pool *pool = own->pool;
+    double until = lar_clock_seconds() + own->awake;
     do {
         for (int i = 0; i < POLLS; i++)
             if (__atomic_load_n(&pool->orders, __ATOMIC_ACQUIRE) != known) return;
@@ -67,8 +73,9 @@ static void *attend(void *argument) {
     lar_thread_pool *pool = own->pool;
     if (pool->pin) lar_pin_to(pool->first_core + own->number);
     lar_thread_shorten_slice();
+    own->before = lar_thread_priority();
     for (uint64_t known = 0;; known++) {
-        wait_for_order(pool, known);
+        wait_for_order(own, known);
         if (!pool->job) return NULL;
         pool->job(pool->context, own->number);
         __atomic_store_n(&own->done, known + 1, __ATOMIC_RELEASE);
@@ -102,6 +109,7 @@ lar_status lar_thread_pool_create(int32_t count, bool pin, int32_t first_core,
     for (int32_t i = 1; i < count && !status; i++) {
         pool->worker[i].pool = pool;
         pool->worker[i].number = i;
+        pool->worker[i].awake = pool->awake;
         int cause = lar_thread_start(&pool->worker[i].thread, attend, &pool->worker[i]);
         if (cause)
             status = lar_fail(error, LAR_ERROR_MEMORY,
@@ -143,4 +151,30 @@ void lar_thread_pool_run(lar_thread_pool *pool, lar_thread_pool_job *job, void *
     for (int32_t i = 1; i < pool->count; i++)
         for (int polls = 0; __atomic_load_n(&pool->worker[i].done, __ATOMIC_ACQUIRE) != order;)
             if (++polls % POLLS == 0) sched_yield();
+}
+
+typedef struct precedence {
+    lar_thread_pool *pool;
+    int priority;
+} precedence;
+
+static void go_before(void *context, int32_t number) {
+    const precedence *wanted = context;
+    worker *own = &wanted->pool->worker[number];
+    if (number == 0) return;
+    int priority = wanted->priority > 0 ? wanted->priority : own->before;
+    bool urgent = lar_thread_set_priority(priority) == 0 && wanted->priority > 0;
+    own->awake = urgent ? fmin(AWAKE_URGENT, wanted->pool->awake) : wanted->pool->awake;
+}
+
+void lar_thread_pool_go_before(lar_thread_pool *pool, int priority) {
+    if (pool->count > 1) lar_thread_pool_run(pool, go_before, &(precedence){pool, priority});
+}
+
+static void wake_up(void *context, int32_t number) {
+    (void)context, (void)number;
+}
+
+void lar_thread_pool_rouse(lar_thread_pool *pool) {
+    if (pool->count > 1) lar_thread_pool_run(pool, wake_up, NULL);
 }

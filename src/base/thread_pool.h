@@ -6,7 +6,9 @@
  *
  * The caller is one of them: two processors of a computer on two cores are two threads. Between
  * jobs a thread polls for some milliseconds, because the next job usually comes at once or at the
- * next tick of a session, and then sleeps.
+ * next tick of a session, and then sleeps. Threads that go before all others of the machine sleep
+ * soon, for nobody else has their core while they poll: who knows when the next job comes rouses
+ * them before.
  */
 #ifndef LAR_BASE_THREAD_POOL_H
 #define LAR_BASE_THREAD_POOL_H
@@ -31,5 +33,11 @@ void lar_thread_pool_destroy(lar_thread_pool *pool); /* accepts NULL */
 
 /* Runs the job in all workers and returns when all are done. */
 void lar_thread_pool_run(lar_thread_pool *pool, lar_thread_pool_job *job, void *context);
+
+/* From now on the threads that the pool has started go before all ordinary threads of the machine
+ * as far as that (lar_thread_start_urgent), where the system allows it; 0: as they did. */
+void lar_thread_pool_go_before(lar_thread_pool *pool, int priority);
+/* Returns when all are awake. */
+void lar_thread_pool_rouse(lar_thread_pool *pool);
 
 #endif

@@ -74,6 +74,9 @@ struct lar_session {
     lar_session_options options; /* with no zeros left */
     uint64_t tick_steps;
     double time_step;
+    int urgent;       /* how far its thread goes before others; 0: an ordinary one */
+    int64_t owed;     /* what others are owed of the time that was not waited [ns] */
+    int64_t waited;   /* until when was waited last [ns] */
     uint64_t divided; /* steps of the simulation that were divided before the session */
     int32_t tools;
     lar_session_tool tool[LAR_TOOLS_MAX];

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "base/clock.h"
+#include "base/thread.h"
 #include "session/session.h"
 
 /* How long a force takes to fade when the engine pauses or stops [s]. */
@@ -261,6 +262,34 @@ static void rest(lar_session *session, fading *fade) {
     lar_requests_sleep(&session->requests, snapshot_is_wanted, session, wake);
 }
 
+/* Threads that go before all others have their cores for themselves: while a session finds no time
+ * to wait, not even a viewer is served, and Linux stops them for 50 ms of every second
+ * (sched_rt_runtime_us). Then a twelfth of the time is taken off, half a millisecond at once. */
+static bool owes_a_turn(lar_session *session, int64_t now, int64_t turn) {
+    static const int64_t SHARE = 12, MUCH = 10000000; /* [ns] */
+    int64_t busy = now - session->waited;
+    session->owed += (busy < FAR ? busy : FAR) / SHARE;
+    return session->owed > MUCH && session->pace.deadline.due < now + turn;
+}
+
+static void wait_until_due(lar_session *session) {
+    static const int64_t TURN = 500000, BEFORE = 60000; /* [ns] */
+    int64_t now = lar_clock_ns(), rise = session->pace.deadline.due - BEFORE;
+    if (session->urgent && owes_a_turn(session, now, TURN)) {
+        lar_clock_sleep_until(now + TURN);
+    } else {
+        /* Threads of the other processors have fallen asleep, and wake before they are needed. */
+        if (session->urgent && rise > now + BEFORE) {
+            lar_clock_wait_until(rise, LAR_WAKE_EARLY);
+            lar_simulation_rouse(session->simulation);
+        }
+        lar_pace_wait(&session->pace);
+    }
+    session->waited = lar_clock_ns();
+    session->owed -= session->waited - now;
+    if (session->owed < 0) session->owed = 0;
+}
+
 /* Until the next tick is due. In very slow motion that is long: requests and snapshots are served
  * meanwhile, as in a pause. */
 static void wait_for_tick(lar_session *session) {
@@ -275,7 +304,7 @@ static void wait_for_tick(lar_session *session) {
                            look < wake ? look : wake);
         execute_requests(session);
     }
-    if (!session->ended && session->status.state == LAR_SESSION_PLAYING) lar_pace_wait(pace);
+    if (!session->ended && session->status.state == LAR_SESSION_PLAYING) wait_until_due(session);
 }
 
 void *lar_session_run(void *argument) {
@@ -283,6 +312,8 @@ void *lar_session_run(void *argument) {
     fading fade = fade_from_now();
     lar_simulation_reserve_here(session->simulation);
     lar_clock_be_prompt();
+    session->urgent = lar_thread_priority();
+    if (session->urgent) lar_simulation_go_before(session->simulation, session->urgent);
     if (session->status.state == LAR_SESSION_PLAYING) lar_session_go_on(session);
     while (!session->ended) {
         execute_requests(session);
@@ -296,6 +327,7 @@ void *lar_session_run(void *argument) {
         }
     }
     lar_pace_stop(&session->pace, lar_clock_ns());
+    if (session->urgent) lar_simulation_go_before(session->simulation, 0);
     return NULL;
 }
 

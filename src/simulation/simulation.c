@@ -392,6 +392,14 @@ bool lar_simulation_has_peers(const lar_simulation *simulation) {
     return simulation->computer && simulation->computer->control;
 }
 
+void lar_simulation_go_before(const lar_simulation *simulation, int priority) {
+    if (simulation->computer) lar_thread_pool_go_before(simulation->computer->pool, priority);
+}
+
+void lar_simulation_rouse(const lar_simulation *simulation) {
+    if (simulation->computer) lar_thread_pool_rouse(simulation->computer->pool);
+}
+
 lar_status lar_simulation_look(lar_simulation *simulation, lar_error *error) {
     return simulation->computer ? lar_computer_look(simulation->computer, error) : LAR_OK;
 }

@@ -57,6 +57,11 @@ lar_status lar_simulation_gather(const lar_simulation *simulation, lar_error *er
 bool lar_simulation_has_peers(const lar_simulation *simulation);
 lar_status lar_simulation_look(lar_simulation *simulation, lar_error *error);
 
+/* The other threads of this process that compute go before all others, or (0) as they did, and are
+ * awake for what comes at once (base/thread_pool.h). Between advances. */
+void lar_simulation_go_before(const lar_simulation *simulation, int priority);
+void lar_simulation_rouse(const lar_simulation *simulation);
+
 /* A session lets its own thread alone change the simulation, or everyone again. */
 void lar_simulation_reserve(lar_simulation *simulation, bool held);
 /* Called by that thread: it is the one. */

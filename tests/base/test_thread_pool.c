@@ -4,6 +4,7 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <time.h>
 
 #include <cmocka.h>
 
@@ -43,8 +44,38 @@ static void workers_take_short_turns_and_the_caller_only_meanwhile(void **state)
     assert_true(after == before);
 }
 
+static void tell_priority(void *context, int32_t worker) {
+    ((int *)context)[worker] = lar_thread_priority();
+}
+
+/* Workers that go before others do their part asleep or awake, and are as before in the end. */
+static void workers_go_before_others_for_a_while(void **state) {
+    (void)state;
+    enum { URGENT = 3 };
+    const struct timespec long_asleep = {0, 5000000};
+    lar_thread_pool *pool;
+    lar_error error;
+    int priority[WORKERS], own = lar_thread_priority();
+    bool may = lar_thread_set_priority(URGENT) == 0;
+    lar_thread_set_priority(own);
+    if (!may) print_message("this system lets no thread go before others\n");
+    if (lar_thread_pool_create(WORKERS, false, 0, &pool, &error)) fail_msg("%s", error.message);
+    for (int i = 0; i < JOBS; i++) {
+        int wanted = i % 4 < 2 ? URGENT : 0;
+        if (i % 2 == 0) lar_thread_pool_go_before(pool, wanted);
+        if (i % 10 == 0) nanosleep(&long_asleep, NULL);
+        if (i % 3 == 0) lar_thread_pool_rouse(pool);
+        lar_thread_pool_run(pool, tell_priority, priority);
+        assert_int_equal(priority[0], own);
+        for (int w = 1; w < WORKERS; w++)
+            assert_int_equal(priority[w], wanted && may ? wanted : own);
+    }
+    lar_thread_pool_destroy(pool);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(workers_take_short_turns_and_the_caller_only_meanwhile)};
+        cmocka_unit_test(workers_take_short_turns_and_the_caller_only_meanwhile),
+        cmocka_unit_test(workers_go_before_others_for_a_while)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
