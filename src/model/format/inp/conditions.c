@@ -184,6 +184,20 @@ static lar_status hold_of(inp_deck *deck, double value, int curve, int32_t *hold
     return LAR_OK;
 }
 
+/* The curve of a displacement. In a dynamic step Abaqus's own is a jump, which few mean. */
+static lar_status read_curve(inp_deck *deck, const inp_card *card, int *curve) {
+    lar_status status = inp_in_step(deck, card);
+    if (!status) status = inp_curve_of(deck, card, curve);
+    if (status || *curve != deck->constant || deck->step.procedure != INP_DYNAMIC ||
+        deck->step.at_once)
+        return status;
+    deck->step.at_once = true;
+    return inp_notice(deck, deck->reader.line,
+                      "a displacement without AMPLITUDE is there at once in a *DYNAMIC step, as in "
+                      "Abaqus: the body starts with these nodes displaced, and shakes; to ramp it, "
+                      "name an *AMPLITUDE that rises from 0 (AMPLITUDE=)");
+}
+
 static lar_status read_support(inp_deck *deck, const inp_card *card, lar_span line) {
     lar_span field[4];
     const int32_t *index;
@@ -195,10 +209,7 @@ static lar_status read_support(inp_deck *deck, const inp_card *card, lar_span li
     if (!status) status = read_axes(deck, field, count, &axes);
     if (!status) status = inp_optional(deck, field, count, 3, "a displacement", 0.0, &value);
     if (status) return status;
-    if (value != 0.0) {
-        status = inp_in_step(deck, card);
-        if (!status) status = inp_curve_of(deck, card, &curve);
-    }
+    if (value != 0.0) status = read_curve(deck, card, &curve);
     if (!status) status = inp_nodes(deck, field[0], &own, &index, &nodes);
     if (!status) status = hold_of(deck, value, curve, &hold);
     for (int32_t n = 0; n < nodes && !status; n++)

@@ -325,6 +325,7 @@ static void clear(inp_deck *deck) {
     free(deck->prescribed);
     free(deck->pressure);
     free(deck->velocity);
+    free(deck->pressed);
     free(deck->heavy);
     free(deck->hold);
     lar_id_map_clear(&deck->nodes);

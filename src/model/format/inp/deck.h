@@ -85,6 +85,7 @@ typedef struct inp_step {
     int amplitude; /* AMPLITUDE of *STEP: 0 not given, 1 STEP, 2 RAMP */
     bool large;    /* NLGEOM */
     bool supports; /* a *BOUNDARY has been read in it */
+    bool at_once;  /* a notice says that displacements are there at once */
 } inp_step;
 
 typedef struct inp_deck {
@@ -114,6 +115,7 @@ typedef struct inp_deck {
     double (*velocity)[3]; /* of *INITIAL CONDITIONS, NULL: none */
     size_t pressure_count, pressure_room;
     inp_pressure *pressure;
+    char *pressed;    /* [elements][6]: the face has a pressure */
     int gravity_line; /* of the first GRAV, 0: none */
     char *heavy;      /* [elements]: GRAV acts on it */
     double gravity[3];

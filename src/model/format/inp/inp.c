@@ -392,6 +392,8 @@ lar_status lar_inp_parse(const char *path, const lar_bytes *bytes, lar_mesh *mes
     }
     if (!status) status = inp_build_sets(&reader);
     if (!status) status = lar_mesh_builder_finish(reader.builder, mesh, error);
+    mesh->sparse_ranges = reader.sparse_ranges;
+    mesh->sparse_line = reader.sparse_line;
 
     lar_mesh_builder_destroy(reader.builder);
     for (size_t s = 0; s < reader.set_count; s++) {

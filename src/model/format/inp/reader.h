@@ -55,6 +55,8 @@ typedef struct inp_reader {
     lar_mesh_builder *builder;
     int part_count, instance_count;
     int32_t tag_count;
+    int32_t sparse_ranges; /* as in lar_mesh */
+    int sparse_line;
 
     inp_ids nodes, elements; /* every id of the file; ascending after the first walk */
     size_t boundary_count, boundary_capacity;
