@@ -116,6 +116,15 @@ static lar_status read_fix(lar_feb *feb, const xmlNode *at) {
     return LAR_OK;
 }
 
+/* Without a load curve a displacement is there at once. Of a static deck only the end matters. */
+static lar_status notice_at_once(lar_feb *feb, const xmlNode *value, double by) {
+    if (by == 0.0 || feb->model->until_rest || lar_feb_attribute(feb, value, "lc")) return LAR_OK;
+    return lar_feb_notice(feb, value,
+                          "a displacement without a load curve is there at once: the body starts "
+                          "with these nodes displaced, and shakes; to ramp it, name one that rises "
+                          "from 0 (lc=)");
+}
+
 /* Its size stands in <value> in version 4, in <scale> in version 3. */
 static lar_status read_move(lar_feb *feb, const xmlNode *at) {
     static const char known[] = "dof value scale relative shell_bottom";
@@ -129,6 +138,7 @@ static lar_status read_move(lar_feb *feb, const xmlNode *at) {
     if (!status && !value) status = need_child(feb, at, "value", &value);
     if (!status) status = lar_feb_curve_of(feb, value, &curve);
     if (!status) status = lar_feb_doubles(feb, value, &by, 1);
+    if (!status) status = notice_at_once(feb, value, by);
     if (!status) status = refuse_flag(feb, at, "relative");
     if (!status) status = refuse_flag(feb, at, "shell_bottom");
     if (!status) status = lar_feb_notice_others(feb, at, known);
