@@ -393,14 +393,25 @@ static void test_wrong_words(void **state) {
     assert_int_equal(notices_with(model, "deck.feb:23: the attribute LC of <scale> is not known"),
                      1);
     assert_int_equal(notices_with(model, "the attribute elemset of <body_load>"), 1);
-    assert_int_equal(notices_with(model,
-                                  "deck.feb:23: a displacement without a load curve is there "
-                                  "at once"),
+    assert_int_equal(notices_with(model, "deck.feb:23: this displacement is there "
+                                         "at once"),
                      1);
     lar_model_destroy(model);
     expect_failure(HEAD4 "<Control><time_steps>1</time_steps>\n<time_steps>2</time_steps>"
                          "</Control>" MATERIAL MESH4 DOMAINS TAIL,
                    LAR_ERROR_FORMAT, 5, "a second <time_steps> in one <Control>");
+    model =
+        read_deck(BASE4 "<Boundary><bc type=\"fix\" node_set=\"wall\"><dofs>x</dofs><y_dof>1"
+                        "</y_dof></bc><bc type=\"prescribe\" node_set=\"tip\"><dof>x</dof>"
+                        "<value>0</value></bc></Boundary><Step><step><Material>"
+                        "<a/></Material></step></Step><LoadData><load_controller id=\"1\" "
+                        "type=\"loadcurve\"><extent>REPEAT</extent><points><pt>0,0</pt></points>"
+                        "</load_controller></LoadData>" TAIL);
+    assert_int_equal(model->notice_count, 4);
+    assert_int_equal(notices_with(model, "<y_dof> in <bc> is not known"), 1);
+    assert_int_equal(notices_with(model, "the section <Material> is not known"), 1);
+    assert_int_equal(notices_with(model, "<extent> in <load_controller> is not known"), 1);
+    lar_model_destroy(model);
     expect_failure(BASE4 "<Step><step>\n" CONTROL("STATIC") "</step></Step>" TAIL,
                    LAR_ERROR_UNSUPPORTED, BC_LINE, "a second <Control>, of a step");
 }

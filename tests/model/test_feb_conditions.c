@@ -112,6 +112,12 @@ static void test_bad_supports(void **state) {
     expect_failure(BC("prescribed displacement", "tip",
                       "<dof>x</dof><value>1</value>\n<relative>1</relative>"),
                    LAR_ERROR_UNSUPPORTED, BC_LINE + 2, "<relative>");
+    expect_failure(BC("prescribed displacement", "tip",
+                      "<dof>x</dof><value>1</value>\n<scale lc=\"1\">1</scale>"),
+                   LAR_ERROR_UNSUPPORTED, BC_LINE + 2, "<scale> stands beside <value>");
+    expect_failure(BASE4 "<Loads>\n<nodal_load type=\"nodal_load\" node_set=\"tip\"><dof>x</dof>"
+                         "<scale>1</scale><value>3</value></nodal_load></Loads>" TAIL,
+                   LAR_ERROR_UNSUPPORTED, BC_LINE, "<scale> stands beside <value>");
     expect_failure(BASE4 "<Boundary>\n<rigid/></Boundary>" TAIL, LAR_ERROR_UNSUPPORTED, BC_LINE,
                    "<rigid>");
     expect_failure(BASE4 "<Boundary>\n<bc type=\"fix\"><dofs>x</dofs></bc></Boundary>" TAIL,

@@ -89,8 +89,10 @@ static lar_status notice_solver_damping(lar_feb *feb, const xmlNode *control) {
 
 /* ---- sections -------------------------------------------------------------------------------- */
 
-/* Sections that are read elsewhere, or whose content does not change the answer. */
-static bool is_harmless(const xmlNode *section) {
+/* Sections that are read elsewhere, or whose content does not change the answer; within a step only
+ * its own <Control> is. */
+static bool is_harmless(const lar_feb *feb, const xmlNode *section) {
+    if (section->parent != feb->root) return lar_feb_is_any(section, "Control Output");
     return lar_feb_is_any(section, "Module Control Globals Material Mesh LoadData Output "
                                    "MeshDomains Step");
 }
@@ -129,7 +131,7 @@ static lar_status check_section(lar_feb *feb, const xmlNode *section) {
                             (const char *)(content ? content : section)->name,
                             type ? " of type '" : "", type ? type : "", type ? "'" : "", what);
     }
-    if (what || is_harmless(section) || !content) return LAR_OK;
+    if (what || is_harmless(feb, section) || !content) return LAR_OK;
     if (lar_feb_is(section, "Boundary")) return lar_feb_read_boundary(feb, section);
     if (lar_feb_is(section, "Loads")) return lar_feb_read_loads(feb, section);
     if (lar_feb_is(section, "Initial")) return lar_feb_read_initial(feb, section);
