@@ -64,20 +64,24 @@ static void test_supports(void **state) {
  */
 static void test_displaced_at_once(void **state) {
     (void)state;
-    static const char words[] = "without AMPLITUDE is there at once in a *DYNAMIC step";
+    static const char words[] = "this displacement is there at once";
     lar_model *model = read_deck(MESH SOFT DYNAMIC "*BOUNDARY\nWALL, 1, 3\nTIP, 1, 1, 0.1\n"
                                                    "TIP, 2, 2, 0.1\n" END);
     assert_int_equal(notices_with(model, words), 1);
-    assert_int_equal(notices_with(model, "deck.inp:40: a displacement"), 1);
+    assert_int_equal(notices_with(model, "deck.inp:40: this displacement"), 1);
     near(at(model, model->move[0].curve, 0), 1);
     lar_model_destroy(model);
     model = read_deck(MESH SOFT "*STEP, NLGEOM\n*DYNAMIC, EXPLICIT\n, 2\n*BOUNDARY\n"
                                 "TIP, 1, 1, 0.1\n" END);
     assert_int_equal(notices_with(model, words), 1);
     lar_model_destroy(model);
+    model = read_deck(MESH SOFT "*AMPLITUDE, NAME=late\n1, 1, 2, 2\n" DYNAMIC
+                                "*BOUNDARY, AMPLITUDE=late\nTIP, 1, 1, 0.1\n" END);
+    assert_int_equal(notices_with(model, words), 1);
+    lar_model_destroy(model);
     static const char *const ramped[] = {
         MESH SOFT STATIC "*BOUNDARY\nTIP, 1, 1, 0.1\n" END,
-        MESH SOFT DYNAMIC "*BOUNDARY\nTIP, 1, 1\n" END,
+        MESH SOFT DYNAMIC "*BOUNDARY\nTIP, 1, 1\nTIP, 4, 6, 1\n" END,
         MESH SOFT "*AMPLITUDE, NAME=up\n0, 0, 1, 1\n" DYNAMIC
                   "*BOUNDARY, AMPLITUDE=up\nTIP, 1, 1, 0.1\n" END,
         MESH SOFT "*STEP, NLGEOM, AMPLITUDE=RAMP\n*DYNAMIC\n, 2\n*BOUNDARY\nTIP, 1, 1, 1\n" END};
@@ -348,6 +352,14 @@ static void test_ranges(void **state) {
             "the file defines no node of this range; correct it or remove the line");
     refused(MESH "*ELSET, ELSET=a, GENERATE\n-3, 100, 3\n" SOFT, LAR_ERROR_FORMAT, 30,
             "the file defines no element of this range");
+    refused(MESH "*NSET, NSET=a, GENERAT\n9, 12, 1\n" SOFT, LAR_ERROR_UNSUPPORTED, 29,
+            "the parameter GENERAT of *NSET is not read and could change the answer");
+    refused(MESH SOFT "*NSET, NSET=a\n*BOUNDARY\na, 1\n", LAR_ERROR_FORMAT, AFTER_SOFT + 2,
+            "the set 'a' has nothing of the hexahedra; fill it or remove the line");
+    refused(MESH SOFT "*NSET, NSET=a\n99\n*BOUNDARY\na, 1\n", LAR_ERROR_FORMAT, AFTER_SOFT + 3,
+            "the set 'a' has nothing");
+    refused(MESH SOFT "*SURFACE, NAME=a\n" DYNAMIC "*DSLOAD\na, P, 1\n" END, LAR_ERROR_FORMAT,
+            AFTER_SOFT + 5, "the set 'a' has nothing");
 }
 
 /* ---- steps --------------------------------------------------------------------------------- */

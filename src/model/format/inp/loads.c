@@ -11,7 +11,7 @@
 #include "model/format/inp/deck.h"
 
 static lar_status read_load_card(inp_deck *deck, const inp_card *card, int *curve) {
-    static const char *const known[] = {"OP", "AMPLITUDE", NULL};
+    static const char known[] = "OP,AMPLITUDE";
     lar_status status = inp_only(deck, card, known);
     if (!status) status = inp_in_step(deck, card);
     return status ? status : inp_curve_of(deck, card, curve);

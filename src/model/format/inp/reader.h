@@ -79,6 +79,9 @@ bool inp_data_line(inp_reader *reader, lar_span *line);
 /* Value of a parameter ("" when it has none); false when the card does not have it. */
 bool inp_parameter(const inp_card *card, const char *name, lar_span *value);
 
+/* Refuses a card with another parameter than these, with commas in between. */
+lar_status inp_check_parameters(const inp_reader *reader, const inp_card *card, const char *known);
+
 /* The set, made when new. */
 lar_status inp_open_set(inp_reader *reader, lar_span name, bool of_nodes, inp_set **set);
 lar_status inp_add_entry(inp_reader *reader, inp_set *set, int64_t id, int line);
