@@ -1,5 +1,6 @@
 #include <math.h>
 #include <string.h>
+#include <strings.h>
 
 #include "cli/commands.h"
 
@@ -37,11 +38,17 @@ int cli_open_model(const cli_command *command, const char *path, lar_model **mod
     return CLI_DONE;
 }
 
-/* A mesh in millimetres is the commonest slip, and one that is scaled twice the next. */
-static void doubt_length(const cli_command *command, const lar_model_info *info) {
-    static const double LARGE = 10, SMALL = 1e-3; /* [m] */
+static const double LARGE = 10, SMALL = 1e-3; /* [m] */
+
+static double longest_side(const lar_model_info *info) {
     double size = 0;
     for (int i = 0; i < 3; i++) size = fmax(size, info->upper[i] - info->lower[i]);
+    return size;
+}
+
+/* A mesh in millimetres is the commonest slip, and one that is scaled twice the next. */
+static void doubt_length(const cli_command *command, const lar_model_info *info) {
+    double size = longest_side(info);
     if (size > LARGE)
         cli_complain(command, CLI_DONE,
                      "note: the model is %.4g m long; if the mesh is in millimetres, read it "
@@ -74,12 +81,34 @@ static bool doubt_material(const cli_command *command, const lar_material_info *
     return dense || stiff;
 }
 
+/* A deck is in units of its own, often none at all, and its answer is right in these; a mesh alone
+ * in an .inp, whose tissue has no name, is in metres as any other. */
+static bool is_deck(const char *path, const lar_model *model) {
+    const char *ending = strrchr(path, '.');
+    lar_material_info material;
+    if (!ending) return false;
+    if (strcasecmp(ending, ".feb") == 0) return true;
+    return strcasecmp(ending, ".inp") == 0 &&
+           lar_model_material(model, 0, &material, NULL) == LAR_OK && material.name[0];
+}
+
+static void doubt_deck(const cli_command *command, const lar_model_info *info) {
+    double size = longest_side(info);
+    if (size > LARGE || size < SMALL)
+        cli_complain(command, CLI_DONE,
+                     "note: the deck has no units, and the model is %.4g long: Lariat computes in "
+                     "the deck's own, and what it calls m, kg, s and Pa are these",
+                     size);
+}
+
 void cli_doubt_units(const cli_command *command, const char *path, const lar_model *model,
                      const lar_model_info *info) {
-    const char *ending = strrchr(path, '.');
-    bool deck = ending && strcmp(ending, ".feb") == 0; /* in units of its own, often none at all */
+    if (is_deck(path, model)) {
+        doubt_deck(command, info);
+        return;
+    }
     doubt_length(command, info);
-    bool doubted = deck;
+    bool doubted = false;
     for (int32_t i = 0; i < info->materials && !doubted; i++) {
         lar_material_info material;
         doubted = lar_model_material(model, i, &material, NULL) == LAR_OK &&

@@ -174,8 +174,8 @@ lar_status lar_material_check(const lar_material *material, const char *where, l
                             where, lar_law_name[material->law]);
     if (!(material->density > 0.0) || !isfinite(material->density))
         return lar_fail(error, LAR_ERROR_MODEL,
-                        "%s: the density is %g; it must be positive, in kg/m^3 (soft tissue has "
-                        "about 1050)",
+                        "%s: the density is %g; it must be positive (soft tissue has about 1050 "
+                        "kg/m^3)",
                         where, material->density);
     lar_status status = check_numbers(material, where, error);
     if (!status) status = check_viscosity(material, where, error);

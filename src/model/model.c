@@ -428,6 +428,11 @@ static lar_status notice_mesh(lar_model *model, lar_error *error) {
                                   "%.300s: all elements are left-handed, as in a mirrored body; "
                                   "their corners are taken in the other direction",
                                   source);
+    if (!status && mesh->sparse_ranges > 0)
+        status = lar_model_notice(model, error,
+                                  "%.300s:%d: %d ranges of sets (GENERATE), the first here, have "
+                                  "numbers that the file does not define; these were left out",
+                                  source, mesh->sparse_line, (int)mesh->sparse_ranges);
     for (int i = 0; i < model->contact_count; i++)
         if (model->contact[i].kind != LAR_CONTACT_PLANE) return status;
     int32_t doubled = 0;

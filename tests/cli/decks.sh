@@ -122,6 +122,19 @@ says '^mesh .*of these 4 held'
 expect 0 "$LARIAT" info elastic.inp --no-speed
 complains "note: elastic.inp:26: material 'SOFT' is linear elastic; Lariat takes the neo-Hookean"
 
+# Decks have units of their own, here millimetres, tonnes and MPa: no word of metres and kg/m^3. A
+# mesh alone has metres.
+mesh | sed 's/0\.05/50/g; s/0\.1$/100/' >long.inp
+expect 0 "$LARIAT" info long.inp --no-speed
+complains 'note: the model is 100 m long; if the mesh is in millimetres, read it through a scene'
+printf '%s\n' '*MATERIAL, NAME=SOFT' '*HYPERELASTIC, NEO HOOKE' '1e-3, 100' \
+    '*SOLID SECTION, ELSET=BAR, MATERIAL=SOFT' '*STEP, NLGEOM' '*STATIC' '0.1, 1' '*DLOAD' \
+    'BAR, P1, 1e-4' '*END STEP' >>long.inp
+expect 0 "$LARIAT" info long.inp --no-speed
+complains 'note: the deck has no units, and the model is 100 long: Lariat computes in'
+complains 'note: long.inp:26: no \*DENSITY: the static answer does not depend on it, Lariat takes'
+! grep -q 'kg/m\|millimetres\|pascals' "$SCRATCH/err" || fail "units of a deck: $(cat "$SCRATCH/err")"
+
 # What is not read is refused by name and line; in a mesh it does not matter.
 {
     cat static.inp

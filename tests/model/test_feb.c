@@ -158,7 +158,7 @@ static void test_bad_materials(void **state) {
                    LAR_ERROR_FORMAT, 6, "no parameter <v>");
     expect_failure(WITH_MATERIAL("<material id=\"1\" name=\"soft\" type=\"neo-Hookean\">\n"
                                  "<E>7</E><v>0.3</v>\n<E>1</E></material>"),
-                   LAR_ERROR_FORMAT, 8, "a second <E> in one material");
+                   LAR_ERROR_FORMAT, 8, "a second <E> in one <material>");
     expect_failure(WITH_MATERIAL("<material id=\"1\" name=\"soft\" type=\"neo-Hookean\">\n"
                                  "<E>1</E><v>0.5</v></material>"),
                    LAR_ERROR_MODEL, 6, "Poisson's ratio");
@@ -376,6 +376,46 @@ static void test_sections(void **state) {
     expect_failure("<a>\n<b></a>", LAR_ERROR_FORMAT, 2, "well-formed");
 }
 
+/* Words that nobody knows are named; those of solvers, and the second one of a kind, are not. */
+static void test_wrong_words(void **state) {
+    (void)state;
+    lar_model *model = read_deck(
+        HEAD4
+        "<Control><analysis>DYNAMIC</analysis><time_steps>1</time_steps><step_size>1"
+        "</step_size><max_refs>15</max_refs><plot_level>PLOT_NEVER</plot_level><solver "
+        "type=\"solid\"><dtol>1e-3</dtol></solver>\n<final_time>5</final_time></Control>" MATERIAL
+            MESH4 DOMAINS "<Boundary>\n<bc type=\"prescribe\" node_set=\"tip\" name=\"a\">"
+        "<dof>x</dof>\n<scale LC=\"1\">0.5</scale></bc></Boundary>\n<Loads>"
+        "<body_load type=\"const\" elemset=\"left\"><z>1</z></body_load>"
+        "</Loads><Output><plotfile colour=\"red\"/></Output>" LINEAR1 TAIL);
+    assert_int_equal(model->notice_count, 5); /* and a node that nothing uses */
+    assert_int_equal(notices_with(model, "deck.feb:5: <final_time> in <Control> is not known"), 1);
+    assert_int_equal(notices_with(model, "deck.feb:23: the attribute LC of <scale> is not known"),
+                     1);
+    assert_int_equal(notices_with(model, "the attribute elemset of <body_load>"), 1);
+    assert_int_equal(notices_with(model, "deck.feb:23: this displacement is there "
+                                         "at once"),
+                     1);
+    lar_model_destroy(model);
+    expect_failure(HEAD4 "<Control><time_steps>1</time_steps>\n<time_steps>2</time_steps>"
+                         "</Control>" MATERIAL MESH4 DOMAINS TAIL,
+                   LAR_ERROR_FORMAT, 5, "a second <time_steps> in one <Control>");
+    model =
+        read_deck(BASE4 "<Boundary><bc type=\"fix\" node_set=\"wall\"><dofs>x</dofs><y_dof>1"
+                        "</y_dof></bc><bc type=\"prescribe\" node_set=\"tip\"><dof>x</dof>"
+                        "<value>0</value></bc></Boundary><Step><step><Material>"
+                        "<a/></Material></step></Step><LoadData><load_controller id=\"1\" "
+                        "type=\"loadcurve\"><extent>REPEAT</extent><points><pt>0,0</pt></points>"
+                        "</load_controller></LoadData>" TAIL);
+    assert_int_equal(model->notice_count, 4);
+    assert_int_equal(notices_with(model, "<y_dof> in <bc> is not known"), 1);
+    assert_int_equal(notices_with(model, "the section <Material> is not known"), 1);
+    assert_int_equal(notices_with(model, "<extent> in <load_controller> is not known"), 1);
+    lar_model_destroy(model);
+    expect_failure(BASE4 "<Step><step>\n" CONTROL("STATIC") "</step></Step>" TAIL,
+                   LAR_ERROR_UNSUPPORTED, BC_LINE, "a second <Control>, of a step");
+}
+
 /* ---- the mesh alone -------------------------------------------------------------------------- */
 
 static void test_mesh_only(void **state) {
@@ -452,9 +492,9 @@ int main(void) {
         cmocka_unit_test(test_version_4),       cmocka_unit_test(test_version_3),
         cmocka_unit_test(test_materials),       cmocka_unit_test(test_stiffening_laws),
         cmocka_unit_test(test_bad_materials),   cmocka_unit_test(test_bad_meshes),
-        cmocka_unit_test(test_static_and_step), cmocka_unit_test(test_sections),
-        cmocka_unit_test(test_mesh_only),       cmocka_unit_test(test_entities),
-        cmocka_unit_test(test_damage),
+        cmocka_unit_test(test_static_and_step), cmocka_unit_test(test_wrong_words),
+        cmocka_unit_test(test_sections),        cmocka_unit_test(test_mesh_only),
+        cmocka_unit_test(test_entities),        cmocka_unit_test(test_damage),
     };
     return cmocka_run_group_tests_name("feb", tests, NULL, NULL);
 }

@@ -85,6 +85,12 @@ static void test_bad_supports(void **state) {
     (void)state;
     expect_failure(BC("zero displacement", "wall", "<xdof>1</xdof>"), LAR_ERROR_FORMAT, BC_LINE,
                    "does not say which axes it holds");
+    expect_failure(BC("zero displacement", "wall", "<x_dof>1</x_dof>\n<y_dof>2</y_dof>"),
+                   LAR_ERROR_FORMAT, BC_LINE + 2, "<y_dof> is 2; write 1 for yes or 0 for no");
+    expect_failure(BC("zero displacement", "wall", "<z_dof>-1</z_dof>"), LAR_ERROR_FORMAT,
+                   BC_LINE + 1, "<z_dof> is -1");
+    expect_failure(BC("zero displacement", "wall", "<x_dof>1</x_dof>\n<x_dof>0</x_dof>"),
+                   LAR_ERROR_FORMAT, BC_LINE + 2, "a second <x_dof> in one <bc>");
     expect_failure(BC("zero displacement", "none", "<x_dof>1</x_dof>"), LAR_ERROR_FORMAT, BC_LINE,
                    "node set 'none'");
     expect_failure(BC("zero displacement", "@edge:e", "<x_dof>1</x_dof>"), LAR_ERROR_UNSUPPORTED,
@@ -106,6 +112,12 @@ static void test_bad_supports(void **state) {
     expect_failure(BC("prescribed displacement", "tip",
                       "<dof>x</dof><value>1</value>\n<relative>1</relative>"),
                    LAR_ERROR_UNSUPPORTED, BC_LINE + 2, "<relative>");
+    expect_failure(BC("prescribed displacement", "tip",
+                      "<dof>x</dof><value>1</value>\n<scale lc=\"1\">1</scale>"),
+                   LAR_ERROR_UNSUPPORTED, BC_LINE + 2, "<scale> stands beside <value>");
+    expect_failure(BASE4 "<Loads>\n<nodal_load type=\"nodal_load\" node_set=\"tip\"><dof>x</dof>"
+                         "<scale>1</scale><value>3</value></nodal_load></Loads>" TAIL,
+                   LAR_ERROR_UNSUPPORTED, BC_LINE, "<scale> stands beside <value>");
     expect_failure(BASE4 "<Boundary>\n<rigid/></Boundary>" TAIL, LAR_ERROR_UNSUPPORTED, BC_LINE,
                    "<rigid>");
     expect_failure(BASE4 "<Boundary>\n<bc type=\"fix\"><dofs>x</dofs></bc></Boundary>" TAIL,

@@ -204,7 +204,8 @@ static void refuses_unsupported(void **state) {
                  "bad.inp");
     refused_with("*HEADING\n", "*Include, Input=nodes.inp\n", unsupported,
                  "bad.inp:2: *Include is not read here; copy the included file into this one");
-    refused_with("*Node, nset=All", "*NODE, INPUT=n.txt", unsupported, "copy the nodes");
+    refused_with("*Node, nset=All", "*NODE, INPUT=n.txt", unsupported,
+                 "bad.inp:4: *NODE is not read with INPUT=; copy the nodes");
     refused_with("*Node, nset=All", "*NODE, SYSTEM=C", unsupported, "rectangular coordinates");
     refused_with("*HEADING\n", "*NGEN\n", unsupported, "bad.inp:2: *NGEN is not read here");
     refused_with("*STEP\n", "*PART, NAME=A\n*PART, NAME=B\n", unsupported, "join the parts");

@@ -60,6 +60,38 @@ static void test_supports(void **state) {
     lar_model_destroy(model);
 }
 
+/* Abaqus's own amplitude of a dynamic step is a jump; the first displacement that jumps is named.
+ */
+static void test_displaced_at_once(void **state) {
+    (void)state;
+    static const char words[] = "this displacement is there at once";
+    lar_model *model = read_deck(MESH SOFT DYNAMIC "*BOUNDARY\nWALL, 1, 3\nTIP, 1, 1, 0.1\n"
+                                                   "TIP, 2, 2, 0.1\n" END);
+    assert_int_equal(notices_with(model, words), 1);
+    assert_int_equal(notices_with(model, "deck.inp:40: this displacement"), 1);
+    near(at(model, model->move[0].curve, 0), 1);
+    lar_model_destroy(model);
+    model = read_deck(MESH SOFT "*STEP, NLGEOM\n*DYNAMIC, EXPLICIT\n, 2\n*BOUNDARY\n"
+                                "TIP, 1, 1, 0.1\n" END);
+    assert_int_equal(notices_with(model, words), 1);
+    lar_model_destroy(model);
+    model = read_deck(MESH SOFT "*AMPLITUDE, NAME=late\n1, 1, 2, 2\n" DYNAMIC
+                                "*BOUNDARY, AMPLITUDE=late\nTIP, 1, 1, 0.1\n" END);
+    assert_int_equal(notices_with(model, words), 1);
+    lar_model_destroy(model);
+    static const char *const ramped[] = {
+        MESH SOFT STATIC "*BOUNDARY\nTIP, 1, 1, 0.1\n" END,
+        MESH SOFT DYNAMIC "*BOUNDARY\nTIP, 1, 1\nTIP, 4, 6, 1\n" END,
+        MESH SOFT "*AMPLITUDE, NAME=up\n0, 0, 1, 1\n" DYNAMIC
+                  "*BOUNDARY, AMPLITUDE=up\nTIP, 1, 1, 0.1\n" END,
+        MESH SOFT "*STEP, NLGEOM, AMPLITUDE=RAMP\n*DYNAMIC\n, 2\n*BOUNDARY\nTIP, 1, 1, 1\n" END};
+    for (size_t i = 0; i < sizeof ramped / sizeof *ramped; i++) {
+        model = read_deck(ramped[i]);
+        assert_int_equal(notices_with(model, words), 0);
+        lar_model_destroy(model);
+    }
+}
+
 static void test_bad_supports(void **state) {
     (void)state;
     const int line = AFTER_SOFT;
@@ -129,6 +161,20 @@ static void test_loads(void **state) {
     model = read_deck(MESH SOFT "*STEP, NLGEOM, AMPLITUDE=STEP\n*STATIC\n*CLOAD\n9, 1, 1\n" END);
     near(at(model, model->load[0].curve, 0), 1);
     assert_true(model->duration == 1);
+    lar_model_destroy(model);
+}
+
+/* The same face twice: both act, and that is told, whatever the face is called. */
+static void test_pressure_twice(void **state) {
+    (void)state;
+    lar_model *model = read_deck(MESH SOFT DYNAMIC "*DLOAD\nRIGHT, P4, 100\nBOTH, P1, 1\n"
+                                                   "2, P4, 0\nBOTH, P1, 2\n"
+                                                   "*DSLOAD\nend, P, 5\n" END);
+    assert_int_equal(model->notice_count, 2);
+    assert_int_equal(notices_with(model, "deck.inp:42: 2 faces have a pressure already; the two "
+                                         "are added"),
+                     1);
+    assert_int_equal(notices_with(model, "deck.inp:44: 1 faces have a pressure already"), 1);
     lar_model_destroy(model);
 }
 
@@ -289,6 +335,33 @@ static void test_friction(void **state) {
     refused(TWO PAIR, LAR_ERROR_FORMAT, line - 2, "no *SURFACE INTERACTION called 'Rough'");
 }
 
+/* ---- sets ---------------------------------------------------------------------------------- */
+
+/* A range may have numbers that do not exist, with a notice; a list must not. */
+static void test_ranges(void **state) {
+    (void)state;
+    lar_model *model = read_deck(MESH "*NSET, NSET=a, GENERATE\n9, 12\n10, 2000000000\n1, 1\n"
+                                      "*ELSET, ELSET=b, GENERATE\n1, 2\n-7, 2, 3\n" SOFT);
+    assert_int_equal(model->notice_count, 1);
+    assert_int_equal(notices_with(model,
+                                  "deck.inp:31: 2 ranges of sets (GENERATE), the first here, "
+                                  "have numbers that the file does not define"),
+                     1);
+    lar_model_destroy(model);
+    refused(MESH "*NSET, NSET=a, GENERATE\n9, 12\n500, 2000000000\n" SOFT, LAR_ERROR_FORMAT, 31,
+            "the file defines no node of this range; correct it or remove the line");
+    refused(MESH "*ELSET, ELSET=a, GENERATE\n-3, 100, 3\n" SOFT, LAR_ERROR_FORMAT, 30,
+            "the file defines no element of this range");
+    refused(MESH "*NSET, NSET=a, GENERAT\n9, 12, 1\n" SOFT, LAR_ERROR_UNSUPPORTED, 29,
+            "the parameter GENERAT of *NSET is not read and could change the answer");
+    refused(MESH SOFT "*NSET, NSET=a\n*BOUNDARY\na, 1\n", LAR_ERROR_FORMAT, AFTER_SOFT + 2,
+            "the set 'a' has nothing of the hexahedra; fill it or remove the line");
+    refused(MESH SOFT "*NSET, NSET=a\n99\n*BOUNDARY\na, 1\n", LAR_ERROR_FORMAT, AFTER_SOFT + 3,
+            "the set 'a' has nothing");
+    refused(MESH SOFT "*SURFACE, NAME=a\n" DYNAMIC "*DSLOAD\na, P, 1\n" END, LAR_ERROR_FORMAT,
+            AFTER_SOFT + 5, "the set 'a' has nothing");
+}
+
 /* ---- steps --------------------------------------------------------------------------------- */
 
 static void test_steps(void **state) {
@@ -375,12 +448,21 @@ static void test_damage(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_supports),  cmocka_unit_test(test_bad_supports),
-        cmocka_unit_test(test_loads),     cmocka_unit_test(test_left_handed),
-        cmocka_unit_test(test_bad_loads), cmocka_unit_test(test_initial_velocity),
-        cmocka_unit_test(test_contact),   cmocka_unit_test(test_friction),
-        cmocka_unit_test(test_steps),     cmocka_unit_test(test_parts),
-        cmocka_unit_test(test_is_deck),   cmocka_unit_test(test_damage),
+        cmocka_unit_test(test_supports),
+        cmocka_unit_test(test_bad_supports),
+        cmocka_unit_test(test_displaced_at_once),
+        cmocka_unit_test(test_pressure_twice),
+        cmocka_unit_test(test_ranges),
+        cmocka_unit_test(test_loads),
+        cmocka_unit_test(test_left_handed),
+        cmocka_unit_test(test_bad_loads),
+        cmocka_unit_test(test_initial_velocity),
+        cmocka_unit_test(test_contact),
+        cmocka_unit_test(test_friction),
+        cmocka_unit_test(test_steps),
+        cmocka_unit_test(test_parts),
+        cmocka_unit_test(test_is_deck),
+        cmocka_unit_test(test_damage),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

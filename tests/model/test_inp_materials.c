@@ -315,6 +315,7 @@ static void test_bad_materials(void **state) {
     refused(OF("*ELASTIC\n"), LAR_ERROR_FORMAT, two, "*ELASTIC has no line of numbers");
     refused(OF("*ELASTIC\n1, 0.3\n*ELASTIC\n1, 0.3\n"), LAR_ERROR_FORMAT, two + 2, "second law");
     refused(OF("*DENSITY\n-1\n"), LAR_ERROR_MODEL, three, "must be positive");
+    refused(OF("*DENSITY\n1\n*DENSITY\n2\n"), LAR_ERROR_FORMAT, two + 2, "a second *DENSITY");
     refused(OF("*DAMPING, ALPHA=1, BETA=0.1\n"), LAR_ERROR_UNSUPPORTED, two, "leave BETA out");
     refused(OF("*MATERIAL, NAME=A\n"), LAR_ERROR_FORMAT, two, "a second *MATERIAL");
     refused(OF("*DENSITY\n1\n*SOLID SECTION, ELSET=BOTH, MATERIAL=a\n"), LAR_ERROR_MODEL, one,

@@ -59,6 +59,9 @@ typedef struct lar_mesh {
     int64_t collapsed_id;
     int collapsed_line; /* 0: the format has none */
 
+    int32_t sparse_ranges; /* ranges of numbers in sets of which some do not exist (Abaqus) */
+    int sparse_line;       /* of the first */
+
     bool turned; /* all elements were left-handed in the file (lar_mesh_turn) */
 } lar_mesh;
 

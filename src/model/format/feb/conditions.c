@@ -49,13 +49,24 @@ static lar_status refuse_type(lar_feb *feb, const xmlNode *at, const char *known
                         (const char *)at->name, type ? type : "", known);
 }
 
-/* Refuses a flag that asks for something else than FEBio's default. */
 static lar_status refuse_flag(lar_feb *feb, const xmlNode *at, const char *name) {
     bool set;
     lar_status status = lar_feb_flag(feb, at, name, false, &set);
     if (status || !set) return status;
     return lar_feb_fail(feb, lar_feb_child(at, name), LAR_ERROR_UNSUPPORTED,
                         "<%s> other than 0 is not read; set it to 0", name);
+}
+
+/* Refuses flags that ask for something else than FEBio's default, and a size in two places, which
+ * versions of FEBio multiply or do not. */
+static lar_status refuse_extras(lar_feb *feb, const xmlNode *at) {
+    const xmlNode *scale = lar_feb_child(at, "scale");
+    if (scale && lar_feb_child(at, "value"))
+        return lar_feb_fail(feb, scale, LAR_ERROR_UNSUPPORTED,
+                            "<scale> stands beside <value>; write their product into one of them "
+                            "and remove the other");
+    lar_status status = refuse_flag(feb, at, "relative");
+    return status ? status : refuse_flag(feb, at, "shell_bottom");
 }
 
 /* ---- boundary -------------------------------------------------------------------------------- */
@@ -88,7 +99,7 @@ static lar_status read_axis_list(lar_feb *feb, const xmlNode *dofs, unsigned *ax
 }
 
 static lar_status read_fix(lar_feb *feb, const xmlNode *at) {
-    static const char known[] = "dofs x_dof y_dof z_dof";
+    static const char known[] = "x_dof y_dof z_dof";
     const xmlNode *dofs = lar_feb_child(at, "dofs");
     unsigned axes;
     lar_status status = dofs ? read_axis_list(feb, dofs, &axes) : read_axis_flags(feb, at, &axes);
@@ -99,7 +110,7 @@ static lar_status read_fix(lar_feb *feb, const xmlNode *at) {
                             "<%s> does not say which axes it holds; add <x_dof>, <y_dof> or "
                             "<z_dof> with 1",
                             (const char *)at->name);
-    if (!status) status = lar_feb_notice_others(feb, at, known);
+    if (!status) status = lar_feb_notice_others(feb, at, dofs ? "dofs" : known);
     if (!status) status = read_node_set(feb, at, &nodes);
     if (!status && (axes == 0 || nodes.count == 0)) {
         free(nodes.node);
@@ -116,6 +127,16 @@ static lar_status read_fix(lar_feb *feb, const xmlNode *at) {
     return LAR_OK;
 }
 
+/* Without a load curve a displacement is there at once. Of a static deck only the end matters. */
+static lar_status notice_at_once(lar_feb *feb, const xmlNode *value, double by, int curve) {
+    const lar_model *model = feb->model;
+    if (by * lar_curve_value(&model->curve[curve], 0.0) == 0.0 || model->until_rest) return LAR_OK;
+    return lar_feb_notice(feb, value,
+                          "this displacement is there at once: the body starts with these nodes "
+                          "displaced, and shakes; to ramp it, name a load curve that rises from 0 "
+                          "(lc=)");
+}
+
 /* Its size stands in <value> in version 4, in <scale> in version 3. */
 static lar_status read_move(lar_feb *feb, const xmlNode *at) {
     static const char known[] = "dof value scale relative shell_bottom";
@@ -129,8 +150,8 @@ static lar_status read_move(lar_feb *feb, const xmlNode *at) {
     if (!status && !value) status = need_child(feb, at, "value", &value);
     if (!status) status = lar_feb_curve_of(feb, value, &curve);
     if (!status) status = lar_feb_doubles(feb, value, &by, 1);
-    if (!status) status = refuse_flag(feb, at, "relative");
-    if (!status) status = refuse_flag(feb, at, "shell_bottom");
+    if (!status) status = notice_at_once(feb, value, by, curve);
+    if (!status) status = refuse_extras(feb, at);
     if (!status) status = lar_feb_notice_others(feb, at, known);
     if (!status) status = read_node_set(feb, at, &nodes);
     lar_move *move = status || nodes.count == 0 ? NULL : LAR_MODEL_APPEND(feb->model, move);
@@ -202,8 +223,7 @@ static lar_status read_nodal_load(lar_feb *feb, const xmlNode *at) {
         return refuse_type(feb, at, "nodal_force and nodal_load");
     lar_nodal_load entry = {0};
     status = read_nodal_force(feb, at, type, entry.force, &entry.curve);
-    if (!status) status = refuse_flag(feb, at, "relative");
-    if (!status) status = refuse_flag(feb, at, "shell_bottom");
+    if (!status) status = refuse_extras(feb, at);
     if (!status) status = lar_feb_notice_others(feb, at, known);
     if (!status) status = read_node_set(feb, at, &entry.nodes);
     lar_nodal_load *load = status ? NULL : LAR_MODEL_APPEND(feb->model, load);
@@ -301,7 +321,7 @@ static lar_status read_pressure(lar_feb *feb, const xmlNode *at, const char *sur
     lar_status status = need_child(feb, at, "pressure", &value);
     if (!status) status = lar_feb_curve_of(feb, value, &curve);
     if (!status) status = lar_feb_doubles(feb, value, &pressure, 1);
-    if (!status) status = refuse_flag(feb, at, "shell_bottom");
+    if (!status) status = refuse_extras(feb, at);
     if (!status) status = lar_feb_notice_others(feb, at, known);
     if (!status) status = lar_feb_flag(feb, at, "linear", false, &linear);
     if (!status && linear)
@@ -383,7 +403,7 @@ static lar_status read_traction(lar_feb *feb, const xmlNode *at, const char *sur
         value = scale;
     }
     if (!status) status = lar_feb_curve_of(feb, value, &curve);
-    if (!status) status = refuse_flag(feb, at, "shell_bottom");
+    if (!status) status = refuse_extras(feb, at);
     if (!status) status = lar_feb_notice_others(feb, at, known);
     for (int i = 0; i < 3; i++) traction[i] *= factor;
     return status ? status : add_traction(feb, at, surface, traction, curve);

@@ -235,7 +235,8 @@ static lar_status read_controller(lar_feb *feb, xmlNode *node) {
         return LAR_OK;
     }
     points list = {0};
-    status = read_points(feb, node, &list);
+    status = lar_feb_notice_others(feb, node, "interpolate extend points");
+    if (!status) status = read_points(feb, node, &list);
     if (!status) status = make_curve(feb, entry, &list);
     free(list.at);
     return status;

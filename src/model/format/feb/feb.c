@@ -29,6 +29,19 @@ static lar_status read_duration(lar_feb *feb, const xmlNode *control) {
     return LAR_OK;
 }
 
+/* What FEBio has there in its versions; what says how a solver goes about it is not read. */
+static lar_status check_control(lar_feb *feb, const xmlNode *control) {
+    static const char known[] =
+        "analysis time_steps step_size time_stepper solver plot_zero_state plot_range plot_level "
+        "plot_stride output_level output_stride print_level adaptor_re_solve "
+        "alpha arc_length arc_length_scale beta check_zero_diagonal cmax cycle_buffer "
+        "diverge_reform dtol equation_order equation_scheme etol force_partition gamma "
+        "linear_solver logSolve lsiter lsmin lstol max_buffer_size max_refs max_residual max_ups "
+        "min_residual optimize_bw pressure_stiffness qn_method qnmethod reform_augment "
+        "reform_each_time_step restart rhoi rtol symmetric_stiffness title zero_diagonal_tol";
+    return lar_feb_notice_others(feb, control, known);
+}
+
 /* The word in <analysis>, or in its attribute type. */
 static lar_status read_analysis(lar_feb *feb, const xmlNode *control, bool *is_static) {
     const xmlNode *analysis = control ? lar_feb_child(control, "analysis") : NULL;
@@ -76,8 +89,10 @@ static lar_status notice_solver_damping(lar_feb *feb, const xmlNode *control) {
 
 /* ---- sections -------------------------------------------------------------------------------- */
 
-/* Sections that are read elsewhere, or whose content does not change the answer. */
-static bool is_harmless(const xmlNode *section) {
+/* Sections that are read elsewhere, or whose content does not change the answer; within a step only
+ * its own <Control> is. */
+static bool is_harmless(const lar_feb *feb, const xmlNode *section) {
+    if (section->parent != feb->root) return lar_feb_is_any(section, "Control Output");
     return lar_feb_is_any(section, "Module Control Globals Material Mesh LoadData Output "
                                    "MeshDomains Step");
 }
@@ -116,7 +131,7 @@ static lar_status check_section(lar_feb *feb, const xmlNode *section) {
                             (const char *)(content ? content : section)->name,
                             type ? " of type '" : "", type ? type : "", type ? "'" : "", what);
     }
-    if (what || is_harmless(section) || !content) return LAR_OK;
+    if (what || is_harmless(feb, section) || !content) return LAR_OK;
     if (lar_feb_is(section, "Boundary")) return lar_feb_read_boundary(feb, section);
     if (lar_feb_is(section, "Loads")) return lar_feb_read_loads(feb, section);
     if (lar_feb_is(section, "Initial")) return lar_feb_read_initial(feb, section);
@@ -179,6 +194,11 @@ static lar_status find_step(lar_feb *feb, const xmlNode **step) {
         return lar_feb_fail(feb, *step, LAR_ERROR_FORMAT,
                             "<%s> stands in <Step>; only <step> belongs there",
                             (const char *)(*step)->name);
+    const xmlNode *control = lar_feb_child(*step, "Control");
+    if (control && lar_feb_child(feb->root, "Control"))
+        return lar_feb_fail(feb, control, LAR_ERROR_UNSUPPORTED,
+                            "a second <Control>, of a step, besides that of the deck, which is a "
+                            "step of its own; keep one");
     return LAR_OK;
 }
 
@@ -210,13 +230,15 @@ static lar_status read_model(lar_feb *feb) {
     if (status) return status;
     const xmlNode *control = step ? lar_feb_child(step, "Control") : NULL;
     if (!control) control = lar_feb_child(feb->root, "Control");
-    if (control) status = read_duration(feb, control);
+    if (control) status = check_control(feb, control);
+    if (!status && control) status = read_duration(feb, control);
     if (!status) status = damp_static(feb, control);
     if (!status) status = notice_solver_damping(feb, control);
     if (!status) status = lar_feb_read_curves(feb);
     if (!status) status = lar_feb_read_activation(feb);
     if (!status) status = read_sections(feb, feb->root);
     if (!status && step) status = read_sections(feb, step);
+    if (!status) status = lar_feb_notice_attributes(feb, feb->root);
     hold_loads(feb->model);
     return status ? status : lar_model_check(feb->model, feb->error);
 }

@@ -70,8 +70,11 @@ lar_status lar_feb_fail(const lar_feb *feb, const xmlNode *at, lar_status status
                         const char *format, ...) __attribute__((format(printf, 4, 5)));
 lar_status lar_feb_notice(const lar_feb *feb, const xmlNode *at, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
-/* A notice for every child of `parent` whose name is not among `known`, with spaces in between. */
+/* A notice for every child of `parent` whose name is not among `known`, with spaces in between. Of
+ * those one is read, a second one is refused; but for the parts of a mixture, <solid>. */
 lar_status lar_feb_notice_others(const lar_feb *feb, const xmlNode *parent, const char *known);
+/* The same for attributes, in all that is read of the deck. */
+lar_status lar_feb_notice_attributes(const lar_feb *feb, const xmlNode *parent);
 lar_status lar_feb_no_memory(const lar_feb *feb, const char *what);
 int lar_feb_line(const xmlNode *at);
 
@@ -105,7 +108,8 @@ bool lar_feb_list_next(lar_feb_list *list, lar_span *item);
 /* Exactly `count` finite numbers, or ids, in the text of an element. */
 lar_status lar_feb_doubles(lar_feb *feb, const xmlNode *element, double *value, int count);
 lar_status lar_feb_ids(lar_feb *feb, const xmlNode *element, int64_t *id, int count);
-/* 0 or 1 in the child `name` of `parent`; `fallback` when there is no such child. */
+/* 0 or 1 in the child `name` of `parent`, all else is refused; `fallback` when there is no such
+ * child. */
 lar_status lar_feb_flag(lar_feb *feb, const xmlNode *parent, const char *name, bool fallback,
                         bool *value);
 

@@ -246,6 +246,7 @@ static lar_status read_constant(lar_feb *feb, const xmlNode *rule, const char *t
     }
     lar_status status = lar_feb_parameter(feb, rule, "theta", true, &theta);
     if (!status) status = lar_feb_parameter(feb, rule, "phi", true, &phi);
+    if (!status) status = lar_feb_notice_others(feb, rule, "theta phi");
     if (status) return status;
     const double degree = 3.14159265358979323846 / 180;
     a[0] = cos(theta * degree) * sin(phi * degree);

@@ -102,10 +102,6 @@ lar_status lar_feb_parameter(lar_feb *feb, const xmlNode *material, const char *
     if (!child)
         return lar_feb_fail(feb, material, LAR_ERROR_FORMAT,
                             "the material has no parameter <%s>; add it", name);
-    for (const xmlNode *other = lar_feb_next(child); other; other = lar_feb_next(other))
-        if (lar_feb_is(other, name))
-            return lar_feb_fail(feb, other, LAR_ERROR_FORMAT,
-                                "a second <%s> in one material; remove one of them", name);
     const char *type = lar_feb_attribute(feb, child, "type");
     if ((type && strcmp(type, "const") != 0) || lar_feb_attribute(feb, child, "lc"))
         return lar_feb_fail(feb, child, LAR_ERROR_UNSUPPORTED,

@@ -151,21 +151,47 @@ bool lar_feb_is(const xmlNode *element, const char *name) {
     return strcmp((const char *)element->name, name) == 0;
 }
 
-bool lar_feb_is_any(const xmlNode *element, const char *names) {
+static bool is_among(const xmlChar *word, const char *names) {
     lar_span rest = {names, strlen(names)}, name;
     for (bool more = true; more;) {
         more = lar_span_split(rest, ' ', &name, &rest);
-        if (lar_span_equal(name, (const char *)element->name)) return true;
+        if (lar_span_equal(name, (const char *)word)) return true;
     }
     return false;
+}
+
+bool lar_feb_is_any(const xmlNode *element, const char *names) {
+    return is_among(element->name, names);
 }
 
 lar_status lar_feb_notice_others(const lar_feb *feb, const xmlNode *parent, const char *known) {
     lar_status status = LAR_OK;
     for (xmlNode *child = lar_feb_first(parent); child && !status; child = lar_feb_next(child)) {
+        const char *name = (const char *)child->name;
         if (!lar_feb_is_any(child, known))
-            status = lar_feb_notice(feb, child, "<%s> in <%s> is not known and was left out",
-                                    (const char *)child->name, (const char *)parent->name);
+            status = lar_feb_notice(feb, child, "<%s> in <%s> is not known and was left out", name,
+                                    (const char *)parent->name);
+        else if (lar_feb_child(parent, name) != child && !lar_feb_is(child, "solid"))
+            status = lar_feb_fail(feb, child, LAR_ERROR_FORMAT,
+                                  "a second <%s> in one <%s>; remove one of them", name,
+                                  (const char *)parent->name);
+    }
+    return status;
+}
+
+/* Of what there is much of the reader needs the id, and misses it. */
+lar_status lar_feb_notice_attributes(const lar_feb *feb, const xmlNode *parent) {
+    static const char known[] = "id name type lc node_set surface elem_set mat bc extend";
+    static const char not_looked_at[] = "Module Globals MeshData Output node n elem e quad4 pt";
+    lar_status status = LAR_OK;
+    for (xmlNode *child = lar_feb_first(parent); child && !status; child = lar_feb_next(child)) {
+        if (lar_feb_is_any(child, not_looked_at)) continue;
+        for (const xmlAttr *one = child->properties; one && !status; one = one->next)
+            if (!is_among(one->name, known))
+                status = lar_feb_notice(feb, child,
+                                        "the attribute %s of <%s> is not known and was left out",
+                                        (const char *)one->name, (const char *)child->name);
+        if (!status) status = lar_feb_notice_attributes(feb, child);
     }
     return status;
 }
@@ -289,6 +315,8 @@ lar_status lar_feb_flag(lar_feb *feb, const xmlNode *parent, const char *name, b
     if (!child) return LAR_OK;
     double number = 0.0;
     lar_status status = lar_feb_doubles(feb, child, &number, 1);
-    if (!status) *value = number != 0.0;
-    return status;
+    *value = number != 0.0;
+    if (status || number == *value) return status;
+    return lar_feb_fail(feb, child, LAR_ERROR_FORMAT, "<%s> is %g; write 1 for yes or 0 for no",
+                        name, number);
 }

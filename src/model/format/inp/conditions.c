@@ -56,7 +56,7 @@ static bool sample_smooth_step(points *list) {
 }
 
 static lar_status check_amplitude(const inp_deck *deck, const inp_card *card, bool *smooth) {
-    static const char *const known[] = {"NAME", "DEFINITION", "TIME", "VALUE", NULL};
+    static const char known[] = "NAME,DEFINITION,TIME,VALUE";
     lar_span value;
     *smooth = false;
     lar_status status = inp_only(deck, card, known);
@@ -75,38 +75,22 @@ static lar_status check_amplitude(const inp_deck *deck, const inp_card *card, bo
     return LAR_OK;
 }
 
-static lar_status keep_amplitude(inp_deck *deck, lar_span name, points *list) {
+static lar_status keep_points(inp_deck *deck, points *list) {
     int index = deck->model->curve_count;
     lar_curve *curve = LAR_MODEL_APPEND(deck->model, curve);
-    char *copy = lar_strndup(name.at, name.length);
-    if (!curve || !copy ||
-        !LAR_GROW(deck->amplitude, deck->amplitude_room, deck->amplitude_count)) {
-        free(copy);
-        return inp_no_memory(deck, "an amplitude");
-    }
+    if (!curve) return inp_no_memory(deck, "an amplitude");
     *curve = (lar_curve){.kind = LAR_CURVE_TABLE, .count = (int)list->count, .point = list->at};
     list->at = NULL;
-    deck->amplitude[deck->amplitude_count++] = (inp_amplitude){copy, index};
+    deck->amplitude[deck->amplitude_count - 1].curve = index;
     return LAR_OK;
 }
 
 lar_status inp_read_amplitude(inp_deck *deck, const inp_card *card) {
-    enum { MAX = 10000 }; /* they are looked up by walking the list */
-    lar_span name;
     bool smooth;
     points list = {0};
     lar_status status = check_amplitude(deck, card, &smooth);
-    if (!status) status = inp_need(deck, card, "NAME", &name);
-    if (status) return status;
-    for (size_t i = 0; i < deck->amplitude_count; i++)
-        if (lar_span_equal_nocase(name, deck->amplitude[i].name))
-            return inp_fail(deck, card->line, LAR_ERROR_FORMAT,
-                            "a second *AMPLITUDE is called '%.*s'; rename one of them",
-                            inp_shown(name), name.at);
-    if (deck->amplitude_count >= MAX)
-        return inp_fail(deck, card->line, LAR_ERROR_UNSUPPORTED,
-                        "more than %d amplitudes; remove those that nothing uses", MAX);
-    status = read_pairs(deck, &list);
+    if (!status) status = INP_ADD(deck, card, amplitude);
+    if (!status) status = read_pairs(deck, &list);
     if (!status && list.count == 0)
         status = inp_fail(deck, card->line, LAR_ERROR_FORMAT,
                           "the amplitude has no points; add lines of time, value");
@@ -115,7 +99,7 @@ lar_status inp_read_amplitude(inp_deck *deck, const inp_card *card) {
                           "the amplitude has more points than a curve can have; thin it out");
     if (!status && smooth && list.count > 1 && !sample_smooth_step(&list))
         status = inp_no_memory(deck, "an amplitude");
-    if (!status) status = keep_amplitude(deck, name, &list);
+    if (!status) status = keep_points(deck, &list);
     free(list.at);
     return status;
 }
@@ -184,6 +168,20 @@ static lar_status hold_of(inp_deck *deck, double value, int curve, int32_t *hold
     return LAR_OK;
 }
 
+/* The curve of a displacement. In a dynamic step Abaqus's own is a jump, which few mean. */
+static lar_status read_curve(inp_deck *deck, const inp_card *card, int *curve) {
+    lar_status status = inp_in_step(deck, card);
+    if (!status) status = inp_curve_of(deck, card, curve);
+    if (status || deck->step.at_once || deck->step.procedure != INP_DYNAMIC ||
+        lar_curve_value(&deck->model->curve[*curve], 0.0) == 0.0)
+        return status;
+    deck->step.at_once = true;
+    return inp_notice(deck, deck->reader.line,
+                      "this displacement is there at once, as in Abaqus without AMPLITUDE in a "
+                      "*DYNAMIC step: the body starts with these nodes displaced, and shakes; to "
+                      "ramp it, name an *AMPLITUDE that rises from 0 (AMPLITUDE=)");
+}
+
 static lar_status read_support(inp_deck *deck, const inp_card *card, lar_span line) {
     lar_span field[4];
     const int32_t *index;
@@ -195,10 +193,7 @@ static lar_status read_support(inp_deck *deck, const inp_card *card, lar_span li
     if (!status) status = read_axes(deck, field, count, &axes);
     if (!status) status = inp_optional(deck, field, count, 3, "a displacement", 0.0, &value);
     if (status) return status;
-    if (value != 0.0) {
-        status = inp_in_step(deck, card);
-        if (!status) status = inp_curve_of(deck, card, &curve);
-    }
+    if (value != 0.0 && axes != 0) status = read_curve(deck, card, &curve);
     if (!status) status = inp_nodes(deck, field[0], &own, &index, &nodes);
     if (!status) status = hold_of(deck, value, curve, &hold);
     for (int32_t n = 0; n < nodes && !status; n++)
@@ -219,7 +214,7 @@ static lar_status read_op(const inp_deck *deck, const inp_card *card, bool *anew
 }
 
 lar_status inp_read_boundary(inp_deck *deck, const inp_card *card) {
-    static const char *const known[] = {"OP", "AMPLITUDE", "TYPE", NULL};
+    static const char known[] = "OP,AMPLITUDE,TYPE";
     lar_span value, line;
     bool anew;
     lar_status status = inp_only(deck, card, known);
@@ -367,7 +362,7 @@ lar_status inp_take_run(const inp_deck *deck, const inp_vector *vector, int32_t 
 /* ---- *INITIAL CONDITIONS ------------------------------------------------------------------- */
 
 lar_status inp_read_initial(inp_deck *deck, const inp_card *card) {
-    static const char *const known[] = {"TYPE", NULL};
+    static const char known[] = "TYPE";
     lar_span type, line, field[3];
     lar_status status = inp_only(deck, card, known);
     if (!status) status = inp_need(deck, card, "TYPE", &type);

@@ -38,12 +38,6 @@ static bool same_surface(const inp_deck *deck, lar_span a, lar_span b) {
     return inp_mesh_set(deck, a, LAR_SET_FACES) == inp_mesh_set(deck, b, LAR_SET_FACES);
 }
 
-static inp_interaction *find_interaction(const inp_deck *deck, lar_span name) {
-    for (size_t i = 0; i < deck->interaction_count; i++)
-        if (lar_span_equal_nocase(name, deck->interaction[i].name)) return &deck->interaction[i];
-    return NULL;
-}
-
 static lar_status read_pair(inp_deck *deck, lar_span line, double friction) {
     char problem[LAR_PROBLEM_SIZE];
     lar_span field[2];
@@ -70,14 +64,13 @@ static lar_status read_pair(inp_deck *deck, lar_span line, double friction) {
 }
 
 lar_status inp_read_contact_pair(inp_deck *deck, const inp_card *card) {
-    static const char *const known[] = {"INTERACTION", "TYPE",  "SMALL SLIDING",
-                                        "ADJUST",      "CPSET", "MECHANICAL CONSTRAINT",
-                                        "WEIGHT",      NULL};
+    static const char known[] =
+        "INTERACTION,TYPE,SMALL SLIDING,ADJUST,CPSET,MECHANICAL CONSTRAINT,WEIGHT";
     const inp_interaction *interaction = NULL;
     lar_span value, line;
     lar_status status = inp_only(deck, card, known);
     bool named = inp_parameter(card, "INTERACTION", &value);
-    if (named) interaction = find_interaction(deck, value);
+    if (named) interaction = INP_FIND(deck, interaction, value);
     const double friction = interaction ? interaction->friction : 0;
     if (!status && inp_parameter(card, "SMALL SLIDING", &value))
         status = inp_notice(deck, card->line,
@@ -101,28 +94,11 @@ lar_status inp_read_contact_pair(inp_deck *deck, const inp_card *card) {
 }
 
 lar_status inp_read_interaction(inp_deck *deck, const inp_card *card) {
-    enum { MAX = 10000 }; /* they are looked up by walking the list */
-    lar_span name;
-    lar_status status = inp_need(deck, card, "NAME", &name);
-    if (status) return status;
-    if (find_interaction(deck, name))
-        return inp_fail(deck, card->line, LAR_ERROR_FORMAT,
-                        "a second *SURFACE INTERACTION is called '%.*s'; rename one of them",
-                        inp_shown(name), name.at);
-    if (deck->interaction_count >= MAX)
-        return inp_fail(deck, card->line, LAR_ERROR_UNSUPPORTED, "more than %d interactions", MAX);
-    char *copy = lar_strndup(name.at, name.length);
-    if (!copy || !LAR_GROW(deck->interaction, deck->interaction_room, deck->interaction_count)) {
-        free(copy);
-        return inp_no_memory(deck, "the interactions");
-    }
-    deck->interaction[deck->interaction_count++] = (inp_interaction){.name = copy};
-    return LAR_OK;
+    return INP_ADD(deck, card, interaction);
 }
 
 lar_status inp_read_surface_behavior(inp_deck *deck, const inp_card *card) {
-    static const char *const known[] = {"PRESSURE-OVERCLOSURE", "PENALTY", "AUGMENTED LAGRANGE",
-                                        "DIRECT", NULL};
+    static const char known[] = "PRESSURE-OVERCLOSURE,PENALTY,AUGMENTED LAGRANGE,DIRECT";
     lar_span kind;
     lar_status status = inp_only(deck, card, known);
     if (status || !inp_parameter(card, "PRESSURE-OVERCLOSURE", &kind) ||
@@ -170,7 +146,7 @@ static lar_status read_coefficient(inp_deck *deck, double *friction) {
 }
 
 lar_status inp_read_friction(inp_deck *deck, const inp_card *card) {
-    static const char *const known[] = {"SLIP TOLERANCE", NULL};
+    static const char known[] = "SLIP TOLERANCE";
     double friction;
     lar_span value;
     lar_status status = inp_only(deck, card, known);

@@ -19,9 +19,8 @@ static lar_status read_heading(inp_deck *deck, const inp_card *card) {
 }
 
 static lar_status check_step(const inp_deck *deck, const inp_card *card) {
-    static const char *const known[] = {"NLGEOM",        "INC",         "INCF",        "NAME",
-                                        "AMPLITUDE",     "UNSYMM",      "SOLVER",      "DIRECT",
-                                        "EXTRAPOLATION", "CONVERT SDI", "EXTRAPOLATE", NULL};
+    static const char known[] =
+        "NLGEOM,INC,INCF,NAME,AMPLITUDE,UNSYMM,SOLVER,DIRECT,EXTRAPOLATION,CONVERT SDI,EXTRAPOLATE";
     lar_span value;
     if (deck->step.open)
         return inp_fail(deck, card->line, LAR_ERROR_FORMAT,
@@ -61,9 +60,8 @@ static lar_status end_step(inp_deck *deck, const inp_card *card) {
 
 /* First increment, period: on one line, which may be left out. */
 static lar_status read_procedure(inp_deck *deck, const inp_card *card, inp_procedure procedure) {
-    static const char *const known[] = {
-        "SOLVER", "DIRECT",    "STABILIZE",   "ALLSDTOL", "FACTOR", "CONTINUE", "EXPLICIT",
-        "ALPHA",  "TIMERESET", "TOTALTIMEAT", "HAFTOL",   "NOHAF",  "INITIAL",  NULL};
+    static const char known[] = "SOLVER,DIRECT,STABILIZE,ALLSDTOL,FACTOR,CONTINUE,EXPLICIT,ALPHA,"
+                                "TIMERESET,TOTALTIMEAT,HAFTOL,NOHAF,INITIAL";
     lar_span line, field[8];
     int count = 0;
     lar_status status = inp_only(deck, card, known);
@@ -325,6 +323,7 @@ static void clear(inp_deck *deck) {
     free(deck->prescribed);
     free(deck->pressure);
     free(deck->velocity);
+    free(deck->pressed);
     free(deck->heavy);
     free(deck->hold);
     lar_id_map_clear(&deck->nodes);

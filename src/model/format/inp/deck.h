@@ -85,6 +85,7 @@ typedef struct inp_step {
     int amplitude; /* AMPLITUDE of *STEP: 0 not given, 1 STEP, 2 RAMP */
     bool large;    /* NLGEOM */
     bool supports; /* a *BOUNDARY has been read in it */
+    bool at_once;  /* a notice says that displacements are there at once */
 } inp_step;
 
 typedef struct inp_deck {
@@ -114,6 +115,7 @@ typedef struct inp_deck {
     double (*velocity)[3]; /* of *INITIAL CONDITIONS, NULL: none */
     size_t pressure_count, pressure_room;
     inp_pressure *pressure;
+    char *pressed;    /* [elements][6]: the face has a pressure */
     int gravity_line; /* of the first GRAV, 0: none */
     char *heavy;      /* [elements]: GRAV acts on it */
     double gravity[3];
@@ -131,8 +133,8 @@ lar_status inp_no_memory(const inp_deck *deck, const char *what);
 /* As much of a word as a message takes, for %.*s. */
 int inp_shown(lar_span word);
 
-/* Refuses a card with another parameter than these; the list ends with NULL. */
-lar_status inp_only(const inp_deck *deck, const inp_card *card, const char *const *known);
+/* Refuses a card with another parameter than these, with commas in between. */
+lar_status inp_only(const inp_deck *deck, const inp_card *card, const char *known);
 /* The value of a parameter that must be there. */
 lar_status inp_need(const inp_deck *deck, const inp_card *card, const char *name, lar_span *value);
 
@@ -154,6 +156,18 @@ lar_status inp_elements(inp_deck *deck, lar_span field, int32_t *own, const int3
                         int32_t *count);
 /* The faces of a surface; `what` names the user in messages. */
 lar_status inp_faces(inp_deck *deck, lar_span field, const lar_set **set);
+
+/* Of a list whose entries begin with their name: the one of that name in any case of letters, or
+ * NULL. One more at its end, all zero but the name that the card gives it (NAME=), which is
+ * refused where there is one of that name; `list` is the address of the array. */
+void *inp_find(const void *entry, size_t count, size_t size, lar_span name);
+lar_status inp_add(inp_deck *deck, const inp_card *card, void *list, size_t *room, size_t *count,
+                   size_t size);
+#define INP_FIND(deck, list, name)                                                                 \
+    inp_find((deck)->list, (deck)->list##_count, sizeof *(deck)->list, name)
+#define INP_ADD(deck, card, list)                                                                  \
+    inp_add(deck, card, &(deck)->list, &(deck)->list##_room, &(deck)->list##_count,                \
+            sizeof *(deck)->list)
 
 /* The curve of a load: AMPLITUDE of its card, else what the step says. */
 lar_status inp_curve_of(inp_deck *deck, const inp_card *card, int *curve);

@@ -31,7 +31,7 @@ static lar_status read_count(const inp_deck *deck, const inp_card *card, int *co
 }
 
 lar_status inp_read_anisotropic(inp_deck *deck, const inp_card *card) {
-    static const char *const known[] = {"HOLZAPFEL", "LOCAL DIRECTIONS", "MODULI", NULL};
+    static const char known[] = "HOLZAPFEL,LOCAL DIRECTIONS,MODULI";
     static const char *const what[] = {"C10", "D", "k1", "k2", "kappa"};
     lar_span ignored, field[6]; /* and a temperature */
     double value[5] = {0};
@@ -131,16 +131,10 @@ static lar_status read_directions(inp_deck *deck, int count, const double axis[3
     return LAR_OK;
 }
 
-static const inp_orientation *find_orientation(const inp_deck *deck, lar_span name) {
-    for (size_t i = 0; i < deck->orientation_count; i++)
-        if (lar_span_equal_nocase(name, deck->orientation[i].name)) return &deck->orientation[i];
-    return NULL;
-}
-
 /* DEFINITION and SYSTEM have one value here. */
 static lar_status check_orientation(const inp_deck *deck, const inp_card *card) {
     static const char *const only[][2] = {{"DEFINITION", "COORDINATES"}, {"SYSTEM", "RECTANGULAR"}};
-    static const char *const known[] = {"NAME", "DEFINITION", "SYSTEM", "LOCAL DIRECTIONS", NULL};
+    static const char known[] = "NAME,DEFINITION,SYSTEM,LOCAL DIRECTIONS";
     lar_span value;
     for (int k = 0; k < 2; k++)
         if (inp_parameter(card, only[k][0], &value) && !lar_span_equal_nocase(value, only[k][1]))
@@ -151,20 +145,13 @@ static lar_status check_orientation(const inp_deck *deck, const inp_card *card) 
 }
 
 lar_status inp_read_orientation(inp_deck *deck, const inp_card *card) {
-    enum { MAX = 10000 }; /* they are looked up by walking the list */
-    lar_span name, line, field[9];
+    lar_span line, field[9];
     double point[9] = {0}, axis[3][3];
     int count, fields;
     lar_status status = check_orientation(deck, card);
-    if (!status) status = inp_need(deck, card, "NAME", &name);
     if (!status) status = read_count(deck, card, &count);
+    if (!status) status = INP_ADD(deck, card, orientation);
     if (status) return status;
-    if (find_orientation(deck, name))
-        return inp_fail(deck, card->line, LAR_ERROR_FORMAT,
-                        "a second *ORIENTATION is called '%.*s'; rename one of them",
-                        inp_shown(name), name.at);
-    if (deck->orientation_count >= MAX)
-        return inp_fail(deck, card->line, LAR_ERROR_UNSUPPORTED, "more than %d *ORIENTATION", MAX);
     if (!inp_data_line(&deck->reader, &line))
         return inp_fail(deck, card->line, LAR_ERROR_FORMAT,
                         "*ORIENTATION has no line of numbers; add it");
@@ -177,14 +164,8 @@ lar_status inp_read_orientation(inp_deck *deck, const inp_card *card) {
         return inp_fail(deck, deck->reader.line, LAR_ERROR_MODEL,
                         "the points of *ORIENTATION span no plane; give two ways from c to a and b "
                         "that are not parallel");
-    char *copy = lar_strndup(name.at, name.length);
-    if (!copy || !LAR_GROW(deck->orientation, deck->orientation_room, deck->orientation_count)) {
-        free(copy);
-        return inp_no_memory(deck, "the orientations");
-    }
-    inp_orientation *made = &deck->orientation[deck->orientation_count++];
-    *made = (inp_orientation){.name = copy};
     status = read_turn(deck, axis);
+    inp_orientation *made = &deck->orientation[deck->orientation_count - 1];
     return status ? status : read_directions(deck, count, (const double(*)[3])axis, made);
 }
 
@@ -199,7 +180,7 @@ lar_status inp_lay_fibres(inp_deck *deck, const inp_card *card, const lar_fibre 
     lar_mesh *mesh = deck->mesh;
     int families = lar_fibre_families(fibre);
     bool given = inp_parameter(card, "ORIENTATION", &name);
-    const inp_orientation *from = given ? find_orientation(deck, name) : NULL;
+    const inp_orientation *from = given ? INP_FIND(deck, orientation, name) : NULL;
     if (given && !from)
         return inp_fail(deck, card->line, LAR_ERROR_FORMAT,
                         "there is no *ORIENTATION called '%.*s'; define it or correct the name",

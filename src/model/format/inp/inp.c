@@ -86,8 +86,29 @@ static int shown(lar_span word) {
     return word.length < 40 ? (int)word.length : 40;
 }
 
+lar_status inp_check_parameters(const inp_reader *reader, const inp_card *card, const char *known) {
+    lar_span rest = card->parameters, one, key, value;
+    while (rest.length > 0) {
+        lar_span_split(rest, ',', &one, &rest);
+        lar_span_split(one, '=', &key, &value);
+        key = lar_span_trim(key);
+        bool found = key.length == 0;
+        for (lar_span word, left = {known, strlen(known)}; left.length > 0 && !found;) {
+            lar_span_split(left, ',', &word, &left);
+            found = word.length == key.length && strncasecmp(word.at, key.at, key.length) == 0;
+        }
+        if (!found)
+            return lar_fail(reader->error, LAR_ERROR_UNSUPPORTED,
+                            "%s:%d: the parameter %.*s of *%.*s is not read and could change the "
+                            "answer; remove it",
+                            reader->path, card->line, shown(key), key.at, shown(card->keyword),
+                            card->keyword.at);
+    }
+    return LAR_OK;
+}
+
 static lar_status refuse(inp_reader *reader, const inp_card *card, const char *remedy) {
-    return lar_fail(reader->error, LAR_ERROR_UNSUPPORTED, "%s:%d: *%.*s is not read here; %s",
+    return lar_fail(reader->error, LAR_ERROR_UNSUPPORTED, "%s:%d: *%.*s is not read %s",
                     reader->path, card->line, shown(card->keyword), card->keyword.at, remedy);
 }
 
@@ -272,12 +293,13 @@ static lar_status read_elements(inp_reader *reader, const inp_card *card) {
 /* ---- the file ----------------------------------------------------------------------------- */
 
 static lar_status refuse_include(inp_reader *reader, const inp_card *card) {
-    return refuse(reader, card, "copy the included file into this one");
+    return refuse(reader, card, "here; copy the included file into this one");
 }
 
 static lar_status refuse_generation(inp_reader *reader, const inp_card *card) {
-    return refuse(reader, card,
-                  "write out all nodes and elements (most programs export a flat input file)");
+    return refuse(
+        reader, card,
+        "here; write out all nodes and elements (most programs export a flat input file)");
 }
 
 static lar_status read_part(inp_reader *reader, const inp_card *card) {
@@ -323,6 +345,10 @@ static const keyword_row keywords[] = {
     {"ELCOPY", WALK_MESH, refuse_generation},
 };
 
+/* Of the cards above; what is not read of them is refused there. */
+static const char parameters[] =
+    "NAME,NSET,ELSET,TYPE,GENERATE,UNSORTED,INTERNAL,INSTANCE,PART,SYSTEM";
+
 static lar_status walk_file(inp_reader *reader, lar_text start, int walk) {
     inp_card card;
     lar_span line;
@@ -333,6 +359,7 @@ static lar_status walk_file(inp_reader *reader, lar_text start, int walk) {
             if (keywords[i].walk == walk &&
                 lar_span_equal_nocase(card.keyword, keywords[i].keyword)) {
                 status = keywords[i].read(reader, &card);
+                if (!status) status = inp_check_parameters(reader, &card, parameters);
                 break;
             }
         while (!status && inp_data_line(reader, &line)) continue;
@@ -392,6 +419,8 @@ lar_status lar_inp_parse(const char *path, const lar_bytes *bytes, lar_mesh *mes
     }
     if (!status) status = inp_build_sets(&reader);
     if (!status) status = lar_mesh_builder_finish(reader.builder, mesh, error);
+    mesh->sparse_ranges = reader.sparse_ranges;
+    mesh->sparse_line = reader.sparse_line;
 
     lar_mesh_builder_destroy(reader.builder);
     for (size_t s = 0; s < reader.set_count; s++) {

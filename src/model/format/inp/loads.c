@@ -1,7 +1,8 @@
 /* Abaqus and CalculiX decks: forces, pressures, gravity. See deck.h.
  *
  * A positive pressure pushes on the face, in decks as in Lariat. Forces at the same node in the
- * same step add up, with a notice, since programs that write a deck face by face mean it so.
+ * same step add up, and pressures on the same face, with a notice, since programs that write a deck
+ * face by face mean it so.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -10,7 +11,7 @@
 #include "model/format/inp/deck.h"
 
 static lar_status read_load_card(inp_deck *deck, const inp_card *card, int *curve) {
-    static const char *const known[] = {"OP", "AMPLITUDE", NULL};
+    static const char known[] = "OP,AMPLITUDE";
     lar_status status = inp_only(deck, card, known);
     if (!status) status = inp_in_step(deck, card);
     return status ? status : inp_curve_of(deck, card, curve);
@@ -38,6 +39,13 @@ static lar_status forces_on(inp_deck *deck, int curve, inp_forces **forces) {
     return LAR_OK;
 }
 
+/* What a line adds to what is there. */
+static lar_status notice_twice(inp_deck *deck, int32_t twice, const char *what) {
+    if (twice == 0) return LAR_OK;
+    return inp_notice(deck, deck->reader.line, "%d %s already; the two are added", (int)twice,
+                      what);
+}
+
 static lar_status read_force(inp_deck *deck, inp_forces *forces, lar_span line) {
     lar_span field[3];
     const int32_t *index;
@@ -58,10 +66,7 @@ static lar_status read_force(inp_deck *deck, inp_forces *forces, lar_span line) 
         if (*force != 0.0 && value != 0.0) twice++;
         *force += value;
     }
-    if (status || twice == 0) return status;
-    return inp_notice(deck, deck->reader.line,
-                      "%d nodes have a force in this direction already; the two are added",
-                      (int)twice);
+    return status ? status : notice_twice(deck, twice, "nodes have a force in this direction");
 }
 
 lar_status inp_read_cload(inp_deck *deck, const inp_card *card) {
@@ -76,16 +81,23 @@ lar_status inp_read_cload(inp_deck *deck, const inp_card *card) {
 
 /* ---- pressures ----------------------------------------------------------------------------- */
 
-static lar_status add_pressure(inp_deck *deck, int32_t face, double pressure, int curve) {
-    if (!LAR_GROW(deck->pressure, deck->pressure_room, deck->pressure_count))
+/* Pressures of 0 do not count for *twice. */
+static lar_status add_pressure(inp_deck *deck, int32_t face, double pressure, int curve,
+                               int32_t *twice) {
+    if (!deck->pressed) deck->pressed = lar_calloc((size_t)deck->mesh->element_count, 6);
+    if (!deck->pressed || !LAR_GROW(deck->pressure, deck->pressure_room, deck->pressure_count))
         return inp_no_memory(deck, "the pressures");
+    if (pressure != 0.0) {
+        *twice += deck->pressed[face];
+        deck->pressed[face] = 1;
+    }
     deck->pressure[deck->pressure_count++] = (inp_pressure){curve, pressure, face};
     return LAR_OK;
 }
 
 static lar_status read_pressure(inp_deck *deck, const lar_span *field, int count, int curve) {
     const int32_t *index;
-    int32_t own, elements = 0;
+    int32_t own, elements = 0, twice = 0;
     double pressure;
     lar_span label = field[1];
     int face = inp_face_of(label.at[1]);
@@ -95,8 +107,8 @@ static lar_status read_pressure(inp_deck *deck, const lar_span *field, int count
         status = inp_expected(&deck->reader, deck->reader.line, "the end of the line", field[3]);
     if (!status) status = inp_elements(deck, field[0], &own, &index, &elements);
     for (int32_t e = 0; e < elements && !status; e++)
-        status = add_pressure(deck, 6 * index[e] + face, pressure, curve);
-    return status;
+        status = add_pressure(deck, 6 * index[e] + face, pressure, curve, &twice);
+    return status ? status : notice_twice(deck, twice, "faces have a pressure");
 }
 
 /* ---- gravity ------------------------------------------------------------------------------- */
@@ -193,6 +205,7 @@ lar_status inp_read_dsload(inp_deck *deck, const inp_card *card) {
     while (!status && inp_data_line(&deck->reader, &line)) {
         const lar_set *set;
         double pressure;
+        int32_t twice = 0;
         status = inp_fields(deck, line, field, 3, &count);
         if (status) break;
         if (count < 2 || !lar_span_equal_nocase(field[1], "P"))
@@ -202,7 +215,8 @@ lar_status inp_read_dsload(inp_deck *deck, const inp_card *card) {
         status = inp_number(deck, field, count, 2, "a pressure", &pressure);
         if (!status) status = inp_faces(deck, field[0], &set);
         for (int32_t i = 0; !status && i < set->count; i++)
-            status = add_pressure(deck, set->index[i], pressure, curve);
+            status = add_pressure(deck, set->index[i], pressure, curve, &twice);
+        if (!status) status = notice_twice(deck, twice, "faces have a pressure");
     }
     return status;
 }

@@ -13,34 +13,14 @@
 #include "model/format/inp/deck.h"
 #include "model/rest.h"
 
-static inp_material *find_material(const inp_deck *deck, lar_span name) {
-    for (size_t i = 0; i < deck->material_count; i++)
-        if (lar_span_equal_nocase(name, deck->material[i].name)) return &deck->material[i];
-    return NULL;
-}
-
 lar_status inp_read_material(inp_deck *deck, const inp_card *card) {
-    static const char *const known[] = {"NAME", "RTOL", "DEPENDENCIES", NULL};
-    enum { MAX = 10000 }; /* they are looked up by walking the list */
-    lar_span name;
+    static const char known[] = "NAME,RTOL,DEPENDENCIES";
     lar_status status = inp_only(deck, card, known);
-    if (!status) status = inp_need(deck, card, "NAME", &name);
+    if (!status) status = INP_ADD(deck, card, material);
     if (status) return status;
-    if (find_material(deck, name))
-        return inp_fail(deck, card->line, LAR_ERROR_FORMAT,
-                        "a second *MATERIAL is called '%.*s'; rename one of them", inp_shown(name),
-                        name.at);
-    if (deck->material_count >= MAX)
-        return inp_fail(deck, card->line, LAR_ERROR_UNSUPPORTED,
-                        "more than %d materials; remove those that no section uses", MAX);
-    char *copy = lar_strndup(name.at, name.length);
-    if (!copy || !LAR_GROW(deck->material, deck->material_room, deck->material_count)) {
-        free(copy);
-        return inp_no_memory(deck, "the materials");
-    }
-    deck->current = (int64_t)deck->material_count;
-    deck->material[deck->material_count++] =
-        (inp_material){.name = copy, .line = card->line, .index = -1};
+    deck->current = (int64_t)deck->material_count - 1;
+    deck->material[deck->current].line = card->line;
+    deck->material[deck->current].index = -1;
     return LAR_OK;
 }
 
@@ -72,11 +52,15 @@ lar_status inp_read_option(inp_deck *deck, const inp_card *card, lar_span *field
     return status;
 }
 
+static lar_status refuse_second(const inp_deck *deck, const inp_card *card,
+                                const inp_material *material, const char *what) {
+    return inp_fail(deck, card->line, LAR_ERROR_FORMAT,
+                    "the material '%.60s' has a second %s; keep one of the two", material->name,
+                    what);
+}
+
 lar_status inp_take_law(inp_deck *deck, const inp_card *card, inp_material *material, lar_law law) {
-    if (material->has_law)
-        return inp_fail(deck, card->line, LAR_ERROR_FORMAT,
-                        "the material '%.60s' has a second law; keep one of the two",
-                        material->name);
+    if (material->has_law) return refuse_second(deck, card, material, "law");
     material->has_law = true;
     material->line = card->line;
     material->value.law = law;
@@ -94,7 +78,7 @@ lar_status inp_check_law(const inp_deck *deck, const inp_material *material) {
 }
 
 lar_status inp_read_elastic(inp_deck *deck, const inp_card *card) {
-    static const char *const known[] = {"TYPE", "MODULI", NULL};
+    static const char known[] = "TYPE,MODULI";
     lar_span type, field[3];
     int count;
     inp_material *material;
@@ -267,16 +251,17 @@ static lar_status read_card(inp_deck *deck, const inp_card *card, asked_law aske
 }
 
 lar_status inp_read_hyperelastic(inp_deck *deck, const inp_card *card) {
-    const char *known[NAMES_MAX + 3];
+    const char *name[NAMES_MAX + 1];
+    char known[300];
     double given[LAR_LAW_GIVEN] = {0}, own[LAR_LAW_GIVEN];
-    int count = list_laws(known);
+    int count = list_laws(name), length;
     inp_material *material;
     asked_law asked = find_asked(card);
     lar_law law = 0;
     if (asked.law == LAR_LAW_COUNT) return refuse_law(deck, card);
-    known[count++] = "MODULI";
-    if (asked.terms) known[count++] = "N";
-    known[count] = NULL;
+    length = snprintf(known, sizeof known, "MODULI%s", asked.terms ? ",N" : "");
+    for (int i = 0; i < count; i++)
+        length += snprintf(known + length, sizeof known - (size_t)length, ",%s", name[i]);
     lar_status status = inp_only(deck, card, known);
     if (!status && asked.terms) status = read_terms(deck, card, &asked);
     if (!status) status = read_card(deck, card, asked, &material, given);
@@ -291,13 +276,14 @@ lar_status inp_read_hyperelastic(inp_deck *deck, const inp_card *card) {
 }
 
 lar_status inp_read_density(inp_deck *deck, const inp_card *card) {
-    static const char *const known[] = {NULL};
+    static const char known[] = "";
     lar_span field[2];
     int count;
     inp_material *material;
     lar_status status = inp_only(deck, card, known);
     if (!status) status = inp_read_option(deck, card, field, 2, &count, &material);
     if (!status) status = inp_number(deck, field, count, 0, "a density", &material->value.density);
+    if (!status && material->has_density) status = refuse_second(deck, card, material, "*DENSITY");
     if (status) return status;
     if (!(material->value.density > 0.0))
         return inp_fail(deck, deck->reader.line, LAR_ERROR_MODEL,
@@ -308,7 +294,7 @@ lar_status inp_read_density(inp_deck *deck, const inp_card *card) {
 
 /* Rayleigh damping: ALPHA in proportion to mass, as Lariat's. */
 lar_status inp_read_damping(inp_deck *deck, const inp_card *card) {
-    static const char *const known[] = {"ALPHA", "BETA", NULL};
+    static const char known[] = "ALPHA,BETA";
     lar_span alpha, beta;
     double value = 0.0, other = 0.0;
     lar_status status = inp_only(deck, card, known);
@@ -350,7 +336,7 @@ static lar_status use_material(inp_deck *deck, inp_material *material) {
 }
 
 lar_status inp_read_section(inp_deck *deck, const inp_card *card) {
-    static const char *const known[] = {"ELSET", "MATERIAL", "CONTROLS", "ORIENTATION", NULL};
+    static const char known[] = "ELSET,MATERIAL,CONTROLS,ORIENTATION";
     lar_span name, elements, ignored;
     const int32_t *index;
     int32_t own, count;
@@ -358,7 +344,7 @@ lar_status inp_read_section(inp_deck *deck, const inp_card *card) {
     if (!status) status = inp_need(deck, card, "ELSET", &elements);
     if (!status) status = inp_need(deck, card, "MATERIAL", &name);
     if (status) return status;
-    inp_material *material = find_material(deck, name);
+    inp_material *material = INP_FIND(deck, material, name);
     deck->reader.line = card->line;
     if (!material)
         return inp_fail(deck, card->line, LAR_ERROR_FORMAT,

@@ -55,6 +55,8 @@ typedef struct inp_reader {
     lar_mesh_builder *builder;
     int part_count, instance_count;
     int32_t tag_count;
+    int32_t sparse_ranges; /* as in lar_mesh */
+    int sparse_line;
 
     inp_ids nodes, elements; /* every id of the file; ascending after the first walk */
     size_t boundary_count, boundary_capacity;
@@ -76,6 +78,9 @@ bool inp_data_line(inp_reader *reader, lar_span *line);
 
 /* Value of a parameter ("" when it has none); false when the card does not have it. */
 bool inp_parameter(const inp_card *card, const char *name, lar_span *value);
+
+/* Refuses a card with another parameter than these, with commas in between. */
+lar_status inp_check_parameters(const inp_reader *reader, const inp_card *card, const char *known);
 
 /* The set, made when new. */
 lar_status inp_open_set(inp_reader *reader, lar_span name, bool of_nodes, inp_set **set);

@@ -59,6 +59,20 @@ static lar_status fail_set_name(inp_reader *reader, int line, lar_span name, boo
                     of_nodes ? "a node" : "an element");
 }
 
+/* Of a range so many numbers exist: unlike a list it may have others too, which is told; none is a
+ * slip. */
+static lar_status check_range(inp_reader *reader, bool of_nodes, uint64_t found, uint64_t wanted,
+                              int at) {
+    if (found == 0)
+        return lar_fail(reader->error, LAR_ERROR_FORMAT,
+                        "%s:%d: the file defines no %s of this range; correct it or remove the "
+                        "line",
+                        reader->path, at, of_nodes ? "node" : "element");
+    if (found == wanted) return LAR_OK;
+    if (reader->sparse_ranges++ == 0) reader->sparse_line = at;
+    return LAR_OK;
+}
+
 /* first, last, step: those of the range that the file defines. */
 static lar_status add_range(inp_reader *reader, inp_set *set, lar_span line, int at) {
     int64_t bound[3] = {0, 0, 1};
@@ -73,7 +87,7 @@ static lar_status add_range(inp_reader *reader, inp_set *set, lar_span line, int
     if (bound[1] < bound[0] || bound[2] < 1)
         return inp_expected(reader, at, "an ascending range after GENERATE", line);
     const inp_ids *ids = set->of_nodes ? &reader->nodes : &reader->elements;
-    size_t low = 0, high = ids->count;
+    size_t low = 0, high = ids->count, before = set->count;
     while (low < high) {
         size_t middle = low + (high - low) / 2;
         if (ids->id[middle] < bound[0])
@@ -88,7 +102,9 @@ static lar_status add_range(inp_reader *reader, inp_set *set, lar_span line, int
                                 : spend_entry(reader, at);
         if (status) return status;
     }
-    return LAR_OK;
+    uint64_t span = (uint64_t)bound[1] - (uint64_t)bound[0];
+    return check_range(reader, set->of_nodes, set->count - before, span / (uint64_t)bound[2] + 1,
+                       at);
 }
 
 /* Numbers and names of sets, comma separated. */

@@ -40,21 +40,8 @@ int inp_shown(lar_span word) {
 
 /* ---- parameters ---------------------------------------------------------------------------- */
 
-lar_status inp_only(const inp_deck *deck, const inp_card *card, const char *const *known) {
-    lar_span rest = card->parameters, one, key, value;
-    while (rest.length > 0) {
-        lar_span_split(rest, ',', &one, &rest);
-        lar_span_split(one, '=', &key, &value);
-        key = lar_span_trim(key);
-        bool found = key.length == 0;
-        for (int i = 0; known[i] && !found; i++) found = lar_span_equal_nocase(key, known[i]);
-        if (!found)
-            return inp_fail(deck, card->line, LAR_ERROR_UNSUPPORTED,
-                            "the parameter %.*s of *%.*s is not read and could change the answer; "
-                            "remove it",
-                            inp_shown(key), key.at, inp_shown(card->keyword), card->keyword.at);
-    }
-    return LAR_OK;
+lar_status inp_only(const inp_deck *deck, const inp_card *card, const char *known) {
+    return inp_check_parameters(&deck->reader, card, known);
 }
 
 lar_status inp_need(const inp_deck *deck, const inp_card *card, const char *name, lar_span *value) {
@@ -133,6 +120,12 @@ static lar_status spend(inp_deck *deck, size_t count) {
                     "can mean; remove those that are not used");
 }
 
+static lar_status refuse_empty(const inp_deck *deck, lar_span name) {
+    return inp_fail(deck, deck->reader.line, LAR_ERROR_FORMAT,
+                    "the set '%.*s' has nothing of the hexahedra; fill it or remove the line",
+                    inp_shown(name), name.at);
+}
+
 static lar_status find_many(inp_deck *deck, lar_span field, bool of_nodes, int32_t *own,
                             const int32_t **index, int32_t *count) {
     const char *what = of_nodes ? "node" : "element";
@@ -152,6 +145,7 @@ static lar_status find_many(inp_deck *deck, lar_span field, bool of_nodes, int32
                         "'%.*s' is neither a number nor a set of %ss of the hexahedra; define it "
                         "or correct the name",
                         inp_shown(field), field.at, what);
+    if (set->count == 0) return refuse_empty(deck, field);
     *index = set->index;
     *count = set->count;
     return spend(deck, (size_t)set->count);
@@ -169,6 +163,7 @@ lar_status inp_elements(inp_deck *deck, lar_span field, int32_t *own, const int3
 
 lar_status inp_faces(inp_deck *deck, lar_span field, const lar_set **set) {
     *set = inp_mesh_set(deck, field, LAR_SET_FACES);
+    if (*set && (*set)->count == 0) return refuse_empty(deck, field);
     if (*set) return spend(deck, (size_t)(*set)->count);
     bool nodes = inp_mesh_set(deck, field, LAR_SET_NODES) != NULL;
     return inp_fail(deck, deck->reader.line, nodes ? LAR_ERROR_UNSUPPORTED : LAR_ERROR_FORMAT,
@@ -177,6 +172,46 @@ lar_status inp_faces(inp_deck *deck, lar_span field, const lar_set **set) {
                           : "there is no surface '%.*s' of faces; define it (*SURFACE) or correct "
                             "the name",
                     inp_shown(field), field.at);
+}
+
+/* ---- lists of names ------------------------------------------------------------------------ */
+
+void *inp_find(const void *entry, size_t count, size_t size, lar_span name) {
+    const char *at = entry;
+    for (; count > 0; count--, at += size) {
+        char *own;
+        memcpy(&own, at, sizeof own);
+        if (lar_span_equal_nocase(name, own)) return (void *)(uintptr_t)at;
+    }
+    return NULL;
+}
+
+lar_status inp_add(inp_deck *deck, const inp_card *card, void *list, size_t *room, size_t *count,
+                   size_t size) {
+    enum { MAX = 10000 }; /* they are looked up by walking the list */
+    lar_span name, what = card->keyword;
+    char *entry;
+    lar_status status = inp_need(deck, card, "NAME", &name);
+    if (status) return status;
+    memcpy(&entry, list, sizeof entry);
+    if (inp_find(entry, *count, size, name))
+        return inp_fail(deck, card->line, LAR_ERROR_FORMAT,
+                        "a second *%.*s is called '%.*s'; rename one of them", inp_shown(what),
+                        what.at, inp_shown(name), name.at);
+    if (*count >= MAX)
+        return inp_fail(deck, card->line, LAR_ERROR_UNSUPPORTED,
+                        "more than %d *%.*s; remove those that nothing uses", MAX, inp_shown(what),
+                        what.at);
+    char *copy = lar_strndup(name.at, name.length);
+    if (!copy || !lar_grow_array(list, room, *count, size)) {
+        free(copy);
+        return inp_no_memory(deck, "the names");
+    }
+    memcpy(&entry, list, sizeof entry);
+    entry += size * (*count)++;
+    memset(entry, 0, size);
+    memcpy(entry, &copy, sizeof copy);
+    return LAR_OK;
 }
 
 /* ---- curves -------------------------------------------------------------------------------- */
@@ -213,11 +248,11 @@ lar_status inp_curve_of(inp_deck *deck, const inp_card *card, int *curve) {
     bool ramps =
         deck->step.amplitude ? deck->step.amplitude == 2 : deck->step.procedure == INP_STATIC;
     if (!inp_parameter(card, "AMPLITUDE", &name)) return step_curve(deck, ramps, curve);
-    for (size_t i = 0; i < deck->amplitude_count; i++)
-        if (lar_span_equal_nocase(name, deck->amplitude[i].name)) {
-            *curve = deck->amplitude[i].curve;
-            return LAR_OK;
-        }
+    const inp_amplitude *amplitude = INP_FIND(deck, amplitude, name);
+    if (amplitude) {
+        *curve = amplitude->curve;
+        return LAR_OK;
+    }
     return inp_fail(deck, card->line, LAR_ERROR_FORMAT,
                     "there is no *AMPLITUDE called '%.*s'; define it or correct the name",
                     inp_shown(name), name.at);

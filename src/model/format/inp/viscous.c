@@ -69,7 +69,7 @@ static lar_status read_term(inp_deck *deck, lar_span text, lar_viscosity *v) {
 }
 
 lar_status inp_read_viscoelastic(inp_deck *deck, const inp_card *card) {
-    static const char *const known[] = {"TIME", NULL};
+    static const char known[] = "TIME";
     lar_span time, text;
     lar_status status = inp_only(deck, card, known);
     if (!status) status = inp_need(deck, card, "TIME", &time);
