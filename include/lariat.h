@@ -669,7 +669,7 @@ LAR_SIZED void lar_simulation_inspect(const lar_simulation *simulation, lar_simu
  * time and cause; the state is then the one after the failing step, or, with several processors,
  * after the step at which all have stopped, some steps later: nearly always finite and fit for a
  * picture (lar_results_add refuses it where it is not), but not for going on, and further calls
- * fail with the same message. */
+ * fail with the same message. No steps change nothing, also of what tools felt. */
 LAR_API lar_status lar_simulation_advance(lar_simulation *simulation, uint64_t steps,
                                           lar_error *error);
 
@@ -1169,7 +1169,8 @@ LAR_API lar_status lar_session_load_from(lar_session *session, const lar_saved *
 LAR_API lar_status lar_session_record(lar_session *session, const char *path, lar_error *error);
 
 /* As lar_simulation_set_gravity and the others, at the end of the tick under way; done, or failed,
- * when they return. Refused while a recording is being played, and when the run has broken off. */
+ * when they return. Refused while a recording is being played, and with LAR_ERROR_UNSTABLE
+ * when the run has broken off. */
 LAR_API lar_status lar_session_set_gravity(lar_session *session, const double gravity[3],
                                            lar_error *error);
 LAR_API lar_status lar_session_set_damping(lar_session *session, double damping, lar_error *error);
@@ -1211,8 +1212,8 @@ LAR_API lar_status lar_session_tool_move(lar_session *session, int32_t tool,
  * what was asked of a hand before does not count any more. Waits for that: a tick at most, and
  * none while the session rests. A grasper's jaws move no faster than options.tool_speed allows, so
  * *held is what a hand has got, and 0 for a grasper: lar_tool_force.held tells later. Refused
- * (LAR_ERROR_ARGUMENT) while a recording is played, after the run has broken off, and for a tool
- * that has a device. Recordings have both. */
+ * (LAR_ERROR_ARGUMENT) while a recording is played and for a tool that has a device, and with
+ * LAR_ERROR_UNSTABLE after the run has broken off. Recordings have both. */
 LAR_API lar_status lar_session_grasp(lar_session *session, int32_t tool, const double point[3],
                                      int32_t *held, lar_error *error);
 LAR_API lar_status lar_session_release(lar_session *session, int32_t tool, lar_error *error);

@@ -5,9 +5,8 @@
  *          '---- pool: threads, asleep between calls
  *
  * A call takes all members that it is for (python_simulation.busy), lets go of the interpreter's
- * lock, and threads take one member after the other. Nothing that a member does depends on the
- * others, on who computes it or when, so the bits are those of a single simulation. What a member
- * refuses is kept and raised when all are done. */
+ * lock, and threads take one member after the other. Nothing that one does depends on the others,
+ * on who computes it or when. What a member refuses is kept and raised when all are done. */
 #include <math.h>
 
 #include "module.h"
@@ -152,7 +151,7 @@ static bool raise_failures(python_batch *self, const python_members *members) {
             snprintf(first.message, sizeof first.message, "member %d: %s", index, words);
         }
         PyObject *key = PyLong_FromLong(index);
-        PyObject *text = PyUnicode_DecodeUTF8(words, (Py_ssize_t)strlen(words), "replace");
+        PyObject *text = python_sentence(words);
         if (!failed || !key || !text || PyDict_SetItem(failed, key, text)) PyErr_Clear();
         Py_XDECREF(key);
         Py_XDECREF(text);
@@ -231,12 +230,14 @@ static int after_step(void *context, uint64_t step) {
 
 static lar_status advance_member(python_member_call *call, python_member *member, int place,
                                  bool caller, lar_error *error) {
+    (void)place;
     const advance_call *a = call->context;
     step_watch w = {call, caller, 0};
-    (void)place;
-    uint64_t steps = a->steps;
-    if (a->by_time) steps = (uint64_t)round(a->seconds / lar_simulation_time_step(member->taken));
-    return lar_simulation_advance_with(member->taken, steps, after_step, &w, error);
+    const double time_step = lar_simulation_time_step(member->taken);
+    uint64_t steps = a->by_time ? (uint64_t)round(a->seconds / time_step) : a->steps;
+    lar_status status = lar_simulation_advance_with(member->taken, steps, after_step, &w, error);
+    member->simulation->broken = status == LAR_ERROR_UNSTABLE;
+    return status;
 }
 
 static PyObject *advance(PyObject *me, PyObject *args, PyObject *keywords) {
@@ -310,7 +311,7 @@ static PyObject *list_simulations(PyObject *source, PyObject *count, PyObject *o
     unsigned long long n = 0;
     if (count != Py_None && !python_steps(count, "n", &n)) return NULL;
     if (one && (n < 1 || n > 1000000)) {
-        python_refuse("n: expected how many simulations, from 1 on, got %R", count);
+        python_refuse("n: expected how many simulations, 1 to 1000000, got %R", count);
         return NULL;
     }
     if (!is_alone(options)) {

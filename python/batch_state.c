@@ -301,10 +301,18 @@ static lar_status move_tools(python_member_call *call, python_member *member, in
     return status;
 }
 
+/* Whether the last of these tools is not there before; of two poses for one only one would count.
+ */
+static bool once(const int32_t *tool, int last) {
+    for (int c = 0; c < last; c++)
+        if (tool[c] == tool[last])
+            return python_refuse("tools: tool %d is there twice", (int)tool[last]);
+    return true;
+}
+
 /* The tools that the columns are for; None: all. */
 static bool parse_tools(python_batch *self, PyObject *source, move_call *m) {
-    lar_simulation *first = python_simulation_look(self->member[0].simulation, "set_tool_poses");
-    if (!first) return false;
+    python_simulation *first = self->member[0].simulation; /* kept: reading may close the batch */
     m->columns = self->tools;
     for (int c = 0; c < m->columns; c++) m->tool[c] = c;
     if (!source || source == Py_None) return true;
@@ -318,8 +326,12 @@ static bool parse_tools(python_batch *self, PyObject *source, move_call *m) {
     Py_ssize_t count = PyTuple_Size(list);
     bool ok = count <= LAR_TOOLS_MAX || python_refuse("tools: %zd are too many", count);
     m->columns = ok ? (int)count : 0;
+    Py_INCREF((PyObject *)first);
     for (int c = 0; c < m->columns && ok; c++)
-        ok = python_simulation_tool(first, PyTuple_GetItem(list, c), &m->tool[c]);
+        ok = python_simulation_tool(first, "set_tool_poses", PyTuple_GetItem(list, c),
+                                    &m->tool[c]) &&
+             once(m->tool, c);
+    Py_DECREF((PyObject *)first);
     Py_DECREF(list);
     return ok;
 }
@@ -350,7 +362,8 @@ static PyObject *set_tool_poses(PyObject *me, PyObject *args, PyObject *keywords
         (count && !python_steps(count, "steps", &m.steps)))
         return NULL;
     python_batch *self = python_batch_look(me, "set_tool_poses");
-    if (!self || !parse_tools(self, tools, &m)) return NULL;
+    if (!self || !parse_tools(self, tools, &m) || !python_batch_look(me, "set_tool_poses"))
+        return NULL;
     python_member_call call = {
         .name = "set_tool_poses", .work = move_tools, .cost = 2 * TOOL * m.columns, .context = &m};
     if (!python_members_parse(self, members, &call.members)) return NULL;
@@ -391,8 +404,24 @@ static lar_status load_member(python_member_call *call, python_member *member, i
     const load_call *l = call->context;
     (void)caller;
     python_asked_forget(member->simulation->asked);
-    if (!l->saved) return lar_simulation_reset(member->taken, error);
-    return lar_simulation_load_from(member->taken, l->saved[place]->saved, error);
+    lar_status status = l->saved
+                            ? lar_simulation_load_from(member->taken, l->saved[place]->saved, error)
+                            : lar_simulation_reset(member->taken, error);
+    if (!status) member->simulation->broken = false;
+    return status;
+}
+
+/* Before any member goes back. */
+static bool saved_fit(python_batch *self, const python_members *members, python_saved **saved) {
+    for (int i = 0; i < members->count; i++) {
+        const int index = python_member_at(members, i);
+        lar_simulation *simulation =
+            python_simulation_look(self->member[index].simulation, "reset");
+        char call[40];
+        snprintf(call, sizeof call, "member %d: reset", index);
+        if (!simulation || !python_saved_fits(saved[i], simulation, call)) return false;
+    }
+    return true;
 }
 
 /* One Saved for all, or one for each; the list keeps them. */
@@ -442,7 +471,7 @@ static PyObject *reset(PyObject *me, PyObject *args, PyObject *keywords) {
     if (state != Py_None) {
         l.saved = PyMem_Calloc((size_t)count + 1, sizeof(python_saved *));
         ok = l.saved ? list_saved(state, count, l.saved, &keep) : PyErr_NoMemory() != NULL;
-        ok = ok && python_batch_look(me, "reset");
+        ok = ok && python_batch_look(me, "reset") && saved_fit(self, &call.members, l.saved);
     }
     if (ok) {
         if (l.saved) mark_saved(l.saved, count, true);

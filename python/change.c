@@ -28,6 +28,11 @@ typedef struct changes {
     of_material *stiffness, *activation;
 } changes;
 
+/* What a session's run has come to the library finds out, between two ticks. */
+static lar_session *python_session_take_sound(python_session *self, const char *call) {
+    return python_session_take(self, call);
+}
+
 /* ---- the two of them ------------------------------------------------------------------------ */
 
 #define ROWS(kind)                                                                                 \
@@ -78,7 +83,7 @@ typedef struct changes {
         return lar_##kind##_activation(it, material);                                              \
     }                                                                                              \
     static void *kind##_take(PyObject *me, const char *call) {                                     \
-        return python_##kind##_take((python_##kind *)me, call);                                    \
+        return python_##kind##_take_sound((python_##kind *)me, call);                              \
     }                                                                                              \
     static void *kind##_look(PyObject *me, const char *call) {                                     \
         return python_##kind##_look((python_##kind *)me, call);                                    \
@@ -198,20 +203,20 @@ static bool one_material(PyObject *me, PyObject *material, int32_t *index) {
     const lar_model *model = changes_of(me)->model(me);
     if (!python_material(model, material, index)) return false;
     if (*index >= 0 && *index < lar_model_material_count(model)) return true;
-    python_refuse("material: there is no material %R", material);
-    return false;
+    return python_refuse("material: there is no material %R; the model has %d, counted from 0",
+                         material, (int)lar_model_material_count(model));
 }
 
 static PyObject *set_parameter(PyObject *me, PyObject *args, PyObject *keywords) {
     static char *names[] = {"material", "name", "value", NULL};
     const changes *c = changes_of(me);
-    PyObject *material, *value = Py_None;
+    PyObject *material, *word = NULL, *value = Py_None;
     const char *name = NULL;
     double number = 0;
     int32_t index;
-    if (!PyArg_ParseTupleAndKeywords(args, keywords, "O|zO:set_parameter", names, &material, &name,
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, "O|OO:set_parameter", names, &material, &word,
                                      &value) ||
-        !one_material(me, material, &index))
+        !python_word(word, "name", &name) || !one_material(me, material, &index))
         return NULL;
     if ((name != NULL) != (value != Py_None)) {
         python_refuse("set_parameter: expected a name and a value, or neither");
@@ -228,11 +233,11 @@ static PyObject *set_parameter(PyObject *me, PyObject *args, PyObject *keywords)
 
 static PyObject *parameter(PyObject *me, PyObject *args, PyObject *keywords) {
     static char *names[] = {"material", "name", NULL};
-    PyObject *material;
+    PyObject *material, *word;
     const char *name;
     int32_t index;
-    if (!PyArg_ParseTupleAndKeywords(args, keywords, "Os:parameter", names, &material, &name) ||
-        !one_material(me, material, &index))
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, "OO:parameter", names, &material, &word) ||
+        !(name = python_text(word, "name")) || !one_material(me, material, &index))
         return NULL;
     lar_simulation *simulation = python_simulation_look((python_simulation *)me, "parameter");
     return simulation ? PyFloat_FromDouble(lar_simulation_parameter(simulation, index, name))
@@ -300,13 +305,13 @@ static unsigned axes_of(const char *word) {
 static PyObject *set_support(PyObject *me, PyObject *args, PyObject *keywords) {
     static char *names[] = {"where", "held", "axes", NULL};
     const changes *c = changes_of(me);
-    PyObject *where;
+    PyObject *where, *letters = NULL;
     const char *word = "xyz", *set = NULL;
     int32_t node = -1;
     int held = 1;
-    if (!PyArg_ParseTupleAndKeywords(args, keywords, "O|ps:set_support", names, &where, &held,
-                                     &word) ||
-        !python_where(where, &set, &node))
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, "O|pO:set_support", names, &where, &held,
+                                     &letters) ||
+        (letters && !(word = python_text(letters, "axes"))) || !python_where(where, &set, &node))
         return NULL;
     unsigned axes = axes_of(word);
     if (!axes) {
@@ -322,33 +327,38 @@ static PyObject *set_support(PyObject *me, PyObject *args, PyObject *keywords) {
     return done(me, c, status, &error);
 }
 
-static PyObject *support(PyObject *me, PyObject *args, PyObject *keywords) {
+/* The simulation of a `call` (node), and that; NULL: an exception. */
+static lar_simulation *of_node(PyObject *me, PyObject *args, PyObject *keywords, const char *call,
+                               int *node) {
     static char *names[] = {"node", NULL};
+    PyObject *source;
+    char format[32];
+    snprintf(format, sizeof format, "O:%s", call);
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, format, names, &source) ||
+        !python_int(source, "node", node))
+        return NULL;
+    lar_simulation *simulation = python_simulation_look((python_simulation *)me, call);
+    const int count = lar_model_node_count(simulation_model(me));
+    if (!simulation || (*node >= 0 && *node < count)) return simulation;
+    python_refuse("node: there is no node %R; the model has %d, counted from 0", source, count);
+    return NULL;
+}
+
+static PyObject *support(PyObject *me, PyObject *args, PyObject *keywords) {
     int node, count = 0;
     char word[4];
-    if (!PyArg_ParseTupleAndKeywords(args, keywords, "i:support", names, &node)) return NULL;
-    lar_simulation *simulation = python_simulation_look((python_simulation *)me, "support");
+    lar_simulation *simulation = of_node(me, args, keywords, "support", &node);
     if (!simulation) return NULL;
-    if (node < 0 || node >= lar_model_node_count(simulation_model(me))) {
-        python_refuse("node: there is no node %d", node);
-        return NULL;
-    }
     for (int i = 0; i < 3; i++)
         if (lar_simulation_support(simulation, node) >> i & 1) word[count++] = (char)('x' + i);
     return PyUnicode_FromStringAndSize(word, count);
 }
 
 static PyObject *force(PyObject *me, PyObject *args, PyObject *keywords) {
-    static char *names[] = {"node", NULL};
     int node;
     double out[3];
-    if (!PyArg_ParseTupleAndKeywords(args, keywords, "i:force", names, &node)) return NULL;
-    lar_simulation *simulation = python_simulation_look((python_simulation *)me, "force");
+    lar_simulation *simulation = of_node(me, args, keywords, "force", &node);
     if (!simulation) return NULL;
-    if (node < 0 || node >= lar_model_node_count(simulation_model(me))) {
-        python_refuse("node: there is no node %d", node);
-        return NULL;
-    }
     lar_simulation_force(simulation, node, out);
     return python_tuple(out, 3);
 }

@@ -3,18 +3,47 @@
 
 #include "module.h"
 
+/* What was given in place of a number, for a message: a number itself, of all else the class. */
+static PyObject *shown(PyObject *source) {
+    return PyFloat_Check(source) || PyLong_Check(source) ? source : (PyObject *)Py_TYPE(source);
+}
+
+/* Beyond this one step could not be told from the next as a number. */
+static const unsigned long long WHOLE_MAX = 1ull << 53;
+
 bool python_steps(PyObject *source, const char *name, unsigned long long *steps) {
     PyObject *index = PyNumber_Index(source);
     if (!index) {
         PyErr_Clear();
-        return python_refuse_type("%s: expected a whole number, got %R", name,
-                                  (PyObject *)Py_TYPE(source));
+        return python_refuse_type("%s: expected a whole number, got %R", name, shown(source));
     }
-    *steps = PyLong_AsUnsignedLongLong(index);
+    int overflow = 0;
+    const long long number = PyLong_AsLongLongAndOverflow(index, &overflow);
     Py_DECREF(index);
-    if (*steps != (unsigned long long)-1 || !PyErr_Occurred()) return true;
-    PyErr_Clear();
-    return python_refuse("%s: expected a whole number from 0 on, got %R", name, source);
+    *steps = (unsigned long long)number;
+    if (overflow < 0 || (!overflow && number < 0))
+        return python_refuse("%s: expected a whole number from 0 on, got %R", name, source);
+    if (!overflow && *steps <= WHOLE_MAX) return true;
+    return python_refuse("%s: expected at most 2^53, got %R", name, source);
+}
+
+bool python_int(PyObject *source, const char *name, int *out) {
+    if (!source) return true;
+    PyObject *index = PyNumber_Index(source);
+    if (!index) {
+        PyErr_Clear();
+        return python_refuse_type("%s: expected a whole number, got %R", name, shown(source));
+    }
+    int overflow = 0;
+    const long long number = PyLong_AsLongLongAndOverflow(index, &overflow);
+    Py_DECREF(index);
+    *out = (int)number;
+    if (!overflow && number >= INT32_MIN && number <= INT32_MAX) return true;
+    return python_refuse("%s: %R is beyond all bounds", name, source);
+}
+
+bool python_real(PyObject *source, const char *name, double *out) {
+    return !source || python_number(source, name, out);
 }
 
 bool python_is_no(PyObject *answer) {
@@ -34,8 +63,7 @@ bool python_number(PyObject *source, const char *name, double *number) {
     *number = PyFloat_AsDouble(source);
     if (*number == -1.0 && PyErr_Occurred()) {
         PyErr_Clear();
-        return python_refuse_type("%s: expected a number, got %R", name,
-                                  (PyObject *)Py_TYPE(source));
+        return python_refuse_type("%s: expected a number, got %R", name, shown(source));
     }
     return isfinite(*number) || python_refuse("%s: expected a finite number, got %R", name, source);
 }
@@ -66,12 +94,66 @@ PyObject *python_tuple(const double *value, int count) {
     return tuple;
 }
 
+/* ---- texts ---------------------------------------------------------------------------------- */
+
+/* In place of the UnicodeEncodeError that is set, which does not say what it is about. */
+static bool refuse_surrogate(const char *name) {
+    PyObject *class, *value, *trace;
+    PyErr_Fetch(&class, &value, &trace);
+    PyErr_NormalizeException(&class, &value, &trace);
+    PyObject *at = PyObject_GetAttrString(value, "start");
+    PyObject *text = PyObject_GetAttrString(value, "object");
+    PyObject *wrong = at && text ? PyObject_GetItem(text, at) : NULL;
+    PyErr_Clear();
+    if (wrong)
+        python_refuse("%s: character %S of the text, counted from 0, is %R, half of a pair of "
+                      "surrogates and no character; leave it out",
+                      name, at, wrong);
+    else
+        python_refuse("%s: there is half of a pair of surrogates in the text; leave it out", name);
+    Py_XDECREF(wrong);
+    Py_XDECREF(text);
+    Py_XDECREF(at);
+    Py_XDECREF(trace);
+    Py_XDECREF(value);
+    Py_XDECREF(class);
+    return false;
+}
+
+const char *python_text(PyObject *text, const char *name) {
+    Py_ssize_t length = 0;
+    if (!PyUnicode_Check(text)) {
+        python_refuse_type("%s: expected a text, got %R", name, (PyObject *)Py_TYPE(text));
+        return NULL;
+    }
+    const char *utf8 = PyUnicode_AsUTF8AndSize(text, &length);
+    if (utf8 && strlen(utf8) == (size_t)length) return utf8;
+    if (utf8)
+        python_refuse("%s: there is a character 0 in the text", name);
+    else if (PyErr_ExceptionMatches(PyExc_UnicodeEncodeError))
+        refuse_surrogate(name);
+    return NULL;
+}
+
+bool python_word(PyObject *source, const char *name, const char **out) {
+    return !source || source == Py_None || (*out = python_text(source, name)) != NULL;
+}
+
 PyObject *python_path(PyObject *source, const char *name) {
     PyObject *path = NULL;
-    if (PyUnicode_FSConverter(source, &path)) return path;
-    if (!PyErr_ExceptionMatches(PyExc_TypeError)) return NULL;
-    PyErr_Clear();
-    python_refuse_type("%s: expected a path, got %R", name, (PyObject *)Py_TYPE(source));
+    if (PyUnicode_FSConverter(source, &path)) {
+        if (PyBytes_Size(path) > 0) return path;
+        Py_CLEAR(path);
+        python_refuse("%s: expected a path, got %R", name, source);
+    } else if (PyErr_ExceptionMatches(PyExc_UnicodeEncodeError)) {
+        refuse_surrogate(name);
+    } else if (PyErr_ExceptionMatches(PyExc_ValueError)) {
+        PyErr_Clear();
+        python_refuse("%s: there is a character 0 in the path %R", name, source);
+    } else if (PyErr_ExceptionMatches(PyExc_TypeError)) {
+        PyErr_Clear();
+        python_refuse_type("%s: expected a path, got %R", name, (PyObject *)Py_TYPE(source));
+    }
     return NULL;
 }
 
@@ -162,17 +244,38 @@ PyObject *python_tool_dict(const lar_tool_info *t) {
                          "serial", (int)t->serial);
 }
 
+/* Scenes have degrees, calls radians: whoever takes the one for the other is told. */
+static bool check_spread(const lar_tool_info *info, PyObject *spread) {
+    static const double PI = 3.14159265358979323846;
+    if (info->shape != LAR_TOOL_GRASPER || (info->spread >= 0 && info->spread < PI)) return true;
+    return python_refuse("spread: expected an angle in radians, more than 0 and less than pi (0: "
+                         "60 degrees), got %R%s",
+                         spread,
+                         info->spread > 0 && info->spread < 180
+                             ? "; math.radians makes it of degrees, which scenes have"
+                             : "");
+}
+
 bool python_tool_wanted(PyObject *args, PyObject *keywords, lar_tool_info *info) {
     static char *names[] = {"shape", "radius", "length", "spread", NULL};
+    PyObject *word, *radius, *length = NULL, *spread = NULL;
     const char *shape;
     *info = (lar_tool_info){.name = ""};
-    if (!PyArg_ParseTupleAndKeywords(args, keywords, "sd|dd:add_tool", names, &shape, &info->radius,
-                                     &info->length, &info->spread))
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, "OO|OO:add_tool", names, &word, &radius,
+                                     &length, &spread) ||
+        !(shape = python_text(word, "shape")) || !python_real(radius, "radius", &info->radius) ||
+        !python_real(length, "length", &info->length) ||
+        !python_real(spread, "spread", &info->spread))
         return false;
+    /* Less, and still too large for the body, the library says what fits. */
+    if (info->radius > 1e6 || info->length > 1e6)
+        return python_refuse("%s: expected metres, got %R",
+                             info->radius > 1e6 ? "radius" : "length",
+                             info->radius > 1e6 ? radius : length);
     for (int i = LAR_TOOL_SPHERE; i <= LAR_TOOL_GRASPER; i++)
         if (strcmp(shape, shape_name[i]) == 0) {
             info->shape = (lar_tool_shape)i;
-            return true;
+            return check_spread(info, spread);
         }
     return python_refuse("shape: expected \"sphere\", \"capsule\" or \"grasper\", got \"%s\"",
                          shape);
@@ -183,17 +286,10 @@ bool python_tool_wanted(PyObject *args, PyObject *keywords, lar_tool_info *info)
 static bool int32_of(PyObject *source, const char *name, int32_t *out) {
     unsigned long long value;
     if (!python_steps(source, name, &value)) return false;
-    if (value > INT32_MAX) return python_refuse("%s: %R is none", name, source);
+    if (value > INT32_MAX)
+        return python_refuse("%s: expected less than 2^31, got %R", name, source);
     *out = (int32_t)value;
     return true;
-}
-
-const char *python_text(PyObject *text, const char *name) {
-    Py_ssize_t length = 0;
-    const char *utf8 = PyUnicode_AsUTF8AndSize(text, &length);
-    if (!utf8 || strlen(utf8) == (size_t)length) return utf8;
-    python_refuse("%s: there is a character 0 in the text", name);
-    return NULL;
 }
 
 bool python_material(const lar_model *model, PyObject *source, int32_t *index) {
@@ -218,7 +314,11 @@ bool python_material(const lar_model *model, PyObject *source, int32_t *index) {
 bool python_where(PyObject *where, const char **set, int32_t *node) {
     if (PyUnicode_Check(where))
         *set = python_text(where, "where");
-    else if (!int32_of(where, "where: a node or the name of a set of nodes", node))
+    else if (!PyIndex_Check(where))
+        return python_refuse_type("where: expected a node, a whole number from 0 on, or the name "
+                                  "of a set of nodes, got %R",
+                                  shown(where));
+    else if (!int32_of(where, "where", node))
         return false;
     return !PyErr_Occurred();
 }

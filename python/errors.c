@@ -62,13 +62,73 @@ bool python_errors_add(PyObject *module) {
     return python_error_state != NULL;
 }
 
+/* ---- the library's sentences ---------------------------------------------------------------- */
+
+/* They are written for callers from C. Whole phrases first; of what is left the names of calls. */
+static const char *const phrase[][2] = {
+    {"create the simulation with options.spares", "make the Simulation with spares="},
+    {"options.spares", "spares"},
+    {"lar_simulation_save_to and lar_simulation_load_from", "save and load"},
+    {"lar_model_set names those", "Model.sets lists those"},
+    {"the session (lar_session_...)", "the session"},
+    {", and -1 without a force removes all forces that were set",
+     "; clear_forces() removes all forces that were set"},
+    {", and -1 means all", "; None means all"},
+    {"with NULL for the name", "by set_parameter without a name"},
+    {"use time_step: auto, a smaller step,",
+     "use time_step: auto in the scene and time_step=0 here, a smaller step,"},
+    {"name its scene, and go on from it with lariat run SCENE --resume",
+     "make a Simulation of its scene and load() it there; as a command: lariat run SCENE --resume"},
+    {"name its scene, and play it with lariat replay SCENE",
+     "open a Session on its scene and replay() it there; as a command: lariat replay SCENE"},
+    {"--grid ", "grid="},
+    {"start with --priority 10", "make the Session with priority=10"},
+    {"(--scale)", "(scale=)"},
+    {"; --fuse makes", "; fuse=True makes"},
+    {"--fibres RULE", "fibres=RULE"},
+    {"lar_session_options.", ""},
+    {"lar_simulation_set_force_on", "set_force"},
+    {"lar_simulation_set_support_on", "set_support"},
+    {"lar_simulation_set_gravity", "gravity"},
+    {"lar_simulation_set_damping", "damping"},
+    {"lar_simulation_save_to", "save"},
+    {"lar_simulation_load_from", "load"},
+    {"lar_model_from_arrays", "Model.from_arrays"},
+    {"lar_simulation_", ""},
+    {"lar_session_", ""},
+    {"lar_model_", "Model."},
+    {"lar_meshing_", "Meshing."},
+    {"lar_results_", "Results."},
+    {"lar_saved_create", "save"},
+};
+
+/* In place of the first of *text, which is taken over. NULL: an exception. */
+static PyObject *replace(PyObject *text, const char *from, const char *to) {
+    PyObject *old = PyUnicode_FromString(from), *new = PyUnicode_FromString(to);
+    PyObject *made = old && new ? PyUnicode_Replace(text, old, new, -1) : NULL;
+    Py_XDECREF(new);
+    Py_XDECREF(old);
+    Py_DECREF(text);
+    return made;
+}
+
+/* A path in the message need not be UTF-8. What looks like a call may be the name of a file. */
+PyObject *python_sentence(const char *message) {
+    PyObject *text = PyUnicode_DecodeUTF8(message, (Py_ssize_t)strlen(message), "replace");
+    for (size_t i = 0; text && i < sizeof phrase / sizeof phrase[0]; i++) {
+        const char *at = strstr(message, phrase[i][0]);
+        bool named = strncmp(phrase[i][0], "lar_", 4) == 0;
+        if (at && (!named || at == message || at[-1] == ' '))
+            text = replace(text, phrase[i][0], phrase[i][1]);
+    }
+    return text;
+}
+
 PyObject *python_raise(const lar_error *error) {
     PyObject *class = error->status > LAR_OK && error->status <= LAR_ERROR_PEER
                           ? class_of_status[error->status]
                           : error_class;
-    /* A path in the message need not be UTF-8. */
-    PyObject *message =
-        PyUnicode_DecodeUTF8(error->message, (Py_ssize_t)strlen(error->message), "replace");
+    PyObject *message = python_sentence(error->message);
     if (message) PyErr_SetObject(class, message);
     Py_XDECREF(message);
     return NULL;

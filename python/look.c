@@ -56,10 +56,32 @@ static void rays_free(rays *r) {
     free(r->hit);
 }
 
-/* None: any distance. What is no length the library refuses. */
+/* None: any distance. */
 static bool longest_parse(PyObject *source, rays *r) {
     r->longest = source == Py_None ? INFINITY : PyFloat_AsDouble(source);
-    return !PyErr_Occurred();
+    if (PyErr_Occurred()) {
+        PyErr_Clear();
+        return python_refuse_type("longest: expected a number, got %R",
+                                  (PyObject *)Py_TYPE(source));
+    }
+    return r->longest >= 0 ||
+           python_refuse(
+               "longest: expected the longest distance, 0 or more, or None for any, got %R",
+               source);
+}
+
+/* Where a ray can begin, and whether it has a direction. `row`: of many. */
+static bool check_ray(const double origin[3], const double direction[3], Py_ssize_t row) {
+    static const double FARTHEST = 1e30; /* [m] */
+    char which[2][40] = {"origin", "direction"};
+    if (row >= 0) snprintf(which[0], sizeof which[0], "origins: row %zd", row);
+    if (row >= 0) snprintf(which[1], sizeof which[1], "directions: row %zd", row);
+    for (int i = 0; i < 3; i++)
+        if (!(fabs(origin[i]) <= FARTHEST))
+            return python_refuse("%s: expected three numbers in metres, none beyond 1e30",
+                                 which[0]);
+    return direction[0] != 0 || direction[1] != 0 || direction[2] != 0 ||
+           python_refuse("%s: expected three numbers, which cannot all be 0", which[1]);
 }
 
 static bool rays_parse(PyObject *origins, PyObject *directions, PyObject *longest, rays *r) {
@@ -71,6 +93,9 @@ static bool rays_parse(PyObject *origins, PyObject *directions, PyObject *longes
         return python_refuse("directions: expected one for each of %zd origins, got %zd",
                              r->origin.rows, r->direction.rows);
     if (r->origin.rows > INT32_MAX) return python_refuse("origins: at most 2^31 - 1");
+    const double(*from)[3] = r->origin.data, (*along)[3] = r->direction.data;
+    for (Py_ssize_t k = 0; k < r->origin.rows; k++)
+        if (!check_ray(from[k], along[k], k)) return false;
     r->hit = calloc((size_t)r->origin.rows + 1, sizeof *r->hit);
     return r->hit || PyErr_NoMemory() != NULL;
 }
@@ -88,6 +113,10 @@ PyObject *python_model_rays(PyObject *me, PyObject *args, PyObject *keywords) {
     if (good && u != Py_None && r.displacement.rows != lar_model_node_count(model))
         good = python_refuse("displacements: expected shape [%d, 3], got [%zd, 3]",
                              (int)lar_model_node_count(model), r.displacement.rows);
+    const double *moved = good ? r.displacement.data : NULL;
+    for (Py_ssize_t k = 0; good && moved && k < 3 * r.displacement.rows; k++)
+        if (!(fabs(moved[k]) <= 1e29))
+            good = python_refuse("displacements: row %zd has a number beyond 1e29 m", k / 3);
     PyObject *answer = NULL;
     lar_error error;
     lar_status status;
@@ -142,7 +171,8 @@ static PyObject *simulation_ray(PyObject *me, PyObject *args, PyObject *keywords
     if (!PyArg_ParseTupleAndKeywords(args, keywords, "OO|O:ray", names, &origin, &direction,
                                      &longest) ||
         !python_vector(origin, "origin", 3, from) ||
-        !python_vector(direction, "direction", 3, along) || !longest_parse(longest, &r))
+        !python_vector(direction, "direction", 3, along) || !check_ray(from, along, -1) ||
+        !longest_parse(longest, &r))
         return NULL;
     r.hit = calloc(1, sizeof *r.hit);
     if (!r.hit) return PyErr_NoMemory();
@@ -235,30 +265,30 @@ static bool find_cause(const char *name, lar_cause *cause) {
         *cause = (lar_cause)i;
         if (strcmp(name, names[i]) == 0) return true;
     }
-    return python_refuse(
-        "nodal_forces: \"%s\" is no cause; there are elements, tool, bodies, loads, "
-        "planes, supports, gravity and damping",
-        name);
+    return python_refuse("cause: \"%s\" is none; there are elements, tool, bodies, loads, "
+                         "planes, supports, gravity and damping",
+                         name);
 }
 
 static PyObject *nodal_forces(PyObject *me, PyObject *args, PyObject *keywords) {
     static char *names[] = {"cause", "tool", "out", NULL};
     python_simulation *self = (python_simulation *)me;
     const char *name;
-    PyObject *tool = Py_None, *out = NULL;
+    PyObject *word, *tool = Py_None, *out = NULL;
     lar_cause cause;
     int32_t index = -1;
-    if (!PyArg_ParseTupleAndKeywords(args, keywords, "s|OO:nodal_forces", names, &name, &tool,
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, "O|OO:nodal_forces", names, &word, &tool,
                                      &out) ||
-        !find_cause(name, &cause))
+        !(name = python_text(word, "cause")) || !find_cause(name, &cause))
         return NULL;
     if ((tool != Py_None) != (cause == LAR_CAUSE_TOOL)) {
         python_refuse("nodal_forces: the cause \"tool\" needs a tool, and the others take none");
         return NULL;
     }
-    lar_simulation *simulation = python_simulation_look(self, "nodal_forces");
-    if (!simulation || (tool != Py_None && !python_simulation_tool(simulation, tool, &index)))
-        return NULL;
+    lar_simulation *simulation = tool == Py_None
+                                     ? python_simulation_look(self, "nodal_forces")
+                                     : python_simulation_tool(self, "nodal_forces", tool, &index);
+    if (!simulation) return NULL;
     python_target target;
     if (!python_target_open(out, 'd', lar_model_node_count(self->model->model), 3, &target))
         return NULL;

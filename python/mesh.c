@@ -418,21 +418,32 @@ static bool parse(PyObject *args, PyObject *keywords, request *r) {
                             "title",  "progress",  "fibres", "fibres_in", "tissue", NULL};
     lar_meshing_options *o = &r->options;
     int elements = 0;
+    PyObject *number[3] = {NULL}, *word[4] = {NULL};
     r->triangles = r->affine = r->label = r->names = r->tissue = r->progress = Py_None;
     r->kept = PyList_New(0);
-    if (!r->kept || !PyArg_ParseTupleAndKeywords(
-                        args, keywords, "O|O$OOOiddpppzzOzzO:mesh", names, &r->source,
-                        &r->triangles, &r->affine, &r->label, &r->names, &elements, &o->size,
-                        &o->scale, &o->fuse, &o->principal, &o->voxel, &o->fix, &o->title,
-                        &r->progress, &o->fibres, &o->fibre_region, &r->tissue))
+    if (!r->kept ||
+        !PyArg_ParseTupleAndKeywords(args, keywords, "O|O$OOOOOOpppOOOOOO:mesh", names, &r->source,
+                                     &r->triangles, &r->affine, &r->label, &r->names, &number[0],
+                                     &number[1], &number[2], &o->fuse, &o->principal, &o->voxel,
+                                     &word[0], &word[1], &r->progress, &word[2], &word[3],
+                                     &r->tissue) ||
+        !python_int(number[0], "elements", &elements) ||
+        !python_real(number[1], "size", &o->size) || !python_real(number[2], "scale", &o->scale) ||
+        !python_word(word[0], "fix", &o->fix) || !python_word(word[1], "title", &o->title) ||
+        !python_word(word[2], "fibres", &o->fibres) ||
+        !python_word(word[3], "fibres_in", &o->fibre_region))
         return false;
     o->elements = elements;
+    if (elements < 0)
+        return python_refuse("elements: expected about how many, or 0 for 5000, got %d", elements);
+    if (o->size < 0)
+        return python_refuse("size: expected the edge of an element in metres, got %R", number[1]);
     if (r->progress != Py_None && !PyCallable_Check(r->progress))
         return python_refuse_type("progress: expected a function of a text and a number, got %R",
                                   r->progress);
-    if (isnan(o->size) || isnan(o->scale) || o->scale < 0 || isinf(o->scale))
-        return python_refuse("size, scale: expected positive numbers, in metres and metres per "
-                             "unit");
+    if (o->scale < 0)
+        return python_refuse("scale: expected a positive number, metres per unit, got %R",
+                             number[2]);
     return take_labels(r) && take_tissues(r) && take_source(r);
 }
 

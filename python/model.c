@@ -284,7 +284,9 @@ static PyGetSetDef model_properties[] = {
      NULL},
     {"sets", get_sets, NULL, "list of dicts: name, kind (nodes, elements, faces), count.", NULL},
     {"tools", get_tools, NULL,
-     "list of dicts: name, shape, radius, length [m], spread [rad], rest.", NULL},
+     "list of dicts: name, shape, radius, length [m], spread [rad] (scenes and lariat.info have "
+     "degrees), friction, rest (a pose), serial.",
+     NULL},
     {"notices", get_notices, NULL,
      "list of str: what the file asks for and Lariat leaves out. Read them.", NULL},
     {"positions", get_positions, NULL,

@@ -55,6 +55,7 @@ typedef struct python_simulation {
     PyObject *options;       /* dict: as it was asked for */
     python_session *session; /* that has taken it over, which keeps this alive; NULL: none */
     bool busy;               /* a thread computes on it without the interpreter's lock */
+    bool broken;             /* its run is unstable, until a reset or a load */
     unsigned generation;     /* python_generation when it was made */
     python_asked asked[LAR_TOOLS_MAX];
 } python_simulation;
@@ -62,6 +63,7 @@ typedef struct python_simulation {
 typedef struct python_saved {
     PyObject_HEAD lar_saved *saved;
     python_model *model;
+    lar_simulation_info of; /* whom it serves */
     bool busy;
     unsigned long long step; /* of the state in it */
     double time;             /* [s] */
@@ -132,6 +134,8 @@ bool python_watch_look(python_watch *watch);
 extern PyObject *python_error_argument, *python_error_state;
 
 PyObject *python_raise(const lar_error *error);
+/* A sentence of the library's in the words of this module, a new str. */
+PyObject *python_sentence(const char *message);
 /* What a call returns that has nothing to say: None, or as python_raise. */
 PyObject *python_answer(lar_status status, const lar_error *error);
 /* An ArgumentError (a ValueError) or a TypeError: PyErr_Format's formats. */
@@ -140,15 +144,19 @@ bool python_refuse_type(const char *format, ...);
 
 /* ---- values --------------------------------------------------------------------------------- */
 
-/* `name` begins the message: "steps: expected ..." */
+/* `name` begins the message: "steps: expected ..." From 0 to 2^53: */
 bool python_steps(PyObject *source, const char *name, unsigned long long *steps);
 bool python_number(PyObject *source, const char *name, double *number);
+/* Of arguments that may be left out: NULL leaves *out as it is, of a word also None. */
+bool python_int(PyObject *source, const char *name, int *out);
+bool python_real(PyObject *source, const char *name, double *out);
+bool python_word(PyObject *source, const char *name, const char **out);
 /* Whether a callback's answer is False, or numpy's: what a comparison of arrays gives. */
 bool python_is_no(PyObject *answer);
 /* `count` finite numbers from any sequence. */
 bool python_vector(PyObject *source, const char *name, int count, double *out);
 PyObject *python_tuple(const double *value, int count);
-/* A path as bytes, or NULL and an exception. */
+/* A path as bytes, which is not empty, or NULL and an exception. */
 PyObject *python_path(PyObject *source, const char *name);
 /* Scene text: a str as it is, a dict as JSON, which is YAML. A new str. */
 PyObject *python_scene_text(PyObject *scene);
@@ -166,8 +174,8 @@ PyObject *python_touch_list(const lar_touch *touch, int32_t count);
 PyObject *python_tool_dict(const lar_tool_info *info);
 /* "sphere", ... as lar_tool_info for lar_simulation_add_tool. */
 bool python_tool_wanted(PyObject *args, PyObject *keywords, lar_tool_info *info);
-/* A str in UTF-8 that lives as long as it; NULL and an exception where it has a character 0, which
- * the library would take for its end. */
+/* A str in UTF-8 that lives as long as it; NULL and an exception where it is none, has half of a
+ * pair of surrogates, or a character 0, which the library would take for its end. */
 const char *python_text(PyObject *text, const char *name);
 /* The index of a material: a number or a name; None: all, -1. */
 bool python_material(const lar_model *model, PyObject *source, int32_t *index);
@@ -240,12 +248,23 @@ lar_simulation *python_simulation_look(python_simulation *self, const char *call
 /* The same, and taken until python_simulation_give: for calls that let go of the lock. */
 lar_simulation *python_simulation_take(python_simulation *self, const char *call);
 void python_simulation_give(python_simulation *self);
+/* Whether its run is sound; else an UnstableError says why not. The caller has looked. */
+bool python_simulation_sound(python_simulation *self, const char *call);
+/* Looks, and takes, for calls that change what goes on: an unstable run does not. */
+lar_simulation *python_simulation_look_sound(python_simulation *self, const char *call);
+lar_simulation *python_simulation_take_sound(python_simulation *self, const char *call);
+/* Whether the state may be put into the simulation, or the other way round; else what differs. */
+bool python_saved_fits(const python_saved *saved, const lar_simulation *simulation,
+                       const char *call);
 /* One advance of the library, without the interpreter's lock; Ctrl-C ends it. */
 bool python_simulation_advance(python_simulation *self, unsigned long long steps);
 /* Whole steps of a time from 0 on. */
-bool python_seconds(PyObject *seconds, const lar_simulation *simulation, unsigned long long *steps);
-/* The index of a tool: a number or a name. */
-bool python_simulation_tool(lar_simulation *simulation, PyObject *source, int32_t *index);
+bool python_seconds(PyObject *seconds, python_simulation *self, const char *call,
+                    unsigned long long *steps);
+/* The simulation for a call about a tool, and the index of that, of a number or a name. Reading a
+ * number may run any code, so who may use the simulation is looked at afterwards. */
+lar_simulation *python_simulation_tool(python_simulation *self, const char *call, PyObject *source,
+                                       int32_t *index);
 
 /* Where the nodes are now [m], [nodes][3]; needs no interpreter. */
 void python_positions(const lar_simulation *simulation, double (*out)[3]);
@@ -340,7 +359,8 @@ extern PyMethodDef python_batch_state_methods[];
 lar_session *python_session_look(python_session *self, const char *call);
 lar_session *python_session_take(python_session *self, const char *call);
 void python_session_give(python_session *self);
-bool python_session_tool(lar_session *session, PyObject *source, int32_t *index);
+lar_session *python_session_tool(python_session *self, const char *call, PyObject *source,
+                                 int32_t *index);
 void python_view_shut(python_view *view);
 PyObject *python_view_open(PyObject *session, PyObject *args, PyObject *keywords);
 

@@ -67,16 +67,15 @@ static PyObject *simulation_rest(PyObject *me, PyObject *args, PyObject *keyword
                            (PyObject *)Py_TYPE(callback));
         return NULL;
     }
+    unsigned long long steps = 0;
+    if (seconds != Py_None && !python_seconds(seconds, self, "rest", &steps)) return NULL;
     lar_simulation *simulation = python_simulation_look(self, "rest");
     if (!simulation) return NULL;
     lar_rest rest;
     lar_rest_begin(&rest, simulation);
     const unsigned long long first = lar_simulation_steps(simulation);
-    unsigned long long last = rest.limit, steps;
-    if (seconds != Py_None) {
-        if (!python_seconds(seconds, simulation, &steps)) return NULL;
-        if (steps < last - first) last = first + steps;
-    }
+    unsigned long long last = rest.limit;
+    if (seconds != Py_None && steps < last - first) last = first + steps;
     bool ended = false;
     if (!run(self, &rest, last, callback, &ended)) return NULL;
     const unsigned long long now = lar_simulation_steps(self->simulation);

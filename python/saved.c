@@ -1,4 +1,6 @@
 /* class Saved: a state in memory. Simulation.save and Session.save make and fill it. */
+#include <stdarg.h>
+
 #include "module.h"
 
 PyTypeObject *python_saved_type;
@@ -15,6 +17,59 @@ static PyObject *saved_repr(PyObject *me) {
     return PyUnicode_FromFormat("<lariat.Saved of %s, step %llu>",
                                 lar_model_source(self->model->model), self->step);
 }
+
+/* ---- whom it serves -------------------------------------------------------------------------- */
+
+/* "... 2 tools, and the simulation 3", behind what was said before. */
+static void tell(char *text, size_t size, const char *format, ...) {
+    va_list list;
+    size_t at = strlen(text);
+    if (at + 3 > size) return;
+    if (at > 0) at += (size_t)snprintf(text + at, size - at, "; ");
+    va_start(list, format);
+    vsnprintf(text + at, size - at, format, list);
+    va_end(list);
+}
+
+/* What differs; "": nothing. */
+static void compare(const lar_simulation_info *was, const lar_simulation_info *is, char *text,
+                    size_t size) {
+    static const char *const element[] = {"hex8", "hex8-full", "hex8-matrix"};
+    const int nodes[2] = {lar_model_node_count(was->model), lar_model_node_count(is->model)};
+    const int elements[2] = {lar_model_element_count(was->model),
+                             lar_model_element_count(is->model)};
+    *text = 0;
+    if (nodes[0] != nodes[1] || elements[0] != elements[1])
+        tell(text, size, "it has %d nodes and %d elements, the simulation %d and %d", nodes[0],
+             elements[0], nodes[1], elements[1]);
+    if (was->element != is->element)
+        tell(text, size, "its elements are %s, the simulation's %s", element[was->element],
+             element[is->element]);
+    if (was->tools != is->tools)
+        tell(text, size, "it has %d tools (hands count, too), the simulation %d", (int)was->tools,
+             (int)is->tools);
+    if (was->spares != is->spares)
+        tell(text, size, "it has %d spares, the simulation %d", (int)was->spares, (int)is->spares);
+    if (was->time_step != is->time_step)
+        tell(text, size, "its time step is %.9g s, the simulation's %.9g s", was->time_step,
+             is->time_step);
+    if (was->model != is->model && !*text)
+        tell(text, size,
+             "its Model is another object; states in memory serve simulations of one Model, those "
+             "at a path (save(path), load(path)) all that are equal");
+}
+
+bool python_saved_fits(const python_saved *saved, const lar_simulation *simulation,
+                       const char *call) {
+    char text[600];
+    lar_simulation_info is;
+    lar_simulation_inspect(simulation, &is);
+    compare(&saved->of, &is, text, sizeof text);
+    return !*text || python_refuse("%s: the Saved is of another %s: %s", call,
+                                   saved->of.model == is.model ? "simulation" : "model", text);
+}
+
+/* ---- the class ------------------------------------------------------------------------------ */
 
 static PyObject *get_step(PyObject *me, void *unused) {
     (void)unused;

@@ -32,42 +32,54 @@ void python_session_give(python_session *self) {
     self->calls--;
 }
 
-bool python_session_tool(lar_session *session, PyObject *source, int32_t *index) {
+lar_session *python_session_tool(python_session *self, const char *call, PyObject *source,
+                                 int32_t *index) {
+    unsigned long long number = 0;
     lar_tool_info info;
-    if (!PyUnicode_Check(source)) {
-        unsigned long long number;
-        if (!python_steps(source, "tool", &number)) return false;
-        if (number >= LAR_TOOLS_MAX || lar_session_tool_info(session, (int32_t)number, &info, NULL))
-            return python_refuse("tool: there is no tool %R", source);
-        *index = (int32_t)number;
-        return true;
+    const bool named = PyUnicode_Check(source);
+    const char *wanted = named ? python_text(source, "tool") : NULL;
+    if (named ? !wanted : !python_steps(source, "tool", &number)) return NULL;
+    lar_session *session = python_session_look(self, call); /* reading may have run any code */
+    if (!session) return NULL;
+    for (int32_t i = 0; !lar_session_tool_info(session, i, &info, NULL); i++) {
+        *index = i;
+        if (named ? !strcmp(info.name, wanted) : number == (unsigned long long)i) return session;
     }
-    const char *wanted = python_text(source, "tool");
-    for (int32_t i = 0; wanted && !lar_session_tool_info(session, i, &info, NULL); i++)
-        if (strcmp(info.name, wanted) == 0) {
-            *index = i;
-            return true;
-        }
-    return wanted && python_refuse("tool: there is none called %R", source);
+    python_refuse(named ? "tool: there is none called %R; Session.tools lists them"
+                        : "tool: there is no tool %R; Session.tools lists them",
+                  source);
+    return NULL;
 }
 
 /* ---- life ----------------------------------------------------------------------------------- */
+
+/* Numbers of a session: from 0 to 1e6, which is beyond all that means something. */
+static bool parse_number(PyObject *source, const char *name, double *out) {
+    return python_real(source, name, out) &&
+           ((*out >= 0 && *out <= 1e6) ||
+            python_refuse("%s: expected a number from 0 to 1e6, got %R", name, source));
+}
 
 static bool parse_options(PyObject *args, PyObject *keywords, PyObject **simulation,
                           PyObject **record, lar_session_options *o) {
     static char *names[] = {"simulation", "tick",   "pace",     "paused",     "tool_speed",
                             "hand_force", "record", "priority", "hash_every", "stop_when_unstable",
                             NULL};
-    long long hash_every = 0;
+    PyObject *tick = NULL, *pace = NULL, *speed = NULL, *force = NULL, *priority = NULL;
+    PyObject *hash_every = NULL;
+    unsigned long long every = 0;
     *o = lar_session_options_default();
-    if (!PyArg_ParseTupleAndKeywords(args, keywords, "O!|$ddpddOiLp:Session", names,
-                                     python_simulation_type, simulation, &o->tick, &o->pace,
-                                     &o->paused, &o->tool_speed, &o->hand_force, record,
-                                     &o->priority, &hash_every, &o->stop_when_unstable))
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, "O!|$OOpOOOOOp:Session", names,
+                                     python_simulation_type, simulation, &tick, &pace, &o->paused,
+                                     &speed, &force, record, &priority, &hash_every,
+                                     &o->stop_when_unstable) ||
+        !parse_number(tick, "tick", &o->tick) || !parse_number(pace, "pace", &o->pace) ||
+        !parse_number(speed, "tool_speed", &o->tool_speed) ||
+        !parse_number(force, "hand_force", &o->hand_force) ||
+        !python_int(priority, "priority", &o->priority) ||
+        (hash_every && !python_steps(hash_every, "hash_every", &every)))
         return false;
-    if (hash_every < 0)
-        return python_refuse("hash_every: expected 0 or more steps, got %lld", hash_every);
-    o->hash_every = (uint64_t)hash_every;
+    o->hash_every = every;
     return true;
 }
 
@@ -120,14 +132,19 @@ static PyObject *session_new(PyTypeObject *type, PyObject *args, PyObject *keywo
 /* Ends the thread; with the lock held by the caller, who has seen that no call is under way. */
 static lar_status shut(python_session *self, lar_error *error) {
     lar_session *session = self->session;
+    lar_session_status last;
     lar_status status;
     unlink_session(self);
     self->session = NULL;
     if (self->view) python_view_shut(self->view);
     self->calls++;
-    PYTHON_UNLOCKED(status = lar_session_close(session, error));
+    PYTHON_UNLOCKED({
+        lar_session_status_get(session, &last);
+        status = lar_session_close(session, error);
+    });
     self->calls--;
     self->simulation->session = NULL;
+    self->simulation->broken = last.state == LAR_SESSION_STOPPED;
     return status;
 }
 
@@ -195,9 +212,24 @@ static PyObject *session_repr(PyObject *me) {
 
 /* ---- the clock ------------------------------------------------------------------------------ */
 
+/* The session for a call that lets it go on; one that has stopped does not. */
+static lar_session *look_sound(PyObject *me, const char *call) {
+    lar_session_status now;
+    lar_session *session = python_session_look((python_session *)me, call);
+    if (!session) return NULL;
+    lar_session_status_get(session, &now);
+    if (now.state != LAR_SESSION_STOPPED) return session;
+    lar_error error = {.status = now.error ? now.error : LAR_ERROR_UNSTABLE};
+    snprintf(error.message, sizeof error.message,
+             "%s: the run has broken off; reset() or load() takes it up again: %.800s", call,
+             now.message);
+    python_raise(&error);
+    return NULL;
+}
+
 static PyObject *play(PyObject *me, PyObject *nothing) {
     (void)nothing;
-    lar_session *session = python_session_look((python_session *)me, "play");
+    lar_session *session = look_sound(me, "play");
     if (!session) return NULL;
     lar_session_play(session);
     Py_RETURN_NONE;
@@ -213,18 +245,20 @@ static PyObject *pause_session(PyObject *me, PyObject *nothing) {
 
 static PyObject *step(PyObject *me, PyObject *steps) {
     unsigned long long count;
-    lar_session *session = python_session_look((python_session *)me, "step");
-    if (!session || !python_steps(steps, "steps", &count)) return NULL;
+    if (!python_steps(steps, "steps", &count)) return NULL;
+    lar_session *session = look_sound(me, "step");
+    if (!session) return NULL;
     lar_session_step(session, count);
     Py_RETURN_NONE;
 }
 
 static PyObject *set_pace(PyObject *me, PyObject *pace) {
     double number;
+    if (!python_number(pace, "pace", &number)) return NULL;
     lar_session *session = python_session_look((python_session *)me, "set_pace");
-    if (!session || !python_number(pace, "pace", &number)) return NULL;
-    if (number < 0) {
-        python_refuse("pace: expected 0 (as fast as it goes) or more, got %R", pace);
+    if (!session) return NULL;
+    if (!(number >= 0 && number <= 1e6)) {
+        python_refuse("pace: expected a number from 0 (as fast as it goes) to 1e6, got %R", pace);
         return NULL;
     }
     lar_session_set_pace(session, number);
@@ -256,7 +290,7 @@ static PyObject *status_dict(const lar_session_status *s) {
     static const char *const states[] = {"idle", "playing", "paused", "stopped"};
     return Py_BuildValue(
         "{s:s,s:K,s:d,s:d,s:d,s:d,s:d,s:d,s:d,s:d,s:d,s:K,s:K,s:K,s:d,s:d,s:d,s:d,s:d,s:d,s:N,s:d,"
-        "s:d,s:N,s:s,s:s,s:K,s:s,s:N,s:d,s:d,s:i,s:K,s:i,s:d,s:s}",
+        "s:d,s:N,s:s,s:s,s:K,s:s,s:N,s:d,s:d,s:i,s:K,s:i,s:d,s:N}",
         "state", states[s->state], "step", (unsigned long long)s->step, "time", s->time, "step_p50",
         s->step_p50, "step_p99", s->step_p99, "step_p999", s->step_p999, "step_max", s->step_max,
         "tick_p50", s->tick_p50, "tick_p99", s->tick_p99, "tick_p999", s->tick_p999, "tick_max",
@@ -270,7 +304,7 @@ static PyObject *status_dict(const lar_session_status *s) {
         "replaying", PyBool_FromLong(s->replaying), "replay_time", s->replay_time, "replay_length",
         s->replay_length, "step_parts", (int)s->step_parts, "divided_steps",
         (unsigned long long)s->divided_steps, "heavier", (int)s->heavier, "heavier_share",
-        s->heavier_share, "slow_advice", s->slow_advice);
+        s->heavier_share, "slow_advice", python_sentence(s->slow_advice));
 }
 
 static PyObject *status(PyObject *me, PyObject *nothing) {
@@ -293,16 +327,23 @@ static PyGetSetDef session_properties[] = {
 
 #define FUNCTION(f) ((PyCFunction)(void (*)(void))(f))
 static PyMethodDef session_methods[] = {
-    {"play", play, METH_NOARGS, "play($self)\n--\n\nGoes on after the tick under way."},
-    {"pause", pause_session, METH_NOARGS, "pause($self)\n--\n\nPauses after the tick under way."},
-    {"step", step, METH_O, "step($self, steps)\n--\n\nDoes so many steps, then pauses."},
+    {"play", play, METH_NOARGS,
+     "play($self)\n--\n\nGoes on, at its pace, after the tick under way. Returns None at once: "
+     "status() "
+     "and snapshot() say how far it is. UnstableError when the run has broken off."},
+    {"pause", pause_session, METH_NOARGS,
+     "pause($self)\n--\n\nPauses after the tick under way. Returns None at once."},
+    {"step", step, METH_O,
+     "step($self, steps)\n--\n\nDoes so many steps at the session's pace, then pauses. Returns "
+     "None at once: status()[\"step\"] tells how far it is; Simulation.advance waits and returns "
+     "their number. UnstableError when the run has broken off."},
     {"set_pace", set_pace, METH_O,
      "set_pace($self, pace)\n--\n\nSimulated seconds per second of the clock; 0: as fast as it "
      "goes."},
     {"status", status, METH_NOARGS,
      "status($self)\n--\n\ndict: state (playing, paused, stopped), step, time [s], times of steps "
      "and ticks [s], misses, real_time_factor, slow_motion, recoveries, message ... "
-     "(lar_session_status)."},
+     "(docs/session.md)."},
     {"view", FUNCTION(python_view_open), METH_VARARGS | METH_KEYWORDS,
      "view($self, *, open=True, address=None, port=0, token=None, watch_token=None, folder=None, "
      "scan=None, save_folder=None)\n--\n\nServes the viewer and returns a View; open: in the "

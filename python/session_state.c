@@ -51,8 +51,10 @@ static PyObject *with_saved(python_session *self, python_saved *saved, bool save
         PyErr_SetString(python_error_state, "another thread uses this saved state");
         return NULL;
     }
-    lar_session *session = python_session_take(self, save ? "save" : "load");
-    if (!session) return NULL;
+    const char *call = save ? "save" : "load";
+    lar_session *session = python_session_look(self, call);
+    if (!session || !python_saved_fits(saved, self->simulation->simulation, call)) return NULL;
+    session = python_session_take(self, call);
     lar_error error;
     lar_status status;
     saved->busy = true;
@@ -86,8 +88,20 @@ static PyObject *load(PyObject *me, PyObject *source) {
 
 static PyObject *seek(PyObject *me, PyObject *seconds) {
     double number;
+    if (!python_number(seconds, "seconds", &number)) return NULL;
     lar_session *session = python_session_look((python_session *)me, "seek");
-    if (!session || !python_number(seconds, "seconds", &number)) return NULL;
+    if (!session) return NULL;
+    if (!(number >= 0 && number <= 1e12)) {
+        python_refuse("seconds: expected a moment of the recording, from 0 to 1e12, got %R",
+                      seconds);
+        return NULL;
+    }
+    lar_session_status now;
+    lar_session_status_get(session, &now);
+    if (!now.replaying) {
+        python_refuse("seek: no recording is being played; replay(path) begins one");
+        return NULL;
+    }
     lar_session_seek(session, number);
     Py_RETURN_NONE;
 }
@@ -129,10 +143,16 @@ static PyObject *tools_of(const lar_snapshot *s) {
 static PyObject *snapshot(PyObject *me, PyObject *args, PyObject *keywords) {
     static char *names[] = {"timeout", NULL};
     python_session *self = (python_session *)me;
-    double timeout = 5;
-    if (!PyArg_ParseTupleAndKeywords(args, keywords, "|d:snapshot", names, &timeout)) return NULL;
+    PyObject *seconds = NULL;
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, "|O:snapshot", names, &seconds)) return NULL;
+    double timeout = seconds ? PyFloat_AsDouble(seconds) : 5;
+    if (PyErr_Occurred()) {
+        PyErr_Clear();
+        python_refuse_type("timeout: expected a number, got %R", (PyObject *)Py_TYPE(seconds));
+        return NULL;
+    }
     if (!(timeout >= 0)) {
-        python_refuse("timeout: expected seconds from 0 on");
+        python_refuse("timeout: expected seconds from 0 on, got %R", seconds);
         return NULL;
     }
     lar_session *session = python_session_take(self, "snapshot");
@@ -166,9 +186,12 @@ PyMethodDef python_session_state_methods[] = {
      "record($self, path)\n--\n\nBegins a recording at a path, after the end of the one under way; "
      "None ends that."},
     {"replay", replay, METH_O,
-     "replay($self, path)\n--\n\nPlays a recording, at the session's pace; None ends that."},
+     "replay($self, path)\n--\n\nPlays a recording, at the session's pace; None ends that. Returns "
+     "None when it "
+     "has begun; status() has replay_time and replay_length."},
     {"seek", seek, METH_O,
-     "seek($self, seconds)\n--\n\nGoes to a moment of what is being played [s]."},
+     "seek($self, seconds)\n--\n\nGoes to a moment of what is being played [s]. Returns None at "
+     "once."},
     {"snapshot", FUNCTION(snapshot), METH_VARARGS | METH_KEYWORDS,
      "snapshot($self, timeout=5.0)\n--\n\nAll nodes at the end of a tick: a dict with step, time "
      "[s], hash, displacements (memoryview, float64 [nodes, 3], read only, the snapshot's own "

@@ -2,8 +2,7 @@
 #include "module.h"
 
 static lar_session *look(PyObject *me, PyObject *tool, int32_t *index, const char *call) {
-    lar_session *session = python_session_look((python_session *)me, call);
-    return session && python_session_tool(session, tool, index) ? session : NULL;
+    return python_session_tool((python_session *)me, call, tool, index);
 }
 /* The same for calls that wait for the engine. */
 static lar_session *take(PyObject *me, PyObject *tool, int32_t *index, const char *call) {
@@ -144,10 +143,12 @@ static PyObject *tool_load(PyObject *me, PyObject *tool) {
 static PyObject *force_history(PyObject *me, PyObject *args, PyObject *keywords) {
     static char *names[] = {"tool", "after", NULL};
     PyObject *tool;
+    PyObject *number = NULL;
     unsigned long long after = 0;
     uint64_t last = 0;
     int32_t index;
-    if (!PyArg_ParseTupleAndKeywords(args, keywords, "O|K:force_history", names, &tool, &after))
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, "O|O:force_history", names, &tool, &number) ||
+        (number && !python_steps(number, "after", &after)))
         return NULL;
     lar_session *session = look(me, tool, &index, "force_history");
     if (!session) return NULL;
@@ -190,11 +191,16 @@ static PyObject *remove_tool(PyObject *me, PyObject *tool) {
 
 static PyObject *attach(PyObject *me, PyObject *args, PyObject *keywords) {
     static char *names[] = {"tool", "device", NULL};
-    PyObject *tool;
+    PyObject *tool, *word;
     const char *device;
     int32_t index;
-    if (!PyArg_ParseTupleAndKeywords(args, keywords, "Os:attach", names, &tool, &device))
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, "OO:attach", names, &tool, &word) ||
+        !(device = python_text(word, "device")))
         return NULL;
+    if (!*device) {
+        python_refuse("device: expected one such as \"udp:127.0.0.1:9000\", got %R", word);
+        return NULL;
+    }
     lar_session *session = take(me, tool, &index, "attach");
     if (!session) return NULL;
     lar_error error;
@@ -250,7 +256,9 @@ PyMethodDef python_session_tool_methods[] = {
      "force_history($self, tool, after=0)\n--\n\nForces [N], one for each tick after tick `after`, "
      "oldest first: (memoryview float32 [k, 3], number of the last tick). 8192 ticks are kept."},
     {"add_tool", FUNCTION(add_tool), METH_VARARGS | METH_KEYWORDS,
-     "add_tool($self, shape, radius, length=0.0, spread=0.0)\n--\n\nAs Simulation.add_tool."},
+     "add_tool($self, shape, radius, length=0.0, spread=0.0)\n--\n\nAs Simulation.add_tool: "
+     "metres, and "
+     "spread in radians."},
     {"remove_tool", remove_tool, METH_O, "remove_tool($self, tool)\n--\n\nAs Simulation's."},
     {"attach", FUNCTION(attach), METH_VARARGS | METH_KEYWORDS,
      "attach($self, tool, device)\n--\n\nConnects a tool with a device: \"script:FILE.csv\", "

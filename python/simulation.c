@@ -47,26 +47,51 @@ void python_simulation_give(python_simulation *self) {
     self->busy = false;
 }
 
-bool python_simulation_tool(lar_simulation *simulation, PyObject *source, int32_t *index) {
-    int32_t count = lar_simulation_tool_count(simulation);
-    if (!PyUnicode_Check(source)) {
-        unsigned long long number;
-        if (!python_steps(source, "tool", &number)) return false;
-        if (number >= (unsigned long long)count)
-            return python_refuse("tool: there is no tool %R; the simulation has %d, counted from 0",
-                                 source, (int)count);
-        *index = (int32_t)number;
-        return true;
-    }
-    const char *wanted = python_text(source, "tool");
+bool python_simulation_sound(python_simulation *self, const char *call) {
+    lar_error why, error = {.status = LAR_ERROR_UNSTABLE};
+    if (!self->broken) return true;
+    /* No steps change nothing, and what has broken off says why. */
+    self->broken = lar_simulation_advance(self->simulation, 0, &why) == LAR_ERROR_UNSTABLE;
+    if (!self->broken) return true;
+    snprintf(error.message, sizeof error.message,
+             "%s: the run has broken off; reset() or load() takes it up again: %.800s", call,
+             why.message);
+    return python_raise(&error) != NULL;
+}
+
+lar_simulation *python_simulation_look_sound(python_simulation *self, const char *call) {
+    lar_simulation *simulation = python_simulation_look(self, call);
+    return simulation && python_simulation_sound(self, call) ? simulation : NULL;
+}
+
+lar_simulation *python_simulation_take_sound(python_simulation *self, const char *call) {
+    lar_simulation *simulation = python_simulation_look_sound(self, call);
+    if (simulation) self->busy = true;
+    return simulation;
+}
+
+lar_simulation *python_simulation_tool(python_simulation *self, const char *call, PyObject *source,
+                                       int32_t *index) {
+    unsigned long long number = 0;
+    const bool named = PyUnicode_Check(source);
+    const char *wanted = named ? python_text(source, "tool") : NULL;
+    if (named ? !wanted : !python_steps(source, "tool", &number)) return NULL;
+    lar_simulation *simulation = python_simulation_look(self, call);
+    if (!simulation) return NULL;
+    const int32_t count = lar_simulation_tool_count(simulation);
     lar_tool_info info;
-    for (int32_t i = 0; wanted && i < count; i++)
-        if (!lar_simulation_tool(simulation, i, &info, NULL) && strcmp(info.name, wanted) == 0) {
-            *index = i;
-            return true;
-        }
-    return wanted &&
-           python_refuse("tool: there is none called %R; Simulation.tools lists them", source);
+    for (int32_t i = 0; i < count; i++) {
+        *index = i;
+        if (named ? !lar_simulation_tool(simulation, i, &info, NULL) && !strcmp(info.name, wanted)
+                  : number == (unsigned long long)i)
+            return simulation;
+    }
+    if (named)
+        python_refuse("tool: there is none called %R; Simulation.tools lists them", source);
+    else
+        python_refuse("tool: there is no tool %R; the simulation has %d, counted from 0", source,
+                      (int)count);
+    return NULL;
 }
 
 /* ---- life ----------------------------------------------------------------------------------- */
@@ -75,8 +100,24 @@ bool python_simulation_tool(lar_simulation *simulation, PyObject *source, int32_
 static int word_of(const char *word, const char *name, const char *const *words, int count) {
     for (int i = 0; i < count; i++)
         if (strcmp(word, words[i]) == 0) return i;
-    python_refuse("%s: \"%s\" is none; there are %s, %s, ...", name, word, words[0], words[1]);
+    char all[80] = "";
+    for (int i = 0; i < count; i++) {
+        size_t at = strlen(all);
+        snprintf(all + at, sizeof all - at, "%s%s", i ? ", " : "", words[i]);
+    }
+    python_refuse("%s: \"%s\" is none; there are %s", name, word, all);
     return -1;
+}
+
+/* Times that a simulation is made with [s]. */
+static bool parse_times(PyObject *time_step, PyObject *tick, lar_options *o) {
+    if (!python_real(time_step, "time_step", &o->time_step) || !python_real(tick, "tick", &o->tick))
+        return false;
+    if (o->time_step < 0)
+        return python_refuse("time_step: expected seconds, or 0 for the model's, got %R",
+                             time_step);
+    return (o->tick >= 0 && o->tick <= 1e6) ||
+           python_refuse("tick: expected seconds up to 1e6, or 0 for none, got %R", tick);
 }
 
 static bool parse_options(PyObject *args, PyObject *keywords, PyObject **model, lar_options *o) {
@@ -87,15 +128,27 @@ static bool parse_options(PyObject *args, PyObject *keywords, PyObject **model, 
     static const char *const elements[] = {"hex8", "hex8-full", "hex8-matrix"};
     static const char *const isas[] = {"auto", "c", "neon", "avx2", "avx512"};
     const char *element = "hex8", *isa = "auto";
+    PyObject *grid = NULL, *threads = NULL, *kind_word = NULL, *isa_word = NULL, *time_step = NULL;
+    PyObject *scheme = NULL, *channels = NULL, *distribution = NULL, *schedules = NULL;
+    PyObject *hands = NULL, *spares = NULL, *pin = NULL, *tick = NULL;
     *o = lar_options_default();
-    if (!PyArg_ParseTupleAndKeywords(args, keywords, "O!|$zissdzzzziiipd:Simulation", names,
-                                     python_model_type, model, &o->grid, &o->threads, &element,
-                                     &isa, &o->time_step, &o->scheme, &o->channels,
-                                     &o->distribution, &o->schedules, &o->hands, &o->spares,
-                                     &o->pin, &o->search_always, &o->tick))
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, "O!|$OOOOOOOOOOOOpO:Simulation", names,
+                                     python_model_type, model, &grid, &threads, &kind_word,
+                                     &isa_word, &time_step, &scheme, &channels, &distribution,
+                                     &schedules, &hands, &spares, &pin, &o->search_always, &tick) ||
+        !python_word(grid, "grid", &o->grid) || !python_word(scheme, "scheme", &o->scheme) ||
+        !python_word(channels, "channels", &o->channels) ||
+        !python_word(distribution, "distribution", &o->distribution) ||
+        !python_word(schedules, "schedules", &o->schedules) ||
+        !python_int(threads, "threads", &o->threads) || !python_int(hands, "hands", &o->hands) ||
+        !python_int(spares, "spares", &o->spares) || !python_int(pin, "pin", &o->pin) ||
+        !parse_times(time_step, tick, o) ||
+        (kind_word && !(element = python_text(kind_word, "element"))) ||
+        (isa_word && !(isa = python_text(isa_word, "isa"))))
         return false;
-    int kind = word_of(element, "element", elements, 3), lanes = word_of(isa, "isa", isas, 5);
-    if (kind < 0 || lanes < 0) return false;
+    int kind = word_of(element, "element", elements, 3);
+    int lanes = kind < 0 ? -1 : word_of(isa, "isa", isas, 5);
+    if (lanes < 0) return false;
     o->element = (lar_element_kind)kind;
     o->isa = (lar_isa)lanes;
     return true;
@@ -249,6 +302,7 @@ bool python_simulation_advance(python_simulation *self, unsigned long long steps
     status = watched ? lar_simulation_advance_with(simulation, steps, look_for_signals, &w, &error)
                      : lar_simulation_advance(simulation, steps, &error);
     PyEval_RestoreThread(w.thread);
+    self->broken = status == LAR_ERROR_UNSTABLE;
     python_simulation_give(self);
     if (w.stopped) return false;
     if (status) python_raise(&error);
@@ -301,21 +355,27 @@ static bool parse_advance(PyObject *const *args, Py_ssize_t count, PyObject *nam
            python_refuse_type("advance: expected steps or seconds=, and not both");
 }
 
-bool python_seconds(PyObject *seconds, const lar_simulation *simulation,
+bool python_seconds(PyObject *seconds, python_simulation *self, const char *call,
                     unsigned long long *steps) {
     double time;
     if (!python_number(seconds, "seconds", &time)) return false;
-    double wanted = round(time / lar_simulation_time_step(simulation));
-    if (!(wanted >= 0 && wanted < 9e15))
-        return python_refuse("seconds: expected a time from 0 on, got %R", seconds);
+    const lar_simulation *simulation = python_simulation_look(self, call);
+    if (!simulation) return false;
+    const double time_step = lar_simulation_time_step(simulation);
+    const double wanted = round(time / time_step);
+    if (!(wanted >= 0)) return python_refuse("seconds: expected a time from 0 on, got %R", seconds);
+    if (!(wanted < 9e15)) {
+        char most[32];
+        snprintf(most, sizeof most, "%.3g", 9e15 * time_step);
+        return python_refuse("seconds: expected at most %s (9e15 steps), got %R", most, seconds);
+    }
     *steps = (unsigned long long)wanted;
     return true;
 }
 
 static bool steps_of(python_simulation *self, const advance_call *call, unsigned long long *steps) {
-    if (call->steps) return python_steps(call->steps, "steps", steps);
-    lar_simulation *simulation = python_simulation_look(self, "advance");
-    return simulation && python_seconds(call->seconds, simulation, steps);
+    return call->steps ? python_steps(call->steps, "steps", steps)
+                       : python_seconds(call->seconds, self, "advance", steps);
 }
 
 static PyObject *simulation_advance(PyObject *me, PyObject *const *args, Py_ssize_t count,

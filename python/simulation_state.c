@@ -54,12 +54,14 @@ static PyObject *field(PyObject *me, PyObject *args, PyObject *keywords) {
                  {"processor", LAR_FIELD_PROCESSOR}};
     python_simulation *self = (python_simulation *)me;
     const char *name;
-    PyObject *out = NULL;
-    if (!PyArg_ParseTupleAndKeywords(args, keywords, "s|O:field", names, &name, &out)) return NULL;
+    PyObject *word, *out = NULL;
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, "O|O:field", names, &word, &out) ||
+        !(name = python_text(word, "name")))
+        return NULL;
     int k = 0, count = sizeof known / sizeof known[0];
     while (k < count && strcmp(name, known[k].name) != 0) k++;
     if (k == count) {
-        python_refuse("field: \"%s\" is none; there are displacement, von_mises, pressure, energy, "
+        python_refuse("name: \"%s\" is none; there are displacement, von_mises, pressure, energy, "
                       "processor",
                       name);
         return NULL;
@@ -104,6 +106,7 @@ static PyObject *energies(PyObject *me, PyObject *nothing) {
     lar_energy e;
     PYTHON_UNLOCKED(lar_simulation_energy(simulation, &e));
     python_simulation_give(self);
+    if (!python_simulation_sound(self, "energies")) return NULL;
     return Py_BuildValue("{s:d,s:d,s:d,s:d,s:d,s:d,s:d}", "kinetic", e.kinetic, "strain", e.strain,
                          "hourglass", e.hourglass, "external", e.external, "damping", e.damping,
                          "contact", e.contact, "viscous", e.viscous);
@@ -130,6 +133,7 @@ static PyObject *reset(PyObject *me, PyObject *nothing) {
     lar_error error;
     lar_status status;
     PYTHON_UNLOCKED(status = lar_simulation_reset(simulation, &error));
+    if (!status) self->broken = false;
     python_asked_forget(self->asked);
     python_simulation_give(self);
     return python_answer(status, &error);
@@ -149,6 +153,7 @@ static PyObject *on_disk(python_simulation *self, PyObject *target, bool save) {
     PYTHON_UNLOCKED(status = save ? lar_simulation_save(simulation, bytes, &error)
                                   : lar_simulation_load(simulation, bytes, &error));
     if (!save) python_asked_forget(self->asked);
+    if (!save && !status) self->broken = false;
     python_simulation_give(self);
     Py_DECREF(path);
     return python_answer(status, &error);
@@ -163,8 +168,9 @@ static bool take_saved(python_saved *saved, const char *call) {
 static PyObject *in_memory(python_simulation *self, python_saved *saved, bool save) {
     const char *call = save ? "save" : "load";
     if (!take_saved(saved, call)) return NULL;
-    lar_simulation *simulation = python_simulation_take(self, call);
-    if (!simulation) return NULL;
+    lar_simulation *simulation = python_simulation_look(self, call);
+    if (!simulation || !python_saved_fits(saved, simulation, call)) return NULL;
+    self->busy = true;
     lar_error error;
     lar_status status;
     saved->busy = true;
@@ -172,6 +178,7 @@ static PyObject *in_memory(python_simulation *self, python_saved *saved, bool sa
                                   : lar_simulation_load_from(simulation, saved->saved, &error));
     saved->busy = false;
     if (!save) python_asked_forget(self->asked);
+    if (!save && !status) self->broken = false;
     if (!status && save) {
         saved->step = lar_simulation_steps(simulation);
         saved->time = lar_simulation_time(simulation);
@@ -184,11 +191,21 @@ static bool is_saved(PyObject *object) {
     return Py_TYPE(object) == python_saved_type;
 }
 
+static bool is_path(PyObject *object) {
+    return PyUnicode_Check(object) || PyBytes_Check(object) ||
+           PyObject_HasAttrString(object, "__fspath__");
+}
+
 static PyObject *save(PyObject *me, PyObject *args, PyObject *keywords) {
     static char *names[] = {"target", NULL};
     python_simulation *self = (python_simulation *)me;
     PyObject *target = Py_None;
     if (!PyArg_ParseTupleAndKeywords(args, keywords, "|O:save", names, &target)) return NULL;
+    if (target != Py_None && !is_saved(target) && !is_path(target)) {
+        python_refuse_type("target: expected a Saved, or a path, got %R",
+                           (PyObject *)Py_TYPE(target));
+        return NULL;
+    }
     if (target != Py_None && !is_saved(target)) return on_disk(self, target, true);
     if (is_saved(target)) {
         Py_INCREF(target);
@@ -199,6 +216,7 @@ static PyObject *save(PyObject *me, PyObject *args, PyObject *keywords) {
         lar_error error;
         *made = (python_saved){.ob_base = made->ob_base, .model = self->model};
         Py_INCREF((PyObject *)self->model);
+        lar_simulation_inspect(simulation, &made->of);
         if (lar_saved_create(simulation, &made->saved, &error)) {
             Py_DECREF((PyObject *)made);
             return python_raise(&error);
@@ -215,6 +233,11 @@ static PyObject *load(PyObject *me, PyObject *args, PyObject *keywords) {
     python_simulation *self = (python_simulation *)me;
     PyObject *source;
     if (!PyArg_ParseTupleAndKeywords(args, keywords, "O:load", names, &source)) return NULL;
+    if (!is_saved(source) && !is_path(source)) {
+        python_refuse_type("source: expected a Saved, or the path of a checkpoint, got %R",
+                           (PyObject *)Py_TYPE(source));
+        return NULL;
+    }
     if (!is_saved(source)) return on_disk(self, source, false);
     if (!in_memory(self, (python_saved *)source, false)) return NULL;
     Py_RETURN_NONE;
@@ -241,7 +264,9 @@ PyMethodDef python_state_methods[] = {
      "number of threads and instruction set; `lariat run` prints it in hexadecimal."},
     {"energies", energies, METH_NOARGS,
      "energies($self)\n--\n\ndict [J]: kinetic + strain + hourglass + damping + contact + viscous "
-     "= external (+ what it began with). As long as some steps."},
+     "= external (+ what it began with). As long as some steps. UnstableError when the run has "
+     "broken "
+     "off: they are not finite then."},
     {"contact", contact, METH_NOARGS,
      "contact($self)\n--\n\ndict: touching (nodes in contact with bodies and planes), deepest [m], "
      "searches, tested."},
@@ -255,5 +280,6 @@ PyMethodDef python_state_methods[] = {
      "Nodes, tools, settings and what tools felt."},
     {"load", FUNCTION(load), METH_VARARGS | METH_KEYWORDS,
      "load($self, source)\n--\n\nTakes up a Saved or a checkpoint at a path: from then on "
-     "everything is as if it had never stopped, on any grid. One of another model is refused."},
+     "everything is as if it had never stopped, on any grid. One of another model is refused, with "
+     "what differs."},
     {NULL, NULL, 0, NULL}};

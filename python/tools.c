@@ -2,10 +2,14 @@
 
 #include "module.h"
 
-/* Checks that the simulation may be used and finds the tool. */
 static lar_simulation *look(PyObject *me, PyObject *tool, int32_t *index, const char *call) {
-    lar_simulation *simulation = python_simulation_look((python_simulation *)me, call);
-    return simulation && python_simulation_tool(simulation, tool, index) ? simulation : NULL;
+    return python_simulation_tool((python_simulation *)me, call, tool, index);
+}
+
+/* For calls that do something to it, in a run that goes on. */
+static lar_simulation *look_sound(PyObject *me, PyObject *tool, int32_t *index, const char *call) {
+    lar_simulation *simulation = look(me, tool, index, call);
+    return simulation && python_simulation_sound((python_simulation *)me, call) ? simulation : NULL;
 }
 
 static PyObject *get_tools(PyObject *me, void *unused) {
@@ -34,13 +38,13 @@ static PyObject *tool_move(PyObject *me, PyObject *args, PyObject *keywords) {
                                      &steps, &orientation, &opening) ||
         (steps && !python_steps(steps, "steps", &count)))
         return NULL;
-    lar_simulation *simulation = look(me, tool, &index, "tool_move");
+    lar_simulation *simulation = look_sound(me, tool, &index, "tool_move");
     if (!simulation) return NULL;
     if (lar_simulation_tool_pose(simulation, index, &now, &error)) return python_raise(&error);
     python_asked *asked = &((python_simulation *)me)->asked[index];
     if (!python_pose(position, orientation, opening, asked, &now, &pose)) return NULL;
     /* Reading numbers may have run any code. */
-    if (!(simulation = look(me, tool, &index, "tool_move"))) return NULL;
+    if (!(simulation = look_sound(me, tool, &index, "tool_move"))) return NULL;
     if (lar_simulation_tool_move(simulation, index, &pose, count, &error))
         return python_raise(&error);
     python_asked_set(asked, &pose);
@@ -59,7 +63,7 @@ static PyObject *grasp(PyObject *me, PyObject *args, PyObject *keywords) {
         return NULL;
     lar_error error;
     lar_status status;
-    lar_simulation *simulation = look(me, tool, &index, "grasp");
+    lar_simulation *simulation = look_sound(me, tool, &index, "grasp");
     if (!simulation) return NULL;
     status = lar_simulation_grasp(simulation, index, point == Py_None ? NULL : place, count, &held,
                                   &error);
@@ -78,7 +82,7 @@ static PyObject *release(PyObject *me, PyObject *args, PyObject *keywords) {
     if (!PyArg_ParseTupleAndKeywords(args, keywords, "O|O:release", names, &tool, &steps) ||
         (steps && !python_steps(steps, "steps", &count)))
         return NULL;
-    lar_simulation *simulation = look(me, tool, &index, "release");
+    lar_simulation *simulation = look_sound(me, tool, &index, "release");
     if (!simulation) return NULL;
     ((python_simulation *)me)->asked[index].opening = 1;
     return python_answer(lar_simulation_release(simulation, index, count, &error), &error);
@@ -144,7 +148,7 @@ static PyObject *add_tool(PyObject *me, PyObject *args, PyObject *keywords) {
     lar_error error;
     int32_t index;
     if (!python_tool_wanted(args, keywords, &wanted)) return NULL;
-    lar_simulation *simulation = python_simulation_look((python_simulation *)me, "add_tool");
+    lar_simulation *simulation = python_simulation_look_sound((python_simulation *)me, "add_tool");
     if (!simulation) return NULL;
     if (lar_simulation_add_tool(simulation, &wanted, &index, &error)) return python_raise(&error);
     return PyLong_FromLong(index);
@@ -153,7 +157,7 @@ static PyObject *add_tool(PyObject *me, PyObject *args, PyObject *keywords) {
 static PyObject *remove_tool(PyObject *me, PyObject *tool) {
     int32_t index;
     lar_error error;
-    lar_simulation *simulation = look(me, tool, &index, "remove_tool");
+    lar_simulation *simulation = look_sound(me, tool, &index, "remove_tool");
     if (!simulation) return NULL;
     return python_answer(lar_simulation_remove_tool(simulation, index, &error), &error);
 }
@@ -185,7 +189,8 @@ PyMethodDef python_tool_methods[] = {
     {"add_tool", FUNCTION(add_tool), METH_VARARGS | METH_KEYWORDS,
      "add_tool($self, shape, radius, length=0.0, spread=0.0)\n--\n\nAdds a sphere, capsule or "
      "grasper in the first spare place (Simulation's spares=), above the body, and returns its "
-     "place. Metres and radians."},
+     "place. radius and length in metres; spread, the angle between a grasper's open jaws, in "
+     "radians (scenes have degrees), 0: 60 degrees."},
     {"remove_tool", remove_tool, METH_O,
      "remove_tool($self, tool)\n--\n\nTakes one that was added away."},
     {NULL, NULL, 0, NULL}};

@@ -78,11 +78,16 @@ PyObject *python_view_open(PyObject *me, PyObject *args, PyObject *keywords) {
     static char *names[] = {"open",   "address", "port",        "token", "watch_token",
                             "folder", "scan",    "save_folder", NULL};
     python_session *session = (python_session *)me;
+    PyObject *port = NULL, *word[6] = {NULL};
     lar_server_options o = {.port = 0};
     int shown = 1;
-    if (!PyArg_ParseTupleAndKeywords(args, keywords, "|$pzizzzzz:view", names, &shown, &o.address,
-                                     &o.port, &o.token, &o.watch_token, &o.folder, &o.scan,
-                                     &o.save_folder) ||
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, "|$pOOOOOOO:view", names, &shown, &word[0],
+                                     &port, &word[1], &word[2], &word[3], &word[4], &word[5]) ||
+        !python_word(word[0], "address", &o.address) || !python_int(port, "port", &o.port) ||
+        !python_word(word[1], "token", &o.token) ||
+        !python_word(word[2], "watch_token", &o.watch_token) ||
+        !python_word(word[3], "folder", &o.folder) || !python_word(word[4], "scan", &o.scan) ||
+        !python_word(word[5], "save_folder", &o.save_folder) ||
         !python_session_look(session, "view"))
         return NULL;
     if (session->view) {

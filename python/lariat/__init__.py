@@ -94,6 +94,7 @@ def _through_file(call):
 
 def _reduce_simulation(simulation):
     def save(path):
+        simulation.save()  # an unstable run says so, and not the path of a file that nobody knows
         simulation.save(path)
         with open(path, "rb") as file:
             return file.read()

@@ -11,6 +11,7 @@ in a queue, without the interpreter's lock, and there alone callbacks run and ex
 import json
 import os
 import queue
+import re
 import shutil
 import signal
 import subprocess
@@ -20,6 +21,8 @@ import warnings
 
 from ._lariat import (
     ArgumentError, Error, FileError, PeerError, UnstableError, UnsupportedError, __version__)
+
+from ._scene_text import check_text
 
 _FAILED, _USAGE, _UNSTABLE, _INTERRUPTED = 1, 2, 3, 130
 _versions = {}  # (path, time, inode): what it says it is
@@ -77,11 +80,13 @@ def program():
                            "lariat)")
 
 
-def argument(value):
+def argument(value, name):
     """What stands behind an option."""
     text = os.fspath(value) if isinstance(value, (str, bytes, os.PathLike)) else repr(value)
     if (b"\0" if isinstance(text, bytes) else "\0") in text:
-        raise ArgumentError("there is a character 0 in an argument")
+        raise ArgumentError(f"{name}: there is a character 0 in the text")
+    if isinstance(text, str):
+        check_text(text, name)
     return text
 
 
@@ -93,7 +98,7 @@ def options(**given):
             continue
         words.append("--" + name.replace("_", "-"))
         if value is not True:
-            words.append(argument(value))
+            words.append(argument(value, name))
     return words
 
 
@@ -157,6 +162,14 @@ def _follow(child, progress):
             child.stop()
 
 
+def _in_words_of_python(text):
+    """A message of the command's: options are keywords here."""
+    text = text.replace("lariat predict --list-machines tells", "predict(list_machines=True) tells")
+    text = text.replace("SCENE is missing", "model is missing")
+    return re.sub(r"(?<![\w/-])--([a-z]+(?:-[a-z]+)*)(?![\w/.])",
+                  lambda found: found[1].replace("-", "_"), text)
+
+
 def _refuse(status, text):
     if status < 0:
         raise PeerError(f"the command was ended by signal {-status}" + (f": {text}" if text else ""))
@@ -164,14 +177,14 @@ def _refuse(status, text):
         text or f"the command ended with status {status} and no message")
 
 
-def ask(command, arguments, *, folder=None, progress=None, keeps=False, level=3):
-    """Runs `lariat COMMAND ARGUMENTS --json` in `folder`. `progress` gets its lines of progress as
+def ask(command, arguments, *, folder, progress=None, keeps=False, level=3):
+    """Runs `lariat COMMAND ARGUMENTS --json` in the Folder. `progress` gets its lines of progress as
     dicts; False stops it. `keeps`: what is stopped has an answer all the same, where there is one.
     `level`: of the caller that warnings are for.
     """
     path = program()
     try:
-        child = _Child([path, command, "--json", *arguments], folder)
+        child = _Child([path, command, "--json", *arguments], folder.path)
     except OSError as error:
         raise FileError(f"{path} cannot be run: {error.strerror}") from None
     try:
@@ -182,6 +195,7 @@ def ask(command, arguments, *, folder=None, progress=None, keeps=False, level=3)
     said = [line.removeprefix(prefix) for line in messages]
     notes = [line.removeprefix("note: ") for line in said if line.startswith("note: ")]
     rest = "\n".join(line for line in said if not line.startswith("note: "))
+    rest = folder.told(_in_words_of_python(rest))
     if stopped and not (keeps and child.answer.strip()):
         if stopped == "Ctrl-C":
             raise KeyboardInterrupt
@@ -191,5 +205,6 @@ def ask(command, arguments, *, folder=None, progress=None, keeps=False, level=3)
     answer = json.loads(child.answer.decode("utf-8", "replace"))
     for note in notes:
         if note not in answer.get("notices", ()):
+            note = folder.told(note)
             warnings.warn(note, UserWarning, stacklevel=level)
     return answer

@@ -8,6 +8,17 @@ import re
 from ._lariat import ArgumentError
 
 
+def check_text(text, name):
+    """Refuses half of a pair of surrogates that is not from a path either."""
+    try:
+        text.encode("utf-8", "surrogateescape")
+    except UnicodeEncodeError as error:
+        raise ArgumentError(
+            f"{name}: character {error.start} of the text, counted from 0, is "
+            f"{text[error.start]!r}, half of a pair of surrogates and no character; leave it out"
+        ) from None
+
+
 def _tidy(value, where):
     """The value with numpy's scalars, arrays and paths as json knows them. What a file could not
     say is refused, with the key at which it stands."""
@@ -17,9 +28,15 @@ def _tidy(value, where):
         if not math.isfinite(value):
             raise ArgumentError(f"{where}: {value} is not a finite number")
         return value
-    if isinstance(value, (str, bool, int)):
+    if isinstance(value, str):
+        check_text(value, where)
+        return value
+    if isinstance(value, (bool, int)):
         return value
     if isinstance(value, dict):
+        for key in value:
+            if isinstance(key, str):
+                check_text(key, f"{where}: the key {key!r}")
         return {key: _tidy(one, f"{where}.{key}") for key, one in value.items()}
     if isinstance(value, (list, tuple)):
         return [_tidy(one, f"{where}[{i}]") for i, one in enumerate(value)]
@@ -40,3 +57,31 @@ def text_of(value, name):
             raise
         raise ArgumentError(f"{name}: {error}") from None
     return re.sub(r'(?<!\\)"all"(?!:)', "all", text)
+
+
+def _keys_of(text, line):
+    """The keys that lead to a line of a text of text_of, from 1 on: ".tools[0].radius"."""
+    keys = []  # one for each level: a name, or how many items of a list there were
+    for number, row in enumerate(text.split("\n"), 1):
+        depth = len(row) - len(row.lstrip(" "))
+        if depth and row[depth] not in "]}":  # what closes is no entry
+            named = re.match(r'("(?:[^"\\]|\\.)*"): ', row[depth:])
+            del keys[depth:]
+            if len(keys) < depth:
+                keys.append(None)
+            keys[-1] = json.loads(named[1]) if named else (
+                keys[-1] + 1 if isinstance(keys[-1], int) else 0)
+        if number == line:
+            break
+    return "".join(f"[{key}]" if isinstance(key, int) else f".{key}" for key in keys)
+
+
+def with_keys(message, name, text, file=None):
+    """A message about a text of text_of, with the keys of the dict in place of line and column."""
+    place = re.compile(rf"(?<![\w/.]){re.escape(file or name)}:(\d+):\d+: (?:(\w+): )?")
+
+    def keys(found):
+        path = name + _keys_of(text, int(found[1]))
+        again = found[2] is None or path.endswith("." + found[2])  # the sentence names it, too
+        return f"{path}: " if again else f"{path}: {found[2]}: "
+    return place.sub(keys, message)

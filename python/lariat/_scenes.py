@@ -4,7 +4,8 @@
         name = folder.model(model)       a Model, a Meshing, a dict or a path: what the command reads
 
 A folder is made when there is something to write into it, and is gone in the end. The command then
-runs in it, so that its messages name `scene.yaml`; paths of the caller's are made absolute.
+runs in it; in its messages `told` puts the caller's own words in place of the names of these files.
+Paths of the caller's are made absolute.
 """
 
 import base64
@@ -17,7 +18,7 @@ import tempfile
 from urllib.parse import quote
 
 from ._lariat import ArgumentError, Meshing, Model
-from ._scene_text import text_of
+from ._scene_text import check_text, text_of, with_keys
 
 _HEXAHEDRON = 12  # of VTK
 _VECTORS = 'NumberOfComponents="3"'
@@ -29,6 +30,7 @@ def path_of(source, name="path"):
         path = os.fsdecode(source)
     except TypeError:
         raise TypeError(f"{name}: expected a path, got {type(source)!r}") from None
+    check_text(path, name)
     if not path or "\0" in path:
         raise ArgumentError(f"{name}: expected a path, got {path!r}")
     return os.path.abspath(path)
@@ -87,7 +89,7 @@ def _file_entry(value, name):
         return [_file_entry(entry, name) for entry in value]
     if isinstance(value, dict):
         return {**value, "file": path_of(value["file"], name)} if "file" in value else value
-    return path_of(value, name)
+    return value if value == "given" else path_of(value, name)
 
 
 def _scene_with_paths(scene):
@@ -139,6 +141,7 @@ class Folder:
     def __init__(self):
         self._made = None
         self._names = set()
+        self._dicts = {}  # name of a file: what the caller calls it, and its text
 
     def __enter__(self):
         return self
@@ -164,12 +167,27 @@ class Folder:
             file.writelines(parts)
         return name
 
+    def dict_file(self, file, value, name):
+        """A file of what is in a dict, which the caller calls `name`; returns the file's name."""
+        text = text_of(value, name)
+        file = self.write(file, [text])
+        self._dicts[file] = name, text
+        return file
+
+    def told(self, message):
+        """A message of the command's, in which dicts and texts are no files."""
+        for file, (name, text) in self._dicts.items():
+            message = with_keys(message, name, text, file)
+            message = message.replace(f"the {name} {file}", f"the {name}")
+            message = re.sub(rf"(?<![\w/.]){re.escape(file)}(?=: )", name, message)
+        return message
+
     def model(self, model, name="model"):
         """What the command reads: a path."""
         if isinstance(model, Meshing):
             model = model.model()
         if isinstance(model, dict):
-            return self.write("scene.yaml", [text_of(_scene_with_paths(model), name)])
+            return self.dict_file("scene.yaml", _scene_with_paths(model), name)
         if not isinstance(model, Model):
             try:
                 return path_of(model, name)
@@ -181,7 +199,11 @@ class Folder:
             return path_of(recipe[0], name)
         nodes, hexahedra, scene, tags, sets, *fibres = recipe
         mesh = self.write("mesh.vtu", _vtu(nodes, hexahedra, tags, sets, *fibres))
-        return mesh if scene is None else self.write("scene.yaml", [_with_mesh(scene, mesh)])
+        if scene is None:
+            return mesh
+        file = self.write("scene.yaml", [_with_mesh(scene, mesh)])
+        self._dicts[file] = "scene", ""
+        return file
 
     def table(self, source, name):
         """A table: a path, or columns by their names."""
@@ -203,7 +225,7 @@ class Folder:
             raise ArgumentError('experiment: expected "experiments", a list of dicts')
         written = {}  # one file for a scene that several experiments have
         experiment["experiments"] = [self._entry(dict(entry), written) for entry in listed]
-        return self.write("experiment.yaml", [text_of(experiment, "experiment")])
+        return self.dict_file("experiment.yaml", experiment, "experiment")
 
     def _entry(self, entry, written):
         if "scene" in entry:

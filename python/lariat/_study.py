@@ -193,7 +193,7 @@ def _ask(command, model, options):
     with Folder() as folder:
         named = [] if model is None else ["--", folder.model(model)]
         try:
-            return Answer(ask(command, options + named, folder=folder.path, level=4))
+            return Answer(ask(command, options + named, folder=folder, level=4))
         except Error as error:
             if type(error) is Error and named:
                 try:
@@ -208,7 +208,8 @@ def info(model, *, against=None, scale=None, speed=True):
 
     model    a Model, a Meshing, a path (scene, deck or mesh), or a scene as a dict
     against  path of a surface (.stl .obj .vtk .vtp) to compare the mesh with, in place of the
-             model's embedded one
+             model's embedded one: an outer surface, since of bodies in it that overlap what is
+             inside another counts as far from the mesh
     scale    metres per unit of that surface (1)
     speed    False: do not step the model to see how fast it is, which takes up to some seconds
 
@@ -216,12 +217,22 @@ def info(model, *, against=None, scale=None, speed=True):
     are those of `lariat info --json` (docs/cli.md). Runs the command, which must be there; Ctrl-C
     ends it. A mesh that is probably in millimetres is a UserWarning.
     """
+    import os
+
     from ._command import options
+    from ._lariat import Error, FileError
     from ._scenes import path_of
 
-    given = options(against=None if against is None else path_of(against, "against"), scale=scale,
-                    no_speed=not speed)
-    return _ask("info", model, given)
+    if model is None:
+        raise TypeError("model: expected a Model, a path or a scene as a dict, got None")
+    if against is not None:
+        against = path_of(against, "against")
+    try:
+        return _ask("info", model, options(against=against, scale=scale, no_speed=not speed))
+    except Error as error:
+        if type(error) is Error and against is not None and not os.path.exists(against):
+            raise FileError(*error.args) from None
+        raise
 
 
 def requirements(model=None, *, grid=None, distribution=None, iterations=None, implicit_step=None,
@@ -327,7 +338,7 @@ def fit(experiment, *, out=None, progress=None):
         if not folder.path and not os.path.exists(name):
             raise FileError(f"{name}: there is no such file; check the path")
         try:
-            return Fit(ask("fit", [*options, "--", name], folder=folder.path,
+            return Fit(ask("fit", [*options, "--", name], folder=folder,
                            progress=bar.show if bar else progress, keeps=True), out)
         finally:
             if bar:
@@ -345,7 +356,6 @@ def profiles(film, view, *, out=None):
     uncertainty [m], ... Runs the command; Ctrl-C ends it.
     """
     from ._command import ask
-    from ._scene_text import text_of
     from ._scenes import Folder, path_of
 
     with Folder() as folder:
@@ -353,10 +363,10 @@ def profiles(film, view, *, out=None):
         if out is not None:
             options += ["--out", path_of(out, "out")]
         if isinstance(view, dict):
-            named = folder.write("view.yaml", [text_of({"lariat-view": 1, **view}, "view")])
+            named = folder.dict_file("view.yaml", {"lariat-view": 1, **view}, "view")
         else:
             named = path_of(view, "view")
-        return Answer(ask("fit", [*options, "--", named], folder=folder.path))
+        return Answer(ask("fit", [*options, "--", named], folder=folder))
 
 
 class _Bar:

@@ -34,8 +34,9 @@ lar_status lar_pose_normalise(lar_tool_pose *pose, const char *whose, lar_error 
     begin(whose, head);
     if (!good_position(pose->position))
         return lar_fail(error, LAR_ERROR_ARGUMENT,
-                        "%sthe position %g %g %g; it is three finite numbers, in metres", head,
-                        pose->position[0], pose->position[1], pose->position[2]);
+                        "%sthe position %g %g %g; it is three finite numbers, in metres, none "
+                        "beyond %g",
+                        head, pose->position[0], pose->position[1], pose->position[2], FARTHEST);
     if (!(fabs(square - 1) <= GIVEN))
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "%sthe orientation has length %.9g; it is a quaternion w, x, y, z of "

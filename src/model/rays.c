@@ -188,7 +188,8 @@ static lar_status check(int32_t count, const double (*origin)[3], const double (
         if (!good || size == 0)
             return lar_fail(error, LAR_ERROR_ARGUMENT,
                             "ray %ld, counted from 0, has no place or no direction: both need "
-                            "three finite numbers, and those of a direction cannot all be 0",
+                            "three finite numbers, of a place none beyond 1e30 m, and those of a "
+                            "direction cannot all be 0",
                             (long)k);
     }
     return LAR_OK;

@@ -83,7 +83,7 @@ lar_status lar_division_options(const lar_options *options, lar_schedule_options
                         options->scheme);
     if (use < 0)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
-                        "channels cannot be used %s; give sequential or concurrent",
+                        "there are no channels %s; give sequential or concurrent",
                         options->channels);
     out->scheme = (lar_scheme)scheme;
     out->channels = (lar_channel_use)use;

@@ -177,7 +177,7 @@ static lar_status set(lar_session *session, const lar_request *request, lar_erro
                         "a recording is being played; leave it to change gravity, damping, "
                         "stiffness, activation, tools, forces and supports");
     if (session->status.state == LAR_SESSION_STOPPED)
-        return lar_fail(error, LAR_ERROR_ARGUMENT,
+        return lar_fail(error, LAR_ERROR_UNSTABLE,
                         "the run has broken off; reset it or load a state before gravity, damping, "
                         "stiffness, activation, tools, forces and supports are changed");
     lar_setting setting = request->setting;
@@ -200,7 +200,7 @@ static lar_status grasp(lar_session *session, const lar_request *request, int32_
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "a recording is being played; leave it to take hold");
     if (session->status.state == LAR_SESSION_STOPPED)
-        return lar_fail(error, LAR_ERROR_ARGUMENT,
+        return lar_fail(error, LAR_ERROR_UNSTABLE,
                         "the run has broken off; reset it or load a state to take hold");
     if (tool->device)
         return lar_fail(error, LAR_ERROR_ARGUMENT,

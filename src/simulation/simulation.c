@@ -372,7 +372,7 @@ lar_status lar_simulation_compute(lar_simulation *simulation, uint64_t steps,
                                   lar_step_callback *callback, void *context, lar_error *error) {
     lar_fault *fault = &simulation->fault;
     lar_status status = LAR_OK;
-    if (!fault->kind) {
+    if (!fault->kind && steps > 0) { /* no step leaves what tools felt as it is */
         uint64_t before = lar_simulation_steps(simulation);
         status = advance(simulation, before + steps, callback, context, error);
         simulation->report_steps = lar_simulation_steps(simulation) - before;

@@ -72,12 +72,14 @@ lar_status lar_simulation_set_parameter_at(lar_simulation *simulation, int32_t m
         if (status) return status;
         entry.faster = faster_with(&simulation->domain, material, &made);
         double factor = simulation->tools.settings.factor[lar_factor_of(material)];
+        static const double SHORTEST = 1e9; /* more is no number that says anything */
         if (!(entry.faster * factor <= LAR_STIFFNESS_MAX))
             return lar_fail(error, LAR_ERROR_ARGUMENT,
                             "%g for %s asks for steps %.3g times as short as the model's "
                             "materials, with the stiffness that is set; they are divided for that "
                             "down to half: take a softer value, or one in the model",
-                            value, lar_parameter_name(&made, index), sqrt(entry.faster * factor));
+                            value, lar_parameter_name(&made, index),
+                            fmin(sqrt(entry.faster * factor), SHORTEST));
     }
     if (!lar_parameters_put(&wanted, model, &entry))
         return lar_fail(error, LAR_ERROR_ARGUMENT,

@@ -127,7 +127,7 @@ static lar_status check_add(const lar_simulation *simulation, int32_t place, lar
     lar_status status = lar_simulation_check_change(simulation, "lar_simulation_add_tool", error);
     if (status) return status;
     if (simulation->fault.kind)
-        return lar_fail(error, LAR_ERROR_ARGUMENT,
+        return lar_fail(error, LAR_ERROR_UNSTABLE,
                         "the run has broken off; reset it or load a state before tools are added");
     return check_place(simulation, place, error);
 }

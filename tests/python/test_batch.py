@@ -163,6 +163,21 @@ class States(unittest.TestCase):
             batch.reset([0], lariat.Simulation(block()).save())
         self.assertEqual(batch.hashes(), (end, end, then, start))
 
+    def test_two_poses_for_one_tool_are_refused(self):
+        batch = lariat.Batch(block(), 1)
+        with self.assertRaisesRegex(lariat.ArgumentError, "^tools: tool 0 is there twice$"):
+            batch.set_tool_poses([[[0, 0, 1, 1, 0, 0, 0]] * 2], tools=[0, "probe"])
+
+    def test_saving_changes_nothing_that_tools_felt(self):
+        batch = lariat.Batch(block(), 2)
+        for sim in batch:
+            sim.tool_move("probe", (0.03, 0.025, 0.035), steps=500)
+        batch.advance(1000)
+        felt = batch.wrenches().tolist()
+        self.assertGreater(felt[0][0][2], 0)
+        batch.save()
+        self.assertEqual(batch.wrenches().tolist(), felt)
+
     def test_unstable_members_are_named_and_the_others_sound(self):
         batch, alone = lariat.Batch(block(), 5, workers=2), lariat.Simulation(block())
         for i in (3, 1):

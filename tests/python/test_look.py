@@ -119,7 +119,7 @@ class Rays(unittest.TestCase):
                             ("cannot all be 0", lambda: sim.ray(up, (0, 0, 0))),
                             ("longest distance", lambda: sim.ray(up, up, -1)),
                             ("longest distance", lambda: sim.ray(up, up, math.nan)),
-                            ("ray 1, counted from 0", lambda: sim.rays([up, up], [up, (0, 0, 0)])),
+                            ("^directions: row 1", lambda: sim.rays([up, up], [up, (0, 0, 0)])),
                             ("one for each of 2", lambda: sim.rays([up, up], [up])),
                             ("origins: ", lambda: sim.rays([[1, 2]], [up])),
                             ("displacements: expected shape",

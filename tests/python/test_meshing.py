@@ -315,7 +315,7 @@ class Tissues(unittest.TestCase):
             "tissue: expected names of regions .*, got 3": {3: soft},
             "a region that is called 'a=b' cannot": {"a=b": soft},
             "a region that is called '' cannot": {"": soft},
-            "null": {"liver": soft + "\0"},
+            "character 0": {"liver": soft + "\0"},
             "character 0|null": {"li\0ver": soft},
             "at most 255": {str(number): soft for number in range(256)},
         }.items():

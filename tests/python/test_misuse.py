@@ -38,12 +38,192 @@ class Callbacks(unittest.TestCase):
         for option, words in ({"scheme": "x"}, "no communication scheme x"), ({"pin": 9}, "pin is 9"):
             with self.assertRaisesRegex(lariat.ArgumentError, words):
                 lariat.Simulation(model, **option)
-        with self.assertRaisesRegex(lariat.ArgumentError, "0 or more steps"):
+        with self.assertRaisesRegex(lariat.ArgumentError, "hash_every: .* from 0 on, got -1"):
             lariat.Session(self.sim, hash_every=-1)
 
     def test_closing_in_the_middle(self):
         with self.assertRaisesRegex(lariat.StateError, "closed"):
             self.sim.advance(20, callback=lambda s: s.close(), every=10)
+
+
+class Numbers(unittest.TestCase):
+    """Numbers that are none, that are too large, or of another unit: which, and what was expected."""
+
+    def setUp(self):
+        self.sim = lariat.Simulation(block(), spares=2, hands=1)
+
+    def refuses(self, words, call, kind=lariat.ArgumentError):
+        with self.assertRaisesRegex(kind, words) as caught:
+            call()
+        self.assertNotRegex(str(caught.exception), r"lar_|LAR_|\bNULL\b|\binf\b(?<!got inf)")
+
+    def test_rays(self):
+        sim = self.sim
+        self.refuses("^origin: .* none beyond 1e30$", lambda: sim.ray((1e300, 0, 0), (0, 0, 1)))
+        self.refuses("^origins: row 1: .*1e30$",
+                     lambda: sim.rays([(0, 0, 1), (1e300, 0, 0)], [(0, 0, 1)] * 2))
+        self.refuses("^direction: .* cannot all be 0$", lambda: sim.ray((0, 0, 1), (0, 0, 0)))
+        self.refuses("^directions: row 0: .* cannot all be 0$",
+                     lambda: sim.model.rays([(0, 0, 1)], [(0, 0, 0)]))
+        for longest in (-1, float("nan")):
+            self.refuses("^longest: expected the longest distance, 0 or more, or None for any, got",
+                         lambda: sim.ray((0, 0, 1), (0, 0, -1), longest))
+        self.refuses("^longest: expected a number, got <class 'str'>",
+                     lambda: sim.ray((0, 0, 1), (0, 0, -1), "x"), TypeError)
+        far = [[0.0] * 3 for _ in range(sim.model.node_count)]
+        far[7][2] = 1e300
+        self.refuses("^displacements: row 7 ", lambda: sim.model.rays(
+            [(0, 0, 1)], [(0, 0, -1)], displacements=far))
+
+    def test_sizes_and_angles_of_tools(self):
+        sim = self.sim
+        with lariat.Session(lariat.Simulation(block(), spares=1)) as session:
+            for add in (sim.add_tool, session.add_tool):
+                self.refuses("^radius: expected metres, got 1e.300$", lambda: add("sphere", 1e300))
+                self.refuses("^a length of 1000 mm is too large", lambda: add("capsule", 0.01, 1))
+                self.refuses("^radius: .*finite", lambda: add("sphere", float("inf")))
+                self.refuses("^length: .*finite", lambda: add("capsule", 0.01, float("nan")))
+                self.refuses("^spread: .*radians.* got 50; math.radians",
+                             lambda: add("grasper", 0.002, 0.02, 50))
+                self.refuses("^spread: .*less than pi.* got -1$",
+                             lambda: add("grasper", 0.002, 0.02, -1))
+                self.refuses("^shape: expected a text", lambda: add(3, 0.01), TypeError)
+                self.refuses("^radius: expected a number", lambda: add("sphere", "x"), TypeError)
+            # Those of a scene are degrees: those of the model and of calls radians.
+            self.assertGreater(sim.add_tool("grasper", 0.002, 0.02, 0.9), 0)
+
+    def test_steps_and_seconds(self):
+        sim = self.sim
+        sim.advance(3)
+        for call in (sim.advance, lambda n: sim.tool_move(0, (0, 0, 1), steps=n),
+                     lambda n: sim.advance(1, callback=print, every=n)):
+            self.refuses(r"at most 2\^53, got 18446744073709551615$", lambda: call(2**64 - 1))
+            self.refuses(r"from 0 on, got -1$", lambda: call(-1))
+            self.refuses("expected a whole number, got 1e.300$", lambda: call(1e300), TypeError)
+        for call in (sim.advance, sim.rest):
+            self.refuses("^seconds: expected at most .* steps., got 1e.300$",
+                         lambda: call(seconds=1e300))
+            self.refuses("^seconds: expected a finite number, got inf",
+                         lambda: call(seconds=float("inf")))
+        self.assertEqual(sim.step, 3)
+
+    def test_options_are_named(self):
+        model = self.sim.model
+        for name, value, kind, words in (
+                ("hands", 1.5, TypeError, "a whole number, got 1.5"),
+                ("spares", 2**40, ValueError, "beyond all bounds"),
+                ("time_step", "x", TypeError, "a number, got"), ("time_step", -1, ValueError, "got -1"),
+                ("tick", float("inf"), ValueError, "finite"), ("tick", 1e300, ValueError, "1e6"),
+                ("element", 3, TypeError, "a text"), ("grid", 2, TypeError, "a text")):
+            self.refuses(f"^{name}: .*{words}", lambda: lariat.Simulation(model, **{name: value}), kind)
+        self.refuses("^element: .*hex8, hex8-full, hex8-matrix$",
+                     lambda: lariat.Simulation(model, element="hex"))
+        for name, value in (("tick", -1), ("pace", 1e300), ("tool_speed", float("nan")),
+                            ("hand_force", "x"), ("priority", 1.5), ("hash_every", 2**70)):
+            self.refuses(f"^{name}: ", lambda: lariat.Session(self.sim, **{name: value}),
+                         (ValueError, TypeError))
+        self.refuses("^node: ", lambda: self.sim.force(10**30))
+        self.refuses("^node: there is no node 168; the model has 168", lambda: self.sim.support(168))
+        self.refuses("no steps|1e.09 times",
+                     lambda: self.sim.set_parameter("soft", "shear_modulus", 1e300))
+
+
+class Texts(unittest.TestCase):
+    """Texts that are none, and the library's words in those of Python."""
+
+    def test_half_of_a_pair_of_surrogates_and_a_zero(self):
+        sim, bad = lariat.Simulation(block(), spares=1), "a\ud800"
+        session = lariat.Session(lariat.Simulation(block()))
+        self.addCleanup(session.close)
+        calls = {
+            "tool": lambda t: sim.tool_pose(t), "material": lambda t: sim.stiffness(t),
+            "where": lambda t: sim.set_force(t), "axes": lambda t: sim.set_support(0, axes=t),
+            "name": lambda t: sim.field(t), "cause": lambda t: sim.nodal_forces(t),
+            "shape": lambda t: sim.add_tool(t, 0.01), "device": lambda t: session.attach(0, t),
+            "grid": lambda t: lariat.Simulation(sim.model, grid=t), "target": sim.save,
+            "source": sim.load, "path": lariat.Model, "folder": lariat.write_demo,
+            "address": lambda t: session.view(open=False, address=t),
+            "scene.title": lambda t: block(title=t), "model": lariat.info,
+            "title": lambda t: lariat.mesh([[0, 0, 0]], [[0, 0, 0]], title=t)}
+        for name, call in calls.items():
+            with self.assertRaisesRegex(lariat.ArgumentError,
+                                        f"^{re.escape(name)}: character 1 of the text.*surrogates"):
+                call(bad)
+            if name not in ("scene.title", "model"):
+                with self.assertRaisesRegex(lariat.ArgumentError, f"^{name}: .*character 0"):
+                    call("a\0b")
+
+    def test_empty_paths_and_other_things(self):
+        sim = lariat.Simulation(block())
+        for call in (lariat.Model, sim.save, sim.load, lariat.checkpoint_info):
+            with self.assertRaisesRegex(lariat.ArgumentError, "expected a path, got ''"):
+                call("")
+        with self.assertRaisesRegex(TypeError, "^source: expected a Saved, or the path"):
+            sim.load(3)
+        with self.assertRaisesRegex(TypeError, "^target: expected a Saved, or a path"):
+            sim.save(3)
+
+    def test_no_name_of_c_reaches_python(self):
+        sim, grid = lariat.Simulation(block(), spares=1), lariat.Simulation(block(), grid="2x1x1")
+        alone = lariat.Simulation(block())
+        with lariat.Session(lariat.Simulation(block(), spares=1)) as session:
+            for call, words in (
+                    (lambda: sim.set_force("none", (0, 0, 1)), "Model.sets lists"),
+                    (lambda: sim.set_support("none"), "Model.sets lists"),
+                    (lambda: session.set_support("none"), "Model.sets lists"),
+                    (lambda: sim.set_force(10**6, (0, 0, 1)), r"clear_forces\(\) removes all"),
+                    (lambda: sim.set_stiffness(2, 7), "; None means all"),
+                    (lambda: sim.tool_move(1, (0, 0, 1)), "add one with add_tool"),
+                    (lambda: session.tool_move(1, (0, 0, 1)), "add one with add_tool"),
+                    (lambda: alone.add_tool("sphere", 0.01), "make the Simulation with spares="),
+                    (lambda: session.attach(0, ""), "^device: "),
+                    (lambda: lariat.Simulation(sim.model, time_step=1), "time_step=0"),
+                    (lambda: lariat.Model("a.checkpoint"), r"load\(\) it there; as a command"),
+                    (lambda: lariat.mesh([[0, 0, 0]], [[0, 0, 0]], elements=-1), "^elements: "),
+                    (lambda: lariat.mesh([[0, 0, 0]], [[0, 0, 0]], size=-1), "^size: "),
+                    (grid.clone, "with save and load")):
+                with self.assertRaisesRegex(lariat.Error, words) as caught:
+                    call()
+                self.assertNotRegex(str(caught.exception), "lar_|LAR_|NULL|options|, and -1")
+
+
+class Sly:
+    """A number that does something when it is read."""
+
+    def __init__(self, do):
+        self.do = do
+
+    def __index__(self):
+        self.do()
+        return 0
+
+    def __float__(self):
+        self.do()
+        return 0.0
+
+
+class Closing(unittest.TestCase):
+    def test_while_a_number_is_read(self):
+        """What is freed meanwhile is not used."""
+        model = block()
+        for call in (lambda s, n: s.advance(seconds=n), lambda s, n: s.rest(seconds=n),
+                     lambda s, n: s.tool_pose(n), lambda s, n: s.remove_tool(n),
+                     lambda s, n: s.tool_move(n, (0, 0, 1)), lambda s, n: s.tool_touches(n),
+                     lambda s, n: s.nodal_forces("tool", n), lambda s, n: s.force(n),
+                     lambda s, n: s.set_stiffness(n), lambda s, n: s.ray((n, 0, 0), (0, 0, 1))):
+            sim = lariat.Simulation(model, hands=1)
+            with self.assertRaisesRegex(lariat.StateError, "closed"):
+                call(sim, Sly(sim.close))
+        for call in (lambda s, n: s.step(n), lambda s, n: s.set_pace(n), lambda s, n: s.seek(n),
+                     lambda s, n: s.snapshot(n), lambda s, n: s.tool_force(n), lambda s, n: s.felt(n),
+                     lambda s, n: s.force_history(0, n), lambda s, n: s.add_tool("sphere", n),
+                     lambda s, n: s.tool_move(0, (n, 0, 1)), lambda s, n: s.view(open=False, port=n)):
+            session = lariat.Session(lariat.Simulation(model, hands=1))
+            with self.assertRaisesRegex(lariat.StateError, "closed"):
+                call(session, Sly(session.close))
+        batch = lariat.Batch(model, 2)
+        with self.assertRaisesRegex(lariat.StateError, "closed"):
+            batch.set_tool_poses([[[0, 0, 1, 1, 0, 0, 0]]] * 2, tools=[Sly(batch.close)])
 
 
 class Threads(unittest.TestCase):

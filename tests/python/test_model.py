@@ -183,6 +183,37 @@ class Arrays(unittest.TestCase):
         endless["sets"] = [endless]
         self.refuses(lariat.ArgumentError, "^scene: .*recursion", scene=endless)
 
+    def test_what_is_wrong_in_a_dict_is_named_by_its_keys(self):
+        material, tool = SCENE["materials"][0], SCENE["tools"][0]
+        grasper = {"name": "g", "shape": "grasper", "radius": 0.002, "length": 0.02,
+                   "at": [0.03, 0.025, 0.06]}
+        for words, changes in (
+                (r"gravitas: the key", {"gravitas": 1}), (r"damping: expected", {"damping": "20"}),
+                (r"materials\[0\]\.shear_modulus: shear_modulus is -3",
+                 {"materials": [{**material, "shear_modulus": -3}]}),
+                (r"materials\[1\]\.name: a second",  {"materials": [material, material]}),
+                (r"fix\[1\]\.nodes: the set", {"fix": [*SCENE["fix"], {"nodes": "x", "axes": "z"}]}),
+                (r"tools\[0\]: the tool would", {"tools": [{**tool, "at": [0.03, 0.02, 0.01]}]}),
+                (r"tools\[1\]\.at: expected", {"tools": [tool, {**tool, "name": "b", "at": [1, 2]}]}),
+                (r"tools\[0\]\.spread: these jaws do not part.*radians, write 51.6",
+                 {"tools": [{**grasper, "spread": 0.9}]}),
+                (r"mesh: the mesh of this scene was given", {"mesh": "a.vtu"})):
+            self.refuses(lariat.Error, rf"^scene\.{words}", scene={**SCENE, **changes})
+        self.refuses(lariat.FormatError, "^scene: a scene needs the key", scene={})
+        self.refuses(lariat.FormatError, "^scene:2:1: the key", scene="lariat: 1\ngravitas: 1\n")
+        wide = block(tools=[{**grasper, "spread": 50}]).tools[0]["spread"]
+        self.assertAlmostEqual(wide, math.radians(50))
+
+    def test_a_file_with_a_mesh_that_is_given(self):
+        import tempfile
+        with tempfile.TemporaryDirectory(prefix="lariat-test-") as folder:
+            path = os.path.join(folder, "scene.yaml")
+            with open(path, "w", encoding="utf-8") as file:
+                file.write("lariat: 1\nmesh: given\n")
+            with self.assertRaisesRegex(lariat.ModelError, "yaml:2:7: mesh: given stands for a mesh "
+                                        "from arrays.*name its mesh file"):
+                lariat.Model(path)
+
     def test_a_dict_that_changes_meanwhile(self):
         class Sly(int):
             def __index__(self):

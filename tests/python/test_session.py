@@ -19,6 +19,35 @@ def wait_until(condition, seconds=60):
         time.sleep(0.002)
 
 
+class Stopped(unittest.TestCase):
+    """A run that has broken off: the class of errors that advance has, until it is taken up."""
+
+    def test_what_would_change_it_is_refused_until_a_reset(self):
+        sim = lariat.Simulation(block(), hands=1, spares=1)
+        session = lariat.Session(sim, pace=0, stop_when_unstable=True)
+        self.addCleanup(session.close)
+        session.set_force("top", (0, 0, 250))
+        wait_until(lambda: session.status()["state"] == "stopped")
+        calls = (lambda: setattr(session, "gravity", None), lambda: setattr(session, "damping", 1),
+                 lambda: session.set_stiffness(2), lambda: session.set_support(0),
+                 lambda: session.set_force(0, (0, 0, 1)), session.clear_forces,
+                 lambda: session.add_tool("sphere", 0.01), lambda: session.remove_tool(2),
+                 lambda: session.grasp(1, (0, 0, 0.03)), lambda: session.release(1),
+                 session.play, lambda: session.step(3))
+        for call in calls:
+            with self.assertRaisesRegex(lariat.UnstableError, "the run has broken off; reset"):
+                call()
+        session.close()
+        with self.assertRaisesRegex(lariat.UnstableError, "the run has broken off"):
+            sim.gravity = None
+        session = lariat.Session(sim, pace=0)
+        session.reset()
+        session.step(3)
+        wait_until(lambda: session.status()["step"] >= 3)
+        session.close()
+        sim.gravity = None
+
+
 class Sessions(unittest.TestCase):
     def setUp(self):
         self.sim = lariat.Simulation(block(), hands=1, spares=1)
@@ -39,6 +68,21 @@ class Sessions(unittest.TestCase):
         self.sim.advance(1)
         with self.assertRaisesRegex(lariat.StateError, "closed"):
             self.session.snapshot()
+
+    def test_calls_that_only_ask_return_none_and_check_what_they_are_given(self):
+        for call in (self.session.play, self.session.pause, lambda: self.session.step(1),
+                     lambda: self.session.set_pace(1)):
+            self.assertIsNone(call())
+        for words, call in (("no recording is being played", lambda: self.session.seek(1)),
+                            ("^seconds: .* from 0", lambda: self.session.seek(-1)),
+                            ("^pace: .* to 1e6", lambda: self.session.set_pace(1e300)),
+                            ("^steps: expected at most", lambda: self.session.step(2**64 - 1)),
+                            ("^timeout: .* got nan", lambda: self.session.snapshot(float("nan"))),
+                            ("^after: .* from 0 on", lambda: self.session.force_history(0, -1))):
+            with self.assertRaisesRegex(lariat.ArgumentError, words):
+                call()
+        with self.assertRaisesRegex(TypeError, "^timeout: expected a number"):
+            self.session.snapshot("x")
 
     def test_the_snapshot_is_the_state_of_its_hash(self):
         self.session.pause()

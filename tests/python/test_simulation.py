@@ -10,7 +10,7 @@ import tempfile
 import unittest
 
 import lariat
-from common import EDGE, SCENE, WITHOUT_NUMPY, block, child, demo, numpy
+from common import EDGE, SCENE, WITHOUT_NUMPY, block, block_arrays, child, demo, numpy
 
 LARIAT = os.environ.get("LARIAT_COMMAND")
 
@@ -477,8 +477,60 @@ class Life(unittest.TestCase):
         with self.assertRaisesRegex(ArithmeticError, "step|element|node") as caught:
             sim.advance(20000)
         self.assertEqual(caught.exception.status, "unstable")
+        why = str(caught.exception)
+        changes = (lambda: setattr(sim, "gravity", None), lambda: setattr(sim, "damping", 1),
+                   lambda: sim.set_stiffness(2), sim.clear_forces, lambda: sim.set_support(0),
+                   lambda: sim.set_force(0, (0, 0, 1)), lambda: sim.add_tool("sphere", 0.01),
+                   lambda: sim.tool_move(0, (0, 0, 1)), lambda: sim.grasp(0), sim.energies,
+                   lambda: sim.set_parameter("soft", "shear_modulus", 2000))
+        for change in changes:
+            with self.assertRaisesRegex(lariat.UnstableError, r"reset\(\) or load\(\)") as again:
+                change()
+            self.assertTrue(str(again.exception).endswith(why))
+        for call in (sim.clone, sim.save, lambda: sim.advance(0), lambda: pickle.dumps(sim)):
+            with self.assertRaisesRegex(lariat.UnstableError, "^(the state|unstable) at step"):
+                call()
+        self.assertEqual(len(sim.positions()), sim.model.node_count)
         sim.reset()
         sim.advance(10)
+        sim.set_stiffness(2)
+        self.assertGreater(sim.energies()["strain"], 0)
+
+    def test_no_steps_change_nothing_that_tools_felt(self):
+        model = block()
+        for options in ({}, {"grid": "2x1x1"}):
+            with lariat.Simulation(model, **options) as sim:
+                sim.tool_move("probe", (0.03, 0.025, 0.035), steps=500)
+                sim.advance(1000)
+                felt = sim.tool_force("probe")
+                self.assertGreater(felt["depth"], 0)
+                sim.advance(0)
+                self.assertEqual(sim.tool_force("probe"), felt)
+
+    def test_a_saved_state_says_what_differs(self):
+        model = block()
+        sim = lariat.Simulation(model, hands=1)
+        saved = sim.save()
+        others = {"it has 2 tools .hands count, too., the simulation 1$": lariat.Simulation(model),
+                  "it has 0 spares, the simulation 2$": lariat.Simulation(model, hands=1, spares=2),
+                  "time step is .* the simulation's 0.0001 s$":
+                      lariat.Simulation(model, hands=1, time_step=1e-4),
+                  "elements are hex8, the simulation's hex8-full":
+                      lariat.Simulation(model, hands=1, element="hex8-full"),
+                  "another model: its Model is another object.*at a path":
+                      lariat.Simulation(block(), hands=1)}
+        for words, other in others.items():
+            for name, call in (("load", other.load), ("save", other.save)):
+                with self.assertRaisesRegex(lariat.ArgumentError, f"^{name}: the Saved .*{words}"):
+                    call(saved)
+        nodes, hexahedra, sets = block_arrays((2, 2, 2))
+        small = lariat.Model.from_arrays(nodes, hexahedra, SCENE, sets=sets)
+        with self.assertRaisesRegex(lariat.ArgumentError, "168 nodes and 90 elements, the simulation "
+                                    "27 and 8;"):
+            lariat.Simulation(small).load(saved)
+        with lariat.Session(lariat.Simulation(model)) as session:
+            with self.assertRaisesRegex(lariat.ArgumentError, "^load: .*it has 2 tools"):
+                session.load(saved)
 
     @unittest.skipIf(os.environ.get("LARIAT_TEST_SANITIZED"), "sanitizers keep what was freed")
     def test_ten_thousand_come_and_go_without_growth(self):

@@ -183,8 +183,14 @@ double lar_scene_size(const lar_mesh *mesh) {
 }
 
 lar_status lar_scene_check_mesh(const lar_scene *scene, const lar_yaml **mesh) {
-    if (!scene->given)
-        return lar_scene_need(scene, scene->root, "a scene", "mesh", "mesh: organ.vtu", mesh);
+    if (!scene->given) {
+        lar_status status =
+            lar_scene_need(scene, scene->root, "a scene", "mesh", "mesh: organ.vtu", mesh);
+        if (status || !lar_scene_is_word(*mesh, "given")) return status;
+        return lar_scene_fail(scene, *mesh, LAR_ERROR_MODEL,
+                              "mesh: given stands for a mesh from arrays, and none were given with "
+                              "this scene; name its mesh file, for example mesh: organ.vtu");
+    }
     *mesh = lar_yaml_get(scene->root, "mesh");
     const lar_yaml *surface = lar_yaml_get(scene->root, "surface");
     if (*mesh && !lar_scene_is_word(*mesh, "given"))
