@@ -23,7 +23,7 @@ static lar_status ask_and_wait(lar_session *session, lar_request request, lar_er
         lar_requests_place(&session->requests, &request);
         while (!answer->done) lar_requests_wait(&session->requests, INT64_MAX);
     } else {
-        lar_simulation_reserve_here(session->simulation); /* a host's ticks have reserved it */
+        lar_simulation_reserve_here(session->simulation);
         if (session->hosted) lar_session_execute_asked(session);
         lar_session_execute(session, &request);
         lar_simulation_reserve_here(NULL);

@@ -153,11 +153,13 @@ lar_status lar_session_open(lar_simulation *simulation, const lar_session_option
     make_advice(session);
     lar_session_publish(session, true);
     status = record_from_start(session, error);
-    if (status)
+    if (status) {
         destroy(session);
-    else
-        *out = session;
-    return status;
+        return status;
+    }
+    lar_simulation_reserve(simulation, true);
+    *out = session;
+    return LAR_OK;
 }
 
 static lar_status refuse_thread(const lar_session *session, int cause, lar_error *error) {
@@ -185,12 +187,10 @@ lar_status lar_session_start(lar_session *session, lar_error *error) {
             session->status.state =
                 session->options.paused ? LAR_SESSION_PAUSED : LAR_SESSION_PLAYING;
         lar_session_publish(session, true);
-        lar_simulation_reserve(session->simulation, true);
         int cause = lar_thread_start_urgent(&session->thread, session->options.priority,
                                             lar_session_run, session);
         session->started = cause == 0;
         if (cause) {
-            lar_simulation_reserve(session->simulation, false);
             session->status.state = LAR_SESSION_IDLE;
             lar_session_publish(session, true);
             status = refuse_thread(session, cause, error);

@@ -338,10 +338,8 @@ void lar_session_execute_asked(lar_session *session) {
     while (lar_requests_take(&session->requests, &request)) lar_session_execute(session, &request);
 }
 
-/* The simulation is the session's own from now on. */
 static void begin_hosted(lar_session *session) {
     session->hosted = true;
-    lar_simulation_reserve(session->simulation, true);
     if (session->status.state != LAR_SESSION_IDLE) return;
     if (session->options.paused)
         session->status.state = LAR_SESSION_PAUSED;

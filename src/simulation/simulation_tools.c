@@ -33,8 +33,8 @@ lar_status lar_simulation_check_zero(const lar_simulation *simulation, const cha
         return LAR_OK;
     return lar_fail(
         error, LAR_ERROR_ARGUMENT,
-        "%s: a session computes on this simulation, and two at once would spoil it; ask "
-        "the session (lar_session_...), or close it first",
+        "%s: a session has this simulation for itself, and two at once would spoil it; ask the "
+        "session (lar_session_...), or close it first",
         call);
 }
 

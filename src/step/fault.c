@@ -89,7 +89,7 @@ static lar_status report_element(const lar_domain *domain, const lar_fault *faul
     const lar_mesh *mesh = &domain->model->mesh;
     const double *place = fault->place, volume_ratio = fault->volume_ratio, growth = fault->growth;
     const char *cause, *remedy;
-    if (fault->tool > 0)
+    if (fault->tool != 0)
         return lar_fault_report_tool(domain, fault, describe_action(domain, fault), error);
     if (!isfinite(volume_ratio) || !isfinite(growth))
         return lar_fail(error, LAR_ERROR_UNSTABLE,
@@ -144,7 +144,7 @@ static lar_status report_speed(const lar_domain *domain, const lar_fault *fault,
     const lar_mesh *mesh = &domain->model->mesh;
     lar_gid node = fault->element;
     const double *place = fault->place, highest = fault->speed;
-    if (fault->tool > 0)
+    if (fault->tool != 0)
         return lar_fault_report_tool(domain, fault, "exceeds the speed limit at", error);
     if (!isfinite(highest))
         return lar_fail(error, LAR_ERROR_UNSTABLE,
@@ -174,7 +174,7 @@ static lar_status report_load(const lar_domain *domain, const lar_fault *fault, 
 }
 
 static lar_status report_gain(const lar_domain *domain, const lar_fault *fault, lar_error *error) {
-    if (fault->tool > 0)
+    if (fault->tool != 0)
         return lar_fault_report_tool(domain, fault, "folds the surface over itself at", error);
     return lar_fail(error, LAR_ERROR_UNSTABLE,
                     "unstable at step %llu (%.6g s): contact has given %.3g J more than it took, "
@@ -202,7 +202,7 @@ static lar_status report_too_fast(const lar_domain *domain, const lar_fault *fau
             ? ", the less since many faces are crowded around the nodes that may touch "
               "them"
             : "";
-    if (fault->tool > 0)
+    if (fault->tool != 0)
         return lar_fault_report_tool(domain, fault,
                                      fault->too_many_pairs
                                          ? "crowds the surface and exceeds the speed limit at"

@@ -1,14 +1,18 @@
-/* Which tool an unstable run has to do with: people can move it slower, when they are told. */
+/* Which tool, or force that was set, an unstable run has to do with: people can move it slower or
+ * make it smaller, when they are told. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
+#include "base/vector.h"
 #include "step/step.h"
 
 /* A tool that is no farther from a broken element than so many of its edges had a part in it. One
  * that moves, or has just come to rest, may be farther off: what it has bent springs back when it
  * slips off, and what it pulls may break some layers below. */
 static const double TOUCHING = 1.5, MOVING = 8, PULLING = 6;
+/* A force no farther than so many edges; a tool that is nearer comes before it. */
+static const double PUSHING = 3;
 enum { JUST = 1000 };
 
 /* The middle of an element at rest, and about how long its edges are. */
@@ -44,6 +48,26 @@ static double holding_distance(const lar_domain *domain, const lar_tools *tools,
     return nearest;
 }
 
+/* Names the nearest force; returns how far it is, INFINITY: too far [m]. */
+static double pushing_distance(const lar_domain *domain, const lar_tools *tools,
+                               const double rest[3], double edge, lar_fault *fault) {
+    double nearest = PUSHING * edge;
+    for (int32_t i = 0; i < tools->forces.count; i++) {
+        const lar_force_entry *entry = &tools->forces.entry[i];
+        const lar_force_nodes on = lar_force_nodes_of(domain->model, entry);
+        for (int32_t n = 0; n < on.count; n++) {
+            double way[3];
+            lar_minus(domain->model->mesh.position[on.node[n]], rest, way);
+            if (!(lar_length(way) < nearest)) continue;
+            nearest = lar_length(way);
+            fault->tool = -1;
+            fault->pushed = on.node[n];
+            fault->force = lar_length(entry->force);
+        }
+    }
+    return fault->tool < 0 ? nearest : INFINITY;
+}
+
 void lar_fault_attribute(const lar_domain *domain, const lar_tools *tools, lar_fault *fault) {
     const lar_tool_faces *faces = &domain->surroundings.faces;
     const lar_tool_list *list = domain->surroundings.list;
@@ -51,27 +75,29 @@ void lar_fault_attribute(const lar_domain *domain, const lar_tools *tools, lar_f
     bool of_element = fault->kind == LAR_FAULT_ELEMENT || fault->kind == LAR_FAULT_ENERGY_GAIN;
     if (fault->attributed || !(moves || of_element)) return;
     fault->attributed = true;
-    if (faces->face_count == 0 || fault->element < 0) return;
+    if (fault->element < 0) return;
     double rest[3], edge = 0, closest = 1;
     if (of_element) {
         edge = element_at_rest(domain, fault->element, rest);
     } else {
         memcpy(rest, domain->model->mesh.position[fault->element], sizeof rest);
-        edge = faces->face[0].edge;
+        edge = faces->face_count > 0 ? faces->face[0].edge : domain->thinnest;
     }
+    const double force = pushing_distance(domain, tools, rest, edge, fault);
+    if (faces->face_count == 0) return;
     for (int32_t t = 0; t < list->count; t++) {
         const lar_tool *tool = &list->tool[t];
         lar_tool_pose pose;
         double velocity[3];
         if (tool->shape == LAR_TOOL_NONE) continue;
         lar_tool_at(&tools->motion[t], fault->step, domain->time_step, &pose, velocity);
-        double holding = holding_distance(domain, tools, t, rest) / (PULLING * edge),
-               touching = INFINITY;
+        double holding = holding_distance(domain, tools, t, rest), touching = INFINITY;
         const lar_tool_motion *motion = &tools->motion[t];
         bool moving = motion->end > 0 && fault->step < motion->end + JUST;
-        if (tool->shape != LAR_TOOL_HAND)
-            touching = touching_distance(tool, &pose, fault->place) /
-                       ((moving ? MOVING : TOUCHING) * edge);
+        if (tool->shape != LAR_TOOL_HAND) touching = touching_distance(tool, &pose, fault->place);
+        if (!(fmin(holding, touching) < force)) continue;
+        holding /= PULLING * edge;
+        touching /= (moving ? MOVING : TOUCHING) * edge;
         if (!(fmin(holding, touching) < closest)) continue;
         closest = fmin(holding, touching);
         fault->tool = t + 1;
@@ -84,10 +110,20 @@ void lar_fault_attribute(const lar_domain *domain, const lar_tools *tools, lar_f
 lar_status lar_fault_report_tool(const lar_domain *domain, const lar_fault *fault,
                                  const char *what_it_does, lar_error *error) {
     const lar_mesh *mesh = &domain->model->mesh;
-    const lar_tool *tool = &domain->surroundings.list->tool[fault->tool - 1];
     bool element = fault->kind == LAR_FAULT_ELEMENT || fault->kind == LAR_FAULT_ENERGY_GAIN;
     long long number = (long long)(element ? mesh->element_id : mesh->node_id)[fault->element];
     char motion[80];
+    if (fault->tool < 0)
+        return lar_fail(error, LAR_ERROR_UNSTABLE,
+                        "unstable at step %llu (%.6g s): the force of %.3g N that was set on node "
+                        "%lld %s %s %lld near (%.4g, %.4g, %.4g) m; set a smaller one, on more "
+                        "nodes or growing from step to step, or use a smaller time step or a "
+                        "finer mesh there",
+                        (unsigned long long)fault->step, (double)fault->step * domain->time_step,
+                        fault->force, (long long)mesh->node_id[fault->pushed], what_it_does,
+                        element ? "element" : "node", number, fault->place[0], fault->place[1],
+                        fault->place[2]);
+    const lar_tool *tool = &domain->surroundings.list->tool[fault->tool - 1];
     if (fault->tool_speed > 0)
         snprintf(motion, sizeof motion, "moves at %.3g m/s and", fault->tool_speed);
     else

@@ -41,8 +41,10 @@ typedef struct lar_fault {
                           */
     /* What lar_fault_attribute found. */
     bool attributed, tool_pulls;
-    int32_t tool;      /* counted from 1; 0: none has to do with it */
+    int32_t tool;      /* counted from 1; 0: none has to do with it; -1: a force that was set */
     double tool_speed; /* [m/s] */
+    lar_gid pushed;    /* by that force */
+    double force;      /* [N] */
 } lar_fault;
 
 /* Every so many steps spare nodes are put back. */
@@ -143,13 +145,13 @@ static inline lar_condition_context lar_domain_context(const lar_domain *domain)
 void lar_fault_examine(const lar_domain *domain, const lar_state *state, lar_lid first, lar_lid end,
                        lar_fault *fault);
 
-/* Looks for the tool that has to do with an examined fault, once. `domain` is the whole model's;
- * the tools still move as they did. */
+/* Looks for the tool, or the force that was set, that has to do with an examined fault, once.
+ * `domain` is the whole model's; the tools still move as they did. */
 void lar_fault_attribute(const lar_domain *domain, const lar_tools *tools, lar_fault *fault);
 
 /* The sentence for an examined fault: element or node, place, time, cause and remedy. */
 lar_status lar_fault_report(const lar_domain *domain, const lar_fault *fault, lar_error *error);
-/* The same where fault->tool has caused it: it does what to the element or node. */
+/* The same where fault->tool is not 0: that does what to the element or node. */
 lar_status lar_fault_report_tool(const lar_domain *domain, const lar_fault *fault,
                                  const char *what_it_does, lar_error *error);
 

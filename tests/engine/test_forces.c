@@ -4,6 +4,7 @@
 #include "simulation/checkpoint.h"
 #include "engine/engine_test.h"
 #include "engine/changes_test.h"
+#include "engine/tools_test.h"
 
 #define PATH LAR_TEST_BUILD "/forces.checkpoint"
 
@@ -268,6 +269,29 @@ static void a_file_knows_its_sets(void **unused) {
     lar_model_destroy(other);
 }
 
+/* Whoever pulls too hard at a node reads that, in the same words on every grid, and not of a ball
+ * that hangs in the air beside it. */
+static void what_tears_is_named(void **unused) {
+    (void)unused;
+    static const char *const grids[] = {NULL, "2x1x1", "2x2x1"};
+    char first[1016] = "";
+    for (int g = 0; g < 3; g++) {
+        lar_model *model = make(false);
+        lar_error error = {0};
+        lar_options options = lar_options_default();
+        options.grid = grids[g];
+        add_tool(model, "ball", LAR_TOOL_SPHERE, 0.065, -0.02, -0.02);
+        lar_simulation *simulation = start_with(model, options);
+        set_at(simulation, corner_node(), 0, -60, 0);
+        assert_int_equal(lar_simulation_advance(simulation, 2000, &error), LAR_ERROR_UNSTABLE);
+        if (!strstr(error.message, "the force of 60 N that was set on node"))
+            fail_msg("%s", error.message);
+        if (g == 0) memcpy(first, error.message, sizeof first);
+        assert_string_equal(error.message, first);
+        finish(simulation, model);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(they_are_loads_of_the_model),
                                        cmocka_unit_test(they_end_when_they_are_removed),
@@ -277,6 +301,7 @@ int main(void) {
                                        cmocka_unit_test(processes_agree),
                                        cmocka_unit_test(a_run_goes_on_with_its_forces),
                                        cmocka_unit_test(a_damaged_one_is_refused),
-                                       cmocka_unit_test(a_file_knows_its_sets)};
+                                       cmocka_unit_test(a_file_knows_its_sets),
+                                       cmocka_unit_test(what_tears_is_named)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

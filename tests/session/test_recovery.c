@@ -392,11 +392,13 @@ static void lost_processors_stop(void **unused) {
     bench b = open_bench(NULL, 0, NULL);
     lar_error error = {LAR_ERROR_PEER, "processor 1 is lost"};
     b.session->tool[BALL].led = true;
+    lar_simulation_reserve_here(b.simulation); /* as in its thread */
     assert_false(lar_session_recover(b.session, &error));
     assert_int_equal(error.status, LAR_ERROR_PEER);
     error = (lar_error){LAR_ERROR_UNSTABLE, "element 7"};
     assert_true(lar_session_recover(b.session, &error));
     assert_string_equal(b.session->status.recovery, "went back 0.00 s to the start: element 7");
+    lar_simulation_reserve_here(NULL);
     close_bench(&b);
 }
 

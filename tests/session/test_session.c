@@ -51,20 +51,22 @@ static void refused_by(const char *part, lar_status status) {
     if (!strstr(failure.message, part)) fail_msg("%s", failure.message);
 }
 
-/* Nobody else may compute what a session computes, or change it. */
+/* Nobody else may compute what a session computes, or change it, from when it is open: recordings
+ * begin there. */
 static void has_its_simulation_for_itself(void **unused) {
     (void)unused;
+    static const char busy[] = "a session has this simulation";
     bench b = open_bench(NULL, 0, NULL);
     lar_session *other = NULL;
+    lar_results *results = NULL;
     refused_by("a session is open", lar_session_open(b.simulation, NULL, &other, &failure));
     assert_null(other);
-    DONE(lar_simulation_advance(b.simulation, 1, &failure)); /* it does not compute yet */
-    lar_results *results = NULL;
+    refused_by(busy, lar_simulation_advance(b.simulation, 1, &failure));
+    refused_by(busy, lar_simulation_set_damping(b.simulation, 1, &failure));
     DONE(lar_results_open("session_results", b.simulation, &results, &failure));
-    DONE(lar_results_add(results, b.simulation, &failure));
+    refused_by(busy, lar_results_add(results, b.simulation, &failure));
     DONE(lar_session_start(b.session, &failure));
     await(&b, LAR_SESSION_PLAYING, 20);
-    static const char busy[] = "a session computes on this simulation";
     const lar_tool_pose pose = {.position = {0, 0, 0.1}, .orientation = {1, 0, 0, 0}};
     refused_by(busy, lar_simulation_advance(b.simulation, 1, &failure));
     refused_by(busy, lar_simulation_reset(b.simulation, &failure));
