@@ -77,6 +77,7 @@ typedef struct mean_load {
     double grasp_force;         /* how hard jaws may close [N] */
     double excess;              /* how many times more than may be, at least 1 */
     double more; /* part of what may be beyond that force which hands press with, 0 to 1 */
+    bool touched;
 } mean_load;
 
 /* How fast elements are, as lar_step_division.need says, and have been. */
@@ -122,6 +123,7 @@ static mean_load mean_of(const lar_tool_felt *felt, const lar_tool_limits *limit
     double gives = fmax(fmax(force, turn), jaws.room * grasp);
     double other = fmax(depth, max > 0 ? need.now / BORNE_RATE : 0);
     *load = fmax(max, other);
+    mean.touched = max > 0 || depth > 0;
     double more = (HELD_RATE - need.lately) / (HELD_RATE - FREE_RATE);
     mean.more = max > 0 ? fmin(1, fmax(0, more)) : 1;
     if (other > 1 && other > gives && gives > 0) mean.excess = other / gives;
@@ -185,8 +187,11 @@ static void turn_between(const double from[4], const double to[4], double vector
     for (int i = 0; i < 3; i++) vector[i] = (turn[0] < 0 ? -2 : 2) * turn[1 + i];
 }
 
-/* What the hand may draw with against what tissue pushes with along three coordinates. */
+/* What the hand may draw with against what tissue pushes with along three coordinates. What touches
+ * nothing follows whatever drags, for drag is a matter of contact: with a step far below what the
+ * body would bear it is so hard that the limit moves a tool by millimetres in a second. */
 static double draws(const mean_load *mean, const lar_tool_limits *limits, const double *pushed) {
+    if (!mean->touched) return INFINITY;
     double max = limits->force, force = sqrt(dot(3, pushed, pushed));
     force = fmin(fmax(force, LITTLE * max), max);
     return max -
@@ -216,7 +221,7 @@ static void step_pose(const lar_tool *tool, const lar_tool_limits *limits, const
     if (tool->shape != LAR_TOOL_GRASPER || !(limits->travel > 0)) return;
     gap[0] = limits->travel * (hand->opening - now->opening);
     pushed[0] = mean->excess * mean->squeeze;
-    if (!go(law, 1, gap, pushed, mean->grasp_force, way))
+    if (!go(law, 1, gap, pushed, mean->touched ? mean->grasp_force : INFINITY, way))
         next->opening = fmin(1, fmax(0, now->opening + way[0] / limits->travel));
 }
 
