@@ -881,15 +881,18 @@ LAR_API lar_status lar_simulation_tool_move(lar_simulation *simulation, int32_t 
                                             lar_error *error);
 /* Takes hold. A hand does so at `point` [m], at once, whatever it held before; *held (may be NULL)
  * says how many surface points it has got, 0 when there was nothing within its reach, and then it
- * is open. A grasper closes its jaws where it is within `steps` steps and takes what is between
- * them when they begin; `point` counts for hands only, who need one. */
+ * is open. A grasper closes its jaws where it is within `steps` steps, as far as what is between
+ * them lets it (the force of jaws is bounded, and less the more they strain), and takes that when
+ * they begin; `point` counts for hands only, who need one. */
 LAR_API lar_status lar_simulation_grasp(lar_simulation *simulation, int32_t tool,
                                         const double point[3], uint64_t steps, int32_t *held,
                                         lar_error *error);
 /* Lets go: a hand at once, a grasper by opening its jaws within `steps` steps. */
 LAR_API lar_status lar_simulation_release(lar_simulation *simulation, int32_t tool, uint64_t steps,
                                           lar_error *error);
-/* Where it is now. */
+/* Where it is now, which may be short of where it was asked to be. Jaws that hold something are
+ * open by that much: who moves them on gives lar_simulation_tool_move the opening that they shall
+ * have (0), for this one would let go. */
 LAR_API lar_status lar_simulation_tool_pose(const lar_simulation *simulation, int32_t tool,
                                             lar_tool_pose *pose, lar_error *error);
 LAR_SIZED lar_status lar_simulation_tool_force(const lar_simulation *simulation, int32_t tool,
@@ -942,7 +945,9 @@ LAR_API lar_status lar_simulation_remove_tool(lar_simulation *simulation, int32_
                                               lar_error *error);
 
 /* Strained elements and tools that press hard need shorter steps: for as long as they do, every
- * step is computed in several parts: 2, 3, 4, 6, 8, 12, ... up to 32. Now; 1: not divided. */
+ * step is computed in several parts: 2, 3, 4, 6, 8, 12, ... up to 32. Now; 1: not divided. It is
+ * decided every eight steps, and with tools or spares, wherever they are, as many as fit into
+ * 0.4 ms: so a tool in the air changes the bits of a run whose steps are divided. */
 LAR_API int32_t lar_simulation_step_parts(const lar_simulation *simulation);
 /* How many steps were divided since the simulation was created, and into how many parts at most
  * (`max`; may be NULL). Going back, loading and a reset do not change these. */
@@ -1107,7 +1112,9 @@ LAR_API int lar_model_until_rest(const lar_model *model);
 typedef struct lar_session lar_session;
 
 typedef struct lar_session_options {
-    double tick;            /* seconds of simulated time between exchanges; 0: 1 ms. Whole steps */
+    double tick;            /* seconds of simulated time between exchanges; 0: 1 ms. In whole steps,
+                               lar_session_info.tick, for a clock of one's own: lar_options.tick
+                               makes it exact */
     double pace;            /* simulated seconds per second of the clock; 0: as fast as it goes */
     int paused;             /* not 0: starts paused */
     double tool_speed;      /* tools follow their devices no faster than this [m/s]; 0: 1 m/s */
@@ -1156,6 +1163,7 @@ LAR_SIZED void lar_session_inspect(const lar_session *session, lar_session_info 
 LAR_API void lar_session_play(lar_session *session);
 LAR_API void lar_session_pause(lar_session *session);
 LAR_API void lar_session_step(lar_session *session, uint64_t steps); /* pauses after them */
+/* 0 to 1e6, as lar_session_options.pace; another one is passed over. */
 LAR_API void lar_session_set_pace(lar_session *session, double pace);
 /* These wait until it is done, or failed. */
 LAR_API lar_status lar_session_reset(lar_session *session, lar_error *error);
@@ -1409,7 +1417,8 @@ LAR_API int32_t lar_session_force_history(const lar_session *session, int32_t to
 typedef struct lar_recording_info {
     lar_element_kind element;
     int32_t nodes, elements; /* of the model */
-    int32_t tools, hands;    /* lar_options.hands, and with them all tools */
+    int32_t tools;           /* all, these among them: */
+    int32_t hands;           /* lar_options.hands */
     double time_step;        /* [s] */
     uint64_t tick_steps;     /* steps of a tick */
     int32_t spares;          /* lar_options.spares: as many at least */

@@ -702,7 +702,7 @@ class Session : public detail::Handle<lar_session, detail::close> {
     }
     /* At most `max` points. */
     std::vector<lar_touch> tool_touches(std::int32_t tool, std::int32_t max = 1024) {
-        std::vector<lar_touch> touch(static_cast<std::size_t>(max));
+        std::vector<lar_touch> touch(static_cast<std::size_t>(max > 0 ? max : 0));
         auto count =
             detail::ask<std::int32_t>(lar_session_tool_touches, get(), tool, max, touch.data());
         if (count < max) touch.resize(static_cast<std::size_t>(count));

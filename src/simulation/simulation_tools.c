@@ -155,6 +155,9 @@ lar_status lar_simulation_tool_move(lar_simulation *simulation, int32_t index,
 
 lar_status lar_tool_check_grasp(const lar_tool *tool, const double point[3], lar_error *error) {
     if (tool->shape == LAR_TOOL_GRASPER) return LAR_OK;
+    if (tool->shape == LAR_TOOL_NONE)
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "a place for tools is empty: none was added there, or it was removed");
     if (tool->shape != LAR_TOOL_HAND)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "tool %s is no hand and no grasper: it cannot take hold", tool->name);

@@ -99,7 +99,7 @@ static lar_status check_positions(const lar_mesh *mesh, lar_error *error) {
             if (!(fabs(mesh->position[n][i]) <= FARTHEST))
                 return lar_fail(error, LAR_ERROR_MODEL,
                                 "%s: node %lld has the %c coordinate %g, which is no usable "
-                                "number; correct it in the file",
+                                "number; correct it",
                                 source_of(mesh), (long long)mesh->node_id[n], "xyz"[i],
                                 mesh -> position[n][i]);
     return LAR_OK;
