@@ -52,7 +52,7 @@ expect 0 "$LARIAT" view $scene --port 0 --seconds 0.3 --json --paused --device p
 
 # Slow motion: which of the two it is and what would help, and what is late in it is no miss.
 expect 0 "$LARIAT" view $scene --port 0 --seconds 3 --pace 90
-complains 'note: slow motion, [0-9.]* times real time: a step takes [0-9.]* us and stands for [0-9.]* us of the clock; what would hold: .*a mesh of about [0-9]* elements, or a slower pace$'
+complains 'note: slow motion, [0-9.]* times real time: a step takes [0-9.]* us and stands for [0-9.]* us of the clock; what would hold: .*a mesh of about [0-9]* elements, or a slower pace'
 says '^real-time factor.*because steps take longer than the time they stand for'
 says '^ticks .*, 0 missed (0.000 %); [0-9]* more were late in slow motion$'
 says "^a tick's forces *median [0-9.]* ms, .* longest [0-9.]* ms$"
