@@ -109,6 +109,10 @@ if(NOT CMAKE_CROSSCOMPILING)
     DESTINATION ${CMAKE_INSTALL_DATADIR})
 endif()
 
+# What headers and help refer to; pictures only where pages are read with them.
+install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} FILES_MATCHING PATTERN "*.md"
+  PATTERN images EXCLUDE PATTERN report EXCLUDE PATTERN notebooks EXCLUDE)
+
 # Both package files find the prefix from where they lie, so that an installed tree can be moved.
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/Lariat)
 configure_package_config_file(cmake/LariatConfig.cmake.in ${PROJECT_BINARY_DIR}/LariatConfig.cmake

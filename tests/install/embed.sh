@@ -38,6 +38,7 @@ for file in man/man1/lariat.1 man/man1/lariat-run.1 man/man1/lariat-bench-kernel
     bash-completion/completions/lariat zsh/site-functions/_lariat fish/vendor_completions.d/lariat.fish; do
     [ -s "$prefix/share/$file" ] || fail "share/$file was not installed"
 done
+[ -s "$prefix/share/doc/lariat/docs/formats.md" ] || fail "the pages that the header names are not installed"
 "$prefix/bin/lariat" help run --man | cmp -s - "$prefix/share/man/man1/lariat-run.1" ||
     fail "the installed man page is not of this command"
 
