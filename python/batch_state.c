@@ -403,10 +403,12 @@ static lar_status load_member(python_member_call *call, python_member *member, i
                               bool caller, lar_error *error) {
     const load_call *l = call->context;
     (void)caller;
-    python_asked_forget(member->simulation->asked);
-    lar_status status = l->saved
-                            ? lar_simulation_load_from(member->taken, l->saved[place]->saved, error)
-                            : lar_simulation_reset(member->taken, error);
+    python_asked *asked = member->simulation->asked;
+    const python_saved *saved = l->saved ? l->saved[place] : NULL;
+    lar_status status = saved ? lar_simulation_load_from(member->taken, saved->saved, error)
+                              : lar_simulation_reset(member->taken, error);
+    python_asked_forget(asked);
+    if (!status && saved) memcpy(asked, saved->asked, sizeof saved->asked);
     if (!status) member->simulation->broken = false;
     return status;
 }

@@ -67,6 +67,7 @@ typedef struct python_saved {
     bool busy;
     unsigned long long step; /* of the state in it */
     double time;             /* [s] */
+    python_asked asked[LAR_TOOLS_MAX];
 } python_saved;
 
 typedef struct python_view python_view;

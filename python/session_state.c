@@ -1,11 +1,15 @@
 /* class Session: states, recordings, snapshots. */
 #include "module.h"
 
+static PyObject *kept(python_session *self, lar_status status, const lar_error *error) {
+    python_session_give(self);
+    return python_answer(status, error);
+}
+
 /* Ends a call that took the session, after which tools may be elsewhere. */
 static PyObject *done(python_session *self, lar_status status, const lar_error *error) {
     python_asked_forget(self->asked);
-    python_session_give(self);
-    return python_answer(status, error);
+    return kept(self, status, error);
 }
 
 static PyObject *reset(PyObject *me, PyObject *nothing) {
@@ -36,7 +40,8 @@ static PyObject *with_path(PyObject *me, PyObject *source, const char *call, pat
     lar_status status;
     PYTHON_UNLOCKED(status = make(session, bytes, &error));
     Py_XDECREF(path);
-    return done(self, status, &error);
+    bool stays = make == lar_session_record || make == lar_session_save;
+    return stays ? kept(self, status, &error) : done(self, status, &error);
 }
 
 static PyObject *record(PyObject *me, PyObject *path) {
@@ -67,8 +72,10 @@ static PyObject *with_saved(python_session *self, python_saved *saved, bool save
         lar_session_status_get(session, &now);
         saved->step = now.step;
         saved->time = now.time;
+        memcpy(saved->asked, self->asked, sizeof saved->asked);
     }
-    return done(self, status, &error);
+    if (!status && !save) memcpy(self->asked, saved->asked, sizeof self->asked);
+    return status && !save ? done(self, status, &error) : kept(self, status, &error);
 }
 
 static PyObject *save(PyObject *me, PyObject *target) {

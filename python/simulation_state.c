@@ -177,9 +177,11 @@ static PyObject *in_memory(python_simulation *self, python_saved *saved, bool sa
     PYTHON_UNLOCKED(status = save ? lar_simulation_save_to(simulation, saved->saved, &error)
                                   : lar_simulation_load_from(simulation, saved->saved, &error));
     saved->busy = false;
-    if (!save) python_asked_forget(self->asked);
+    if (!save && status) python_asked_forget(self->asked);
+    if (!save && !status) memcpy(self->asked, saved->asked, sizeof self->asked);
     if (!save && !status) self->broken = false;
     if (!status && save) {
+        memcpy(saved->asked, self->asked, sizeof saved->asked);
         saved->step = lar_simulation_steps(simulation);
         saved->time = lar_simulation_time(simulation);
     }

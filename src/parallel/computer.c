@@ -271,7 +271,7 @@ static void check_clocks(lar_computer *computer, int32_t self, uint64_t round) {
 static void after_step(lar_computer *computer, lar_worker *worker, int32_t number, bool *faulted) {
     lar_processor *p = worker->processor;
     uint64_t done = worker->state.step, stop = done + (uint64_t)computer->division.spread + 1;
-    if (p->exchange) lar_contact_check_travel(worker, stop - done);
+    if (p->exchange) lar_contact_check_travel(worker, stop - done, done >= computer->until);
     if (worker->fault.kind && !*faulted) {
         *faulted = true;
         lar_fault_examine(&p->domain, &worker->state, worker->context.first, worker->context.end,

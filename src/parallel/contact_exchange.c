@@ -146,12 +146,13 @@ lar_status lar_contact_apply(lar_worker *worker, uint64_t round, lar_error *erro
 
 /* ---- in time --------------------------------------------------------------------------------- */
 
-void lar_contact_check_travel(lar_worker *worker, uint64_t steps) {
+void lar_contact_check_travel(lar_worker *worker, uint64_t steps, bool ends) {
     const lar_body_contact *contact = &worker->interactions.body_contact;
     double allowed = 0.5 * contact->list.skin;
     double speed = fmax(2 * worker->state.fastest, LAR_CONTACT_SPEED);
     uint64_t done = worker->state.step;
-    if (!(contact->moved <= allowed) && !worker->fault.kind)
+    bool late = !(contact->moved <= allowed) && !(ends && worker->state.parts == 1);
+    if (late && !worker->fault.kind)
         worker->fault = (lar_fault){.kind = LAR_FAULT_TOO_FAST, .element = -1, .step = done - 1};
     if (contact->moved + (double)(steps + 1) * speed * worker->context.whole_step > allowed)
         lar_processor_ask_stop(worker->processor, done + steps);

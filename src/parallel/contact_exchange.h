@@ -134,7 +134,8 @@ void lar_contact_publish(lar_worker *worker, uint64_t round);
 lar_status lar_contact_send(lar_worker *worker, uint64_t round, lar_error *error);
 lar_status lar_contact_apply(lar_worker *worker, uint64_t round, lar_error *error);
 
-/* After a step: asks for a stop in time, or reports a fault. `steps`: until all have stopped. */
-void lar_contact_check_travel(lar_worker *worker, uint64_t steps);
+/* After a step: asks for a stop in time, or reports a fault. `steps`: until all have stopped;
+ * `ends`: they stop now, and the list is looked at before it is used again. */
+void lar_contact_check_travel(lar_worker *worker, uint64_t steps, bool ends);
 
 #endif
