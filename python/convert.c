@@ -11,15 +11,22 @@ static PyObject *shown(PyObject *source) {
 /* Beyond this one step could not be told from the next as a number. */
 static const unsigned long long WHOLE_MAX = 1ull << 53;
 
-bool python_steps(PyObject *source, const char *name, unsigned long long *steps) {
+/* `overflow` says on which side the number is beyond all. */
+static bool whole_number(PyObject *source, const char *name, long long *number, int *overflow) {
     PyObject *index = PyNumber_Index(source);
     if (!index) {
         PyErr_Clear();
         return python_refuse_type("%s: expected a whole number, got %R", name, shown(source));
     }
-    int overflow = 0;
-    const long long number = PyLong_AsLongLongAndOverflow(index, &overflow);
+    *number = PyLong_AsLongLongAndOverflow(index, overflow);
     Py_DECREF(index);
+    return true;
+}
+
+bool python_steps(PyObject *source, const char *name, unsigned long long *steps) {
+    int overflow = 0;
+    long long number;
+    if (!whole_number(source, name, &number, &overflow)) return false;
     *steps = (unsigned long long)number;
     if (overflow < 0 || (!overflow && number < 0))
         return python_refuse("%s: expected a whole number from 0 on, got %R", name, source);
@@ -28,15 +35,10 @@ bool python_steps(PyObject *source, const char *name, unsigned long long *steps)
 }
 
 bool python_int(PyObject *source, const char *name, int *out) {
-    if (!source) return true;
-    PyObject *index = PyNumber_Index(source);
-    if (!index) {
-        PyErr_Clear();
-        return python_refuse_type("%s: expected a whole number, got %R", name, shown(source));
-    }
     int overflow = 0;
-    const long long number = PyLong_AsLongLongAndOverflow(index, &overflow);
-    Py_DECREF(index);
+    long long number;
+    if (!source) return true;
+    if (!whole_number(source, name, &number, &overflow)) return false;
     *out = (int)number;
     if (!overflow && number >= INT32_MIN && number <= INT32_MAX) return true;
     return python_refuse("%s: %R is beyond all bounds", name, source);

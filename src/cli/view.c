@@ -459,7 +459,7 @@ static int view_main(int argc, char **argv) {
                  100),
         CLI_FLAG("--paused", "wait for play", &s.paused),
         CLI_COUNT("--priority", "N",
-                  "the engine's thread goes before all ordinary ones of the\nmachine (SCHED_FIFO); "
+                  "the threads that compute go before all ordinary ones of the\nmachine (SCHED_FIFO); "
                   "needs the right to (ulimit -r)",
                   &s.priority, 1, 99),
         CLI_REAL("--seconds", "S", "end after so many seconds of the clock; without: at Ctrl-C",

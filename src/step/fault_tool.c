@@ -107,34 +107,36 @@ void lar_fault_attribute(const lar_domain *domain, const lar_tools *tools, lar_f
     }
 }
 
+/* Who has caused it, and what to do about that. */
+static void name_cause(const lar_domain *domain, const lar_fault *fault, char *cause, size_t size,
+                       const char **remedy) {
+    if (fault->tool < 0) {
+        snprintf(cause, size, "the force of %.3g N that was set on node %lld", fault->force,
+                 (long long)domain->model->mesh.node_id[fault->pushed]);
+        *remedy = "set a smaller one, on more nodes or growing from step to step";
+        return;
+    }
+    const char *name = domain->surroundings.list->tool[fault->tool - 1].name;
+    if (fault->tool_speed > 0)
+        snprintf(cause, size, "tool %s moves at %.3g m/s and", name, fault->tool_speed);
+    else
+        snprintf(cause, size, "tool %s %s and", name,
+                 fault->tool_pulls ? "holds the tissue there" : "is pressed in there");
+    *remedy = fault->tool_pulls ? "move it slower or pull less far" : "move it slower or less deep";
+}
+
 lar_status lar_fault_report_tool(const lar_domain *domain, const lar_fault *fault,
                                  const char *what_it_does, lar_error *error) {
     const lar_mesh *mesh = &domain->model->mesh;
     bool element = fault->kind == LAR_FAULT_ELEMENT || fault->kind == LAR_FAULT_ENERGY_GAIN;
     long long number = (long long)(element ? mesh->element_id : mesh->node_id)[fault->element];
-    char motion[80];
-    if (fault->tool < 0)
-        return lar_fail(error, LAR_ERROR_UNSTABLE,
-                        "unstable at step %llu (%.6g s): the force of %.3g N that was set on node "
-                        "%lld %s %s %lld near (%.4g, %.4g, %.4g) m; set a smaller one, on more "
-                        "nodes or growing from step to step, or use a smaller time step or a "
-                        "finer mesh there",
-                        (unsigned long long)fault->step, (double)fault->step * domain->time_step,
-                        fault->force, (long long)mesh->node_id[fault->pushed], what_it_does,
-                        element ? "element" : "node", number, fault->place[0], fault->place[1],
-                        fault->place[2]);
-    const lar_tool *tool = &domain->surroundings.list->tool[fault->tool - 1];
-    if (fault->tool_speed > 0)
-        snprintf(motion, sizeof motion, "moves at %.3g m/s and", fault->tool_speed);
-    else
-        snprintf(motion, sizeof motion,
-                 fault->tool_pulls ? "holds the tissue there and" : "is pressed in there and");
+    char cause[400];
+    const char *remedy;
+    name_cause(domain, fault, cause, sizeof cause, &remedy);
     return lar_fail(error, LAR_ERROR_UNSTABLE,
-                    "unstable at step %llu (%.6g s): tool %s %s %s %s %lld near "
-                    "(%.4g, %.4g, %.4g) m; move it slower or %s, or use a smaller time step or a "
-                    "finer mesh there",
-                    (unsigned long long)fault->step, (double)fault->step * domain->time_step,
-                    tool->name, motion, what_it_does, element ? "element" : "node", number,
-                    fault->place[0], fault->place[1], fault->place[2],
-                    fault->tool_pulls ? "pull less far" : "less deep");
+                    "unstable at step %llu (%.6g s): %s %s %s %lld near (%.4g, %.4g, %.4g) m; %s, "
+                    "or use a smaller time step or a finer mesh there",
+                    (unsigned long long)fault->step, (double)fault->step * domain->time_step, cause,
+                    what_it_does, element ? "element" : "node", number, fault->place[0],
+                    fault->place[1], fault->place[2], remedy);
 }
