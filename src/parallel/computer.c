@@ -266,12 +266,25 @@ static void check_clocks(lar_computer *computer, int32_t self, uint64_t round) {
 #endif
 }
 
-/* After a step: does somebody here want everyone to stop? One step more than the way to the
- * farthest processor, because other threads of this one may have sent already. */
-static void after_step(lar_computer *computer, lar_worker *worker, int32_t number, bool *faulted) {
+/* The round in which a step begins that a thread has before it: parts of steps are rounds. */
+static uint64_t round_of(const lar_computer *computer, const lar_worker *worker, uint64_t step) {
+    uint64_t parts = (uint64_t)computer->tools->division.parts;
+    return worker->round + (step - worker->state.step) * parts - (uint64_t)worker->state.part;
+}
+
+static bool must_stop(const lar_computer *computer, const lar_worker *worker) {
+    uint64_t stop = __atomic_load_n(&worker->processor->stop, __ATOMIC_RELAXED);
+    return worker->round >= computer->until || (stop && worker->round >= stop);
+}
+
+/* After a part of a step, or all of it: does somebody here want everyone to stop? One round more
+ * than the way to the farthest processor, because other threads of this one may have sent already.
+ * Contact may need a list within a step; all else waits for the end of one. */
+static void after_round(lar_computer *computer, lar_worker *worker, int32_t number, bool *faulted) {
     lar_processor *p = worker->processor;
-    uint64_t done = worker->state.step, stop = done + (uint64_t)computer->division.spread + 1;
-    if (p->exchange) lar_contact_check_travel(worker, stop - done, done >= computer->until);
+    uint64_t done = worker->state.step, heard = (uint64_t)computer->division.spread + 1;
+    uint64_t stop = round_of(computer, worker, done + heard);
+    if (p->exchange) lar_contact_check_travel(worker, heard, must_stop(computer, worker));
     if (worker->fault.kind && !*faulted) {
         *faulted = true;
         lar_fault_examine(&p->domain, &worker->state, worker->context.first, worker->context.end,
@@ -291,14 +304,13 @@ static void advance_thread(void *context, int32_t number) {
     lar_thread_result *result = &computer->result[number];
     lar_processor *p = processor_of(computer, number);
     lar_worker *worker = &p->worker[number % computer->threads];
-    bool faulted = false;
+    bool faulted =
+        worker->fault.kind != LAR_FAULT_NONE; /* and what has begun of that step goes on */
     if (p->exchange) lar_contact_publish(worker, worker->round + 1);
-    while (worker->state.step < computer->until) {
-        uint64_t stop = __atomic_load_n(&p->stop, __ATOMIC_RELAXED);
-        if (stop && worker->state.step >= stop) break;
+    while (!must_stop(computer, worker)) {
         result->status = lar_worker_step(worker, &result->error);
         if (result->status) break;
-        after_step(computer, worker, number, &faulted);
+        after_round(computer, worker, number, &faulted);
     }
     /* Nobody shall wait for this processor; after a verdict this changes nothing. */
     if (result->status && worker->thread == 0) lar_comm_abort(p->comm);
@@ -413,20 +425,27 @@ static lar_status advance_all(lar_computer *computer, uint64_t until, bool first
     return status;
 }
 
-/* The step at which all stop next: for a search, or where an interval ends. */
-static uint64_t next_stop(const lar_computer *computer, uint64_t step, uint64_t end) {
-    uint64_t interval = lar_interval_end(computer->whole, &computer->tools->division, step);
-    return lar_contact_until(computer, interval < end ? interval : end);
+/* The round before which all stop next: for a search, where an interval ends, or what has begun of
+ * a step when all is `over`. */
+static uint64_t next_stop(const lar_computer *computer, uint64_t end, bool over) {
+    const lar_worker *first = &computer->processor[0].worker[0];
+    uint64_t step = first->state.step;
+    uint64_t until = lar_interval_end(computer->whole, &computer->tools->division, step);
+    if (over) until = step + 1;
+    return lar_contact_until(computer, first->round,
+                             round_of(computer, first, until < end ? until : end));
 }
 
-/* Stretch by stretch: intervals (step/interval.h), and where contact needs a new list. */
+/* Stretch by stretch: intervals (step/interval.h), and where contact needs a new list, which may be
+ * within a step that is divided. */
 lar_status lar_computer_advance(lar_computer *computer, uint64_t steps, bool first,
                                 lar_step_callback *callback, void *context, lar_fault *fault,
                                 lar_error *error) {
     if (computer->broken) return lar_computer_refuse(error);
-    const uint64_t *step = &computer->processor[0].worker[0].state.step;
-    uint64_t end = *step + steps;
+    const lar_state *state = &computer->processor[0].worker[0].state;
+    const uint64_t *step = &state->step, end = *step + steps;
     lar_status status = LAR_OK;
+    bool over = false;
     computer->callback = callback;
     computer->callback_context = context;
     computer->called_off = false;
@@ -435,15 +454,18 @@ lar_status lar_computer_advance(lar_computer *computer, uint64_t steps, bool fir
     if (first) lar_interval_restart(&computer->interval);
     for (; *step < end; first = false) { /* what is decided before a step is decided once */
         uint64_t begin = *step;
-        status = lar_contact_refresh(computer, fault, error);
-        if (status || fault->kind) break;
-        if (lar_interval_decide(computer->whole, begin, computer->tools))
+        lar_fault full = {0};
+        status = lar_contact_refresh(computer, &full, error);
+        if (!fault->kind) *fault = full;
+        if (status || full.kind) break;
+        if (state->part == 0 && lar_interval_decide(computer->whole, begin, computer->tools))
             computer->tools_sent = false;
-        status = advance_all(computer, next_stop(computer, begin, end), first, fault, error);
+        status = advance_all(computer, next_stop(computer, end, over), first, fault, error);
         lar_interval_harvest(&computer->interval, computer->whole, &computer->report, *step - begin,
                              computer->tools);
         lar_contact_count(computer, *step - begin);
-        if (status || fault->kind || computer->called_off) break;
+        over = fault->kind || computer->called_off;
+        if (status || (over && state->part == 0)) break;
     }
     fault->too_many_pairs = fault->kind == LAR_FAULT_TOO_FAST && computer->contact.too_many_pairs;
     if (status) computer->broken = true;

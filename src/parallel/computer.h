@@ -13,7 +13,9 @@
  * Who wants to stop (an element turned inside out, the caller was interrupted) names a step that
  * all can hear of in time, and packets carry that number on from neighbour to neighbour: a step
  * later they know it, and so on, for `spread` steps. All stop before the same step, as the thesis's
- * snapshots are taken in the same one (T 6.5.1).
+ * snapshots are taken in the same one (T 6.5.1). Numbers are of rounds: a step that is divided has
+ * as many as parts, and nodes that a blow throws far within one get new lists of contact between
+ * them.
  */
 #ifndef LAR_PARALLEL_COMPUTER_H
 #define LAR_PARALLEL_COMPUTER_H
@@ -60,7 +62,7 @@ typedef struct lar_computer {
     lar_thread_result *result; /* [hosted * threads] */
     size_t *shift;             /* [processors] what control needs of their buffers */
     uint64_t *clock;           /* [processors] atomic: rounds done, of those in this process */
-    uint64_t until;            /* the step before which this advance ends */
+    uint64_t until;            /* the round before which this stretch ends: batch.c */
     lar_computer_contact contact;
     lar_step_callback *callback;
     void *callback_context;
@@ -116,11 +118,11 @@ lar_status lar_computer_serve(lar_computer *computer, lar_error *error);
 /* Before the processors are made; what cannot be made is cleared by lar_contact_close. */
 lar_status lar_contact_open(lar_computer *computer, lar_error *error);
 void lar_contact_close(lar_computer *computer); /* idempotent */
-/* Processor zero, before a stretch of steps: looks and searches where that is due. *fault: too many
- * pairs. */
+/* Processor zero, before a stretch: looks and searches where that is due. *fault: too many pairs.
+ */
 lar_status lar_contact_refresh(lar_computer *computer, lar_fault *fault, lar_error *error);
-/* The step that a stretch towards `end` may reach at most. */
-uint64_t lar_contact_until(const lar_computer *computer, uint64_t end);
+/* The round that a stretch from `round` towards `end` may reach at most. */
+uint64_t lar_contact_until(const lar_computer *computer, uint64_t round, uint64_t end);
 /* After a stretch of so many steps. */
 void lar_contact_count(lar_computer *computer, uint64_t steps);
 /* Another process: takes what processor zero found. */

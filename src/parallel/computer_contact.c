@@ -1,5 +1,5 @@
-/* Contact of bodies on all processors: processor zero looks and searches between two stretches of
- * steps, and everyone takes the same list (contact_exchange.h). */
+/* Contact of bodies on all processors: processor zero looks and searches between two stretches, and
+ * everyone takes the same list (contact_exchange.h). */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -239,17 +239,28 @@ static lar_status search(lar_computer *computer, double way, lar_fault *fault, l
     return hand_out(computer, list, 0, error);
 }
 
+/* Where faces are so crowded that the list has no room for the skin that a stretch takes, all stop
+ * after every round: then a list is good until half of its skin, as on one processor. */
+static bool is_crowded(const lar_computer *computer) {
+    const lar_computer_contact *contact = &computer->contact;
+    return contact->too_many_pairs &&
+           contact->moved + reserve(computer, contact->way) >= 0.5 * contact->skin;
+}
+
 lar_status lar_contact_refresh(lar_computer *computer, lar_fault *fault, lar_error *error) {
     lar_computer_contact *contact = &computer->contact;
     if (!contact->map.surface) return LAR_OK;
-    bool due = !contact->valid || contact->always;
-    if (!due && contact->moved + reserve(computer, contact->way) < 0.5 * contact->skin)
-        return LAR_OK;
+    bool due = !contact->valid || contact->always, crowded = is_crowded(computer);
+    double room = crowded ? 0 : reserve(computer, contact->way);
+    if (!due && contact->moved + room < 0.5 * contact->skin) return LAR_OK;
     double moved, way;
     lar_status status = fetch_places(computer, &moved, &way, error);
     if (status) return status;
-    due = due || !(moved < 0.125 * contact->skin) ||
-          !(moved + reserve(computer, way) < 0.5 * contact->skin);
+    if (crowded)
+        due = due || !(moved < 0.25 * contact->skin);
+    else
+        due = due || !(moved < 0.125 * contact->skin) ||
+              !(moved + reserve(computer, way) < 0.5 * contact->skin);
     if (due) {
         status = search(computer, way, fault, error);
     } else {
@@ -260,18 +271,9 @@ lar_status lar_contact_refresh(lar_computer *computer, lar_fault *fault, lar_err
     return status;
 }
 
-/* Where faces are so crowded that the list has no room for the skin that a stretch takes, it is
- * made anew in every step, as on one processor. */
-static bool is_crowded(const lar_computer *computer) {
-    const lar_computer_contact *contact = &computer->contact;
-    return contact->too_many_pairs &&
-           contact->moved + reserve(computer, contact->way) >= 0.5 * contact->skin;
-}
-
-uint64_t lar_contact_until(const lar_computer *computer, uint64_t end) {
-    uint64_t step = computer->processor[0].worker[0].state.step;
+uint64_t lar_contact_until(const lar_computer *computer, uint64_t round, uint64_t end) {
     bool one = computer->contact.always || is_crowded(computer);
-    return one && step < end ? step + 1 : end;
+    return one && round < end ? round + 1 : end;
 }
 
 void lar_contact_count(lar_computer *computer, uint64_t steps) {

@@ -138,7 +138,7 @@ lar_status lar_contact_apply(lar_worker *worker, uint64_t round, lar_error *erro
     contact->view.place = (const double(*)[LAR_PLACE_VALUES])exchange->place[round & 1];
     contact->view.stick = (const double(*)[LAR_STICK_VALUES])exchange->stick[round & 1];
     /* What stands in the exchange buffer has come here in the last step with this speed. */
-    contact->travel += speed * worker->context.whole_step;
+    contact->travel += speed * worker->state.past;
     lar_body_contact_add(contact, &worker->context, &worker->state);
     lar_body_contact_half_work(contact, &worker->context, &worker->state);
     return LAR_OK;
@@ -146,14 +146,16 @@ lar_status lar_contact_apply(lar_worker *worker, uint64_t round, lar_error *erro
 
 /* ---- in time --------------------------------------------------------------------------------- */
 
-void lar_contact_check_travel(lar_worker *worker, uint64_t steps, bool ends) {
+void lar_contact_check_travel(lar_worker *worker, uint64_t rounds, bool ends) {
     const lar_body_contact *contact = &worker->interactions.body_contact;
+    const lar_state *state = &worker->state;
     double allowed = 0.5 * contact->list.skin;
-    double speed = fmax(2 * worker->state.fastest, LAR_CONTACT_SPEED);
-    uint64_t done = worker->state.step;
-    bool late = !(contact->moved <= allowed) && !(ends && worker->state.parts == 1);
+    double speed = fmax(2 * state->fastest, LAR_CONTACT_SPEED);
+    bool late = !(contact->moved <= allowed) && !ends;
     if (late && !worker->fault.kind)
-        worker->fault = (lar_fault){.kind = LAR_FAULT_TOO_FAST, .element = -1, .step = done - 1};
-    if (contact->moved + (double)(steps + 1) * speed * worker->context.whole_step > allowed)
-        lar_processor_ask_stop(worker->processor, done + steps);
+        worker->fault = (lar_fault){.kind = LAR_FAULT_TOO_FAST,
+                                    .element = -1,
+                                    .step = state->part == 0 ? state->step - 1 : state->step};
+    if (contact->moved + (double)(rounds + 1) * speed * worker->context.time_step > allowed)
+        lar_processor_ask_stop(worker->processor, worker->round + rounds);
 }

@@ -30,8 +30,8 @@
  * have stopped in the same step and every packet that was sent has been waited for.
  *
  * How long a list is good. Every thread adds up how far its own nodes can have moved since the
- * search, from the fastest of each step, and asks everyone to stop early enough for the steps that
- * the request takes to go round, at a speed of twice its present one, and of at least
+ * search, from the fastest of each round, and asks everyone to stop early enough for the rounds
+ * that the request takes to go round, at a speed of twice its present one, and of at least
  * LAR_CONTACT_SPEED. If it moves farther than the list allows even so, the run ends with a fault:
  * nothing is missed silently.
  */
@@ -134,8 +134,8 @@ void lar_contact_publish(lar_worker *worker, uint64_t round);
 lar_status lar_contact_send(lar_worker *worker, uint64_t round, lar_error *error);
 lar_status lar_contact_apply(lar_worker *worker, uint64_t round, lar_error *error);
 
-/* After a step: asks for a stop in time, or reports a fault. `steps`: until all have stopped;
+/* After a round: asks for a stop in time, or reports a fault. `rounds`: until all have stopped;
  * `ends`: they stop now, and the list is looked at before it is used again. */
-void lar_contact_check_travel(lar_worker *worker, uint64_t steps, bool ends);
+void lar_contact_check_travel(lar_worker *worker, uint64_t rounds, bool ends);
 
 #endif

@@ -1,7 +1,7 @@
 /* How processor zero tells the processors of other processes what to do.
  *
  *     zero                                      the others
- *       order {advance until 5000, tools} ------>  compute
+ *       order {advance until round 5000, tools} ->  compute
  *       <------------- answer {step 5000, fault, work; what the tools felt}
  *       order {gather, round 0} ---------------->  copy
  *       <------------- answer {values of some nodes}      ... until all are there
@@ -45,8 +45,9 @@ typedef enum lar_order_kind {
 } lar_order_kind;
 
 typedef struct lar_order {
-    uint64_t kind;     /* lar_order_kind */
-    uint64_t argument; /* advance, continue: the step to stop before; gathering: the round, from 0 */
+    uint64_t kind; /* lar_order_kind */
+    uint64_t
+        argument; /* advance, continue: the round to stop before; gathering: of asking, from 0 */
 } lar_order;
 
 /* Bytes of payload in one packet. */

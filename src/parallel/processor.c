@@ -335,10 +335,10 @@ void lar_processor_pause(lar_processor *p) {
     lar_comm_complete(p->comm, first->state.step);
 }
 
-void lar_processor_ask_stop(lar_processor *p, uint64_t step) {
+void lar_processor_ask_stop(lar_processor *p, uint64_t round) {
     uint64_t known = __atomic_load_n(&p->stop, __ATOMIC_RELAXED);
-    while ((known == 0 || step < known) &&
-           !__atomic_compare_exchange_n(&p->stop, &known, step, false, __ATOMIC_RELAXED,
+    while ((known == 0 || round < known) &&
+           !__atomic_compare_exchange_n(&p->stop, &known, round, false, __ATOMIC_RELAXED,
                                         __ATOMIC_RELAXED))
         continue;
 }

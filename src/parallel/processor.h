@@ -90,7 +90,7 @@ typedef struct lar_processor {
     lar_comm *comm;          /* not owned */
     const size_t *shift;     /* [processors] bytes before the schedule's part of each buffer */
     lar_verification *check; /* NULL: real forces. Not owned */
-    uint64_t stop;           /* atomic: the step before which everyone stops; 0: none asked for */
+    uint64_t stop;           /* atomic: the round before which everyone stops; 0: none asked for */
     uint64_t failed;         /* atomic: a thread has given up, its siblings must */
     int64_t ahead;           /* steps of the state minus rounds, for messages */
     struct lar_contact_exchange
@@ -125,8 +125,8 @@ void lar_processor_scatter(lar_processor *processor, const lar_domain *whole,
 /* After a stretch of steps, when none of its threads computes: what messages say of it. */
 void lar_processor_pause(lar_processor *processor);
 
-/* Asks all processors to stop before `step`: earlier requests stand. */
-void lar_processor_ask_stop(lar_processor *processor, uint64_t step);
+/* Asks all processors to stop before a round: earlier requests stand. */
+void lar_processor_ask_stop(lar_processor *processor, uint64_t round);
 
 /* Waits until another thread of the processor has set its flag (atomic) to `round` or further. */
 lar_status lar_processor_await(const lar_processor *processor, const uint64_t *sequence,
