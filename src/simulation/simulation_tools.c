@@ -104,11 +104,12 @@ static lar_status check_speed(const lar_tool *tool, const lar_tool_pose *now,
     lar_tool_place(tool, pose, &body, to);
     double way = lar_tool_way(from, to, body.count), max = 0.5 * tool->radius * (double)steps;
     if (way <= max) return LAR_OK;
-    return lar_fail(error, LAR_ERROR_ARGUMENT,
-                    "tool %s: %.4g m in %llu steps is %.4g m/s, more than half its radius in a "
-                    "step (%.4g m/s); take more steps or a smaller way",
-                    tool->name, way, (unsigned long long)steps, way / ((double)steps * time_step),
-                    0.5 * tool->radius / time_step);
+    return lar_fail(
+        error, LAR_ERROR_ARGUMENT,
+        "tool %s: an end or jaw that goes %.4g m in %llu steps is at %.4g m/s, more than "
+        "half its radius in a step (%.4g m/s); take %.0f steps or a smaller way",
+        tool->name, way, (unsigned long long)steps, way / ((double)steps * time_step),
+        0.5 * tool->radius / time_step, ceil(2 * way / tool->radius));
 }
 
 lar_status lar_simulation_tool_move(lar_simulation *simulation, int32_t index,
