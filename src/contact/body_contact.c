@@ -70,12 +70,17 @@ static double survey_face(lar_body_contact *contact, const lar_state *state, con
     return distance;
 }
 
+/* How far nodes may move against each other until a face that is farther away than the closest one
+ * may be that: both distances change. */
+static double farther_by(double distance, double tie, const survey *s) {
+    return 0.5 * (distance - 8 * tie - s->fade - s->min);
+}
+
 /* The travel until which a face cannot be the closest one within reach: it is out of reach, or
- * farther away than the closest, whose distance changes as well. */
+ * farther away. */
 static double away_until(double travel, double distance, double tie, const survey *s) {
-    double reach = (distance - tie - s->reach) / APPROACH;
-    double min = (distance - 8 * tie - s->fade - s->min) / (2 * APPROACH);
-    return travel + 0.999 * (reach > min ? reach : min);
+    double reach = distance - tie - s->reach, min = farther_by(distance, tie, s);
+    return travel + 0.999 * (reach > min ? reach : min) / APPROACH;
 }
 
 /* The one that was closest the last time goes first: most others then need no more than a look. */
@@ -430,16 +435,30 @@ static bool touches(const lar_body_contact *contact, int32_t node, int32_t face,
                lar_contact_standoff(surface, &surface->node[node], &surface->face[face]);
 }
 
-/* How far a node that touches nothing may come nearer to the closest face of another body [m] until
- * it is looked at again: upright over it, half of the way to where they touch. Beside an edge a
- * little motion may bring it behind another face; of its own body a node does not see all faces,
- * and may come behind one from the side. */
-static double clear_of(const lar_body_contact *contact, int32_t node, int32_t face,
-                       const lar_face_point *point) {
+/* How far nodes may move against each other [m] until a node that touches nothing is looked at
+ * again: half of the way to where it touches the closest face of another body, and no farther than
+ * it surely stays before every face that may be the closest one then. Before the closest one alone
+ * is not enough: a body that is crushed has faces whose back is as near. Of its own body a node
+ * does not see all faces, and may come behind one from the side. */
+static double clear_of(const lar_body_contact *contact, const lar_state *state, int32_t g,
+                       const survey *s, const lar_face_point *point) {
     const lar_contact_surface *surface = contact->surface;
-    bool upright = point->height > 0.5 * point->distance;
-    double standoff = lar_contact_standoff(surface, &surface->node[node], &surface->face[face]);
-    return upright ? 0.5 * (point->distance - standoff) : 0;
+    const lar_contact_group *group = &contact->list.group[g];
+    const int32_t *face = contact->list.face + group->first;
+    double x[3], corner[4][3];
+    double standoff =
+        lar_contact_standoff(surface, &surface->node[group->node], &surface->face[face[0]]);
+    double clear = 0.5 * (point->distance - standoff);
+    lar_contact_place(contact, state, group->node, x, NULL);
+    for (int32_t k = 0; k < s->count && clear > 0; k++) {
+        int32_t f = face[s->entry[k]];
+        double farther = farther_by(s->distance[k], tie_of(contact, f), s);
+        if (farther >= clear) continue;
+        lar_contact_corners(contact, state, f, corner, NULL);
+        double before = lar_face_before(x, (const double(*)[3])corner);
+        clear = fmin(clear, fmax(farther, before));
+    }
+    return clear;
 }
 
 /* Contact of group g. */
@@ -453,8 +472,8 @@ static bool in_contact(lar_body_contact *contact, const lar_state *state, int32_
     if (same_body(contact, group->node, contact->list.face[group->first])) {
         leave_offset(contact, state, group->node, face);
     } else if (face >= 0) {
-        double clear = 0.999 * clear_of(contact, group->node, face, &point) / APPROACH;
-        contact->due[g] = fmax(contact->due[g], contact->travel + clear);
+        double clear = 0.999 * clear_of(contact, state, g, &s, &point) / APPROACH;
+        contact->due[g] = fmax(contact->due[g], fmin(contact->travel + clear, s.next));
     }
     return false;
 }

@@ -146,6 +146,29 @@ void lar_face_closest(const double x[3], const double corner[4][3], double tie,
     *point = chosen ? *chosen : part[0];
 }
 
+/* Six times the volume of x over a triangle is a determinant of three ways. When each of them
+ * changes by at most e it changes by at most (l1 + e)(l2 + e)(l3 + e) - l1 l2 l3 (Hadamard); the e
+ * at which that is all of it is at least what one step from an upper bound gives. */
+double lar_face_before(const double x[3], const double corner[4][3]) {
+    double middle[3], min = INFINITY;
+    middle_of(corner, middle);
+    for (int t = 0; t < 4; t++) {
+        double a[3], b[3], c[3], volume = 0;
+        between(corner[t], corner[(t + 1) % 4], a);
+        between(corner[t], middle, b);
+        between(corner[t], x, c);
+        for (int i = 0; i < 3; i++) {
+            int j = (i + 1) % 3, k = (i + 2) % 3;
+            volume += c[i] * (a[j] * b[k] - a[k] * b[j]);
+        }
+        if (!(volume > 0)) return 0;
+        double la = sqrt(dot(a, a)), lb = sqrt(dot(b, b)), lc = sqrt(dot(c, c));
+        double areas = la * lb + lb * lc + lc * la, most = volume / areas;
+        min = fmin(min, volume / (areas + most * (la + lb + lc + most)));
+    }
+    return min;
+}
+
 /* ---- segments ------------------------------------------------------------------------------- */
 
 /* Takes a point of the face, by its weights, where it is closer than what was found before. */

@@ -65,6 +65,10 @@ static inline double lar_face_box_distance(const double x[3], const double corne
 void lar_face_closest(const double x[3], const double corner[4][3], double tie,
                       lar_face_point *point);
 
+/* How much x and the corners may move against each other [m] while x stays before the planes of all
+ * four triangles; 0 where it is not. */
+double lar_face_before(const double x[3], const double corner[4][3]);
+
 /* Where a segment comes closest to a face. */
 typedef struct lar_face_segment {
     double distance;  /* at least 0; 0 where the segment goes through the face [m] */

@@ -199,6 +199,39 @@ static void inside_is_inside_also_at_dented_corners(void **unused) {
     assert_true(at_corners > 2000);
 }
 
+/* A step of each of five places, half of what they may move against each other, along the corners
+ * of a cube within that ball: the worst is where all go as far as they may. */
+static void who_is_before_a_face_stays_so(void **unused) {
+    (void)unused;
+    int before = 0, behind = 0;
+    for (int trial = 0; trial < 20000; trial++) {
+        double corner[4][3], x[3] = {1.5 * noise(), 1.5 * noise(), 1.5 * noise()};
+        double bend = 0.5 + 0.5 * noise(), least = INFINITY;
+        random_face(corner, bend);
+        double may = lar_face_before(x, (const double(*)[3])corner);
+        before += may > 0.1;
+        for (int k = 0; k < 20; k++) {
+            double moved[4][3], to[3], step = 0.5 * may / sqrt(3);
+            lar_face_point found;
+            for (int i = 0; i < 3; i++) {
+                to[i] = x[i] + (noise() < 0 ? -step : step);
+                for (int a = 0; a < 4; a++)
+                    moved[a][i] = corner[a][i] + (noise() < 0 ? -step : step);
+            }
+            lar_face_closest(to, (const double(*)[3])moved, 1e-9, &found);
+            least = fmin(least, found.height);
+        }
+        if (may > 0) assert_true(least >= 0);
+        behind += may == 0;
+    }
+    assert_true(before > 1000 && behind > 1000);
+    double flat[4][3] = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
+    double over = lar_face_before((double[]){0, 0, 1}, (const double(*)[3])flat);
+    assert_true(over > 0.15 && over < 1);
+    assert_true(lar_face_before((double[]){0, 0, -1}, (const double(*)[3])flat) == 0);
+    assert_true(lar_face_before((double[]){0, 0, NAN}, (const double(*)[3])flat) == 0);
+}
+
 static void what_has_no_size_makes_no_trouble(void **unused) {
     (void)unused;
     double corner[4][3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
@@ -220,6 +253,7 @@ int main(void) {
         cmocka_unit_test(forces_and_moments_balance),
         cmocka_unit_test(inside_is_inside_also_at_edges),
         cmocka_unit_test(inside_is_inside_also_at_dented_corners),
+        cmocka_unit_test(who_is_before_a_face_stays_so),
         cmocka_unit_test(what_has_no_size_makes_no_trouble),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

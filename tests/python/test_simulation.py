@@ -4,6 +4,7 @@ import array
 import gc
 import os
 import pickle
+import random
 import re
 import subprocess
 import tempfile
@@ -77,9 +78,9 @@ class Bits(unittest.TestCase):
         model = lariat.Model(os.path.join(demo(), "uterus_live.yaml"))
         place = numpy.asarray(model.positions)
         faces = numpy.asarray(model.surface["faces"])
-        random = numpy.random.default_rng(13)
-        grip = place[faces[random.integers(len(faces))]].mean(0)
-        to = grip + 0.05 * random.normal(size=3)
+        generator = numpy.random.default_rng(13)
+        grip = place[faces[generator.integers(len(faces))]].mean(0)
+        to = grip + 0.05 * generator.normal(size=3)
         self.pull_and_stiffen(model, grip, to, ({}, {"grid": "2x1x1"}))
 
     def test_what_is_thrown_far_within_one_step_is_so_on_every_grid(self):
@@ -89,6 +90,31 @@ class Bits(unittest.TestCase):
         to = (*grip[:2], grip[2] + 0.06)
         self.pull_and_stiffen(model, grip, to, ({}, {"grid": "1x1x1"}, {"grid": "2x1x1"},
                                                 {"grid": "2x2x1", "threads": 2}))
+
+    def throw_about(self, seed, options):
+        # Two blocks, by gravity that goes in all directions, as soft and as hard as they may be.
+        random_ = random.Random(seed)
+        lower, upper = block_arrays((3, 2, 3)), block_arrays((2, 4, 2))
+        nodes = lower[0] + [[x, y, z + 3.05 * EDGE] for x, y, z in upper[0]]
+        hexahedra = lower[1] + [[n + len(lower[0]) for n in h] for h in upper[1]]
+        scene = {**SCENE, "tools": [], "damping": 5, "contact": [{"self": True}]}
+        model = lariat.Model.from_arrays(nodes, hexahedra, scene, sets={"floor": lower[2]["floor"]})
+        with lariat.Simulation(model, **options) as sim:
+            for _ in range(8):
+                sim.gravity = [random_.uniform(-300, 300), random_.uniform(-300, 300),
+                               random_.uniform(-300, 100)]
+                sim.set_stiffness(random_.choice((0.1, 0.5, 4)))
+                try:
+                    sim.advance(random_.randint(20, 100))
+                except lariat.UnstableError as error:
+                    return str(error)
+            return sim.hash()
+
+    def test_bodies_that_crush_each_other_break_alike_however_contact_is_looked_for(self):
+        for seed in (2, 10, 42):
+            ends = {self.throw_about(seed, options) for options in (
+                {}, {"search_always": True}, {"grid": "2x1x1"}, {"grid": "1x2x2", "threads": 2})}
+            self.assertEqual(len(ends), 1, ends)
 
 
 class Rest(unittest.TestCase):
