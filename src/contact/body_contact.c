@@ -304,19 +304,6 @@ static double full_of(const lar_body_contact *contact, int32_t node, int32_t fac
     return fmax(lar_contact_standoff(s, &s->node[node], &s->face[face]), MIN * reach);
 }
 
-/* The force of a spring on a sharp edge, and what it stores: it acts later, and is the harder for
- * it until it has stored as much as others. */
-static double late_force(const lar_contact_law *law, double mass, double full, double depth,
-                         double rate, double *stored) {
-    static const double LATE = 0.1; /* of `full` */
-    double steep = 1 / (1 - LATE), late = (depth - LATE * full) * steep;
-    bool is_full = depth >= full;
-    double force =
-        lar_contact_force(law, mass, is_full ? depth : late, is_full ? rate : steep * rate);
-    *stored = 0.5 * (is_full ? depth : late) * force;
-    return is_full ? force : steep * force;
-}
-
 /* The part of five forces that is no larger than `max`: of a face that is crushed slopes have no
  * bound. */
 static double within_force(double max, const double force[5][3]) {
@@ -342,7 +329,7 @@ static double fade(const lar_body_contact *contact, const double x[3], const kno
     double part = lar_face_value(closest, value), steep = 6 * part * (1 - part);
     part = part * part * (3 - 2 * part);
     double all = lar_contact_force(&contact->law, mass, depth, rate);
-    double late = late_force(&contact->law, mass, full, depth, rate, &stored);
+    double late = lar_contact_late_force(&contact->law, mass, full, depth, rate, &stored);
     double more = (0.5 * all * depth - stored) * steep;
     lar_face_slope(x, (const double(*)[3])known->x, closest, value, slope);
     for (int a = 0; a < 5; a++)

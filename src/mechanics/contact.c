@@ -30,6 +30,17 @@ lar_contact_law lar_contact_tool_law_for(double time_step, double stable_step) {
     return (lar_contact_law){.stiffness = beta / (time_step * time_step), .lead = LEAD * time_step};
 }
 
+double lar_contact_late_force(const lar_contact_law *law, double mass, double full, double depth,
+                              double rate, double *stored) {
+    static const double LATE = 0.1; /* of `full` */
+    double steep = 1 / (1 - LATE), late = (depth - LATE * full) * steep;
+    bool is_full = depth >= full;
+    double force =
+        lar_contact_force(law, mass, is_full ? depth : late, is_full ? rate : steep * rate);
+    *stored = 0.5 * (is_full ? depth : late) * force;
+    return is_full ? force : steep * force;
+}
+
 void lar_face_weights(double r, double s, double weight[4]) {
     weight[0] = 0.25 * (1 - r) * (1 - s);
     weight[1] = 0.25 * (1 + r) * (1 - s);

@@ -39,6 +39,10 @@ static inline double lar_contact_force(const lar_contact_law *law, double mass, 
     double ahead = depth + law->lead * rate;
     return depth > 0 && ahead > 0 ? law->stiffness * mass * ahead : 0;
 }
+/* Of a spring on a sharp edge, pressed in by `depth`, and what it stores [J]: it acts later, and is
+ * the harder for it until, at `full`, it has stored as much as others. */
+double lar_contact_late_force(const lar_contact_law *law, double mass, double full, double depth,
+                              double rate, double *stored);
 
 /* Coulomb's law within one step: the part of the velocity along the surface, which a node would
  * have half a step later, that friction takes when it may take `max` of it. All of it is stick
