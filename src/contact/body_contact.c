@@ -554,6 +554,7 @@ void lar_body_contact_add(lar_body_contact *contact, const lar_condition_context
     if (contact->friction) lar_body_friction_begin(contact->friction);
     contact->info.touching = 0;
     contact->info.deepest = 0;
+    if (contact->fresh) lar_body_contact_end_offsets(contact, state);
     if (!(contact->travel < contact->horizon)) look_ahead(contact);
     for (int32_t i = 0; i < contact->near_count; i++) {
         int32_t g = contact->near[i], node = contact->list.group[g].node;
@@ -579,18 +580,4 @@ void lar_body_contact_half_work(const lar_body_contact *contact,
         }
     }
     state->contact -= 0.5 * context->mean_step * power;
-}
-
-void lar_body_contact_restart(lar_body_contact *contact) {
-    contact->travel = contact->horizon = 0;
-    if (contact->friction) contact->friction->known = false;
-    for (int32_t g = 0; g < contact->list.group_count; g++) {
-        /* Along one axis, by both. */
-        double due = 0.5 * (double)contact->list.group[g].gap;
-        contact->due[g] = fmax(due, 0);
-        contact->last[g] = 0;
-    }
-    for (int32_t i = 0; i < contact->list.face_count; i++) {
-        contact->away[i] = 0;
-    }
 }

@@ -135,6 +135,7 @@ typedef struct lar_body_contact {
     int32_t offset_count;
     lar_penetration_offset *offset; /* [list.group_room] of these nodes, from when they move on */
     lar_body_friction *friction;    /* NULL: no body is rough */
+    bool fresh;                     /* no forces have been computed with the list */
     bool too_many_pairs;            /* there was no room for all pairs: the run must stop */
     lar_contact_info info;
     lar_body_contact_search_state *search_state; /* of whoever has all nodes; otherwise NULL */
@@ -205,8 +206,11 @@ void lar_body_contact_apply(lar_body_contact *contact, const lar_condition_conte
 void lar_body_contact_add(lar_body_contact *contact, const lar_condition_context *context,
                           lar_state *state);
 
-/* All groups are to be looked at again. */
+/* The list is another one: all groups are to be looked at again. */
 void lar_body_contact_restart(lar_body_contact *contact);
+/* With a list's first forces: nodes that have an offset are looked at, and who is not in the list
+ * has come out of reach of its own body since the last one, so that its offset ends. */
+void lar_body_contact_end_offsets(lar_body_contact *contact, const lar_state *state);
 
 /* The nodes have moved, none farther than `way` along any axis [m]; offsets become theirs. */
 void lar_body_contact_moved(lar_body_contact *contact, lar_state *state, double way);

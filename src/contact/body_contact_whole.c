@@ -1,9 +1,56 @@
-/* Contact of bodies by who has the whole model: the list and when it is made anew. */
+/* Contact of bodies: what follows from a new list; and, by who has the whole model, when it is
+ * made. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "contact/friction/body_friction.h"
+
+/* ---- a new list ------------------------------------------------------------------------------ */
+
+void lar_body_contact_restart(lar_body_contact *contact) {
+    contact->travel = contact->horizon = 0;
+    contact->fresh = true;
+    if (contact->friction) contact->friction->known = false;
+    for (int32_t g = 0; g < contact->list.group_count; g++) {
+        /* Along one axis, by both. */
+        double due = 0.5 * (double)contact->list.group[g].gap;
+        contact->due[g] = fmax(due, 0);
+        contact->last[g] = 0;
+    }
+    for (int32_t i = 0; i < contact->list.face_count; i++) {
+        contact->away[i] = 0;
+    }
+}
+
+/* The group of node n among those from *g on that has faces of its own body; -1: there is none.
+ * They are in the order of nodes. */
+static int32_t own_group(const lar_body_contact *contact, int32_t n, int32_t *g) {
+    const lar_contact_list *list = &contact->list;
+    int32_t own = -1;
+    while (*g < list->group_count && list->group[*g].node < n) (*g)++;
+    for (int32_t k = *g; k < list->group_count && list->group[k].node == n; k++) {
+        int32_t face = list->face[list->group[k].first];
+        if (contact->surface->face[face].body == contact->surface->node[n].body) own = k;
+    }
+    return own;
+}
+
+void lar_body_contact_end_offsets(lar_body_contact *contact, const lar_state *state) {
+    int32_t g = 0;
+    contact->fresh = false;
+    for (int32_t n = 0; n < contact->surface->node_count; n++) {
+        if (contact->keeps && !contact->keeps[n]) continue;
+        int32_t local = contact->view.local[n];
+        double before = state->level[local];
+        if (before == 0 || before == LAR_OFFSET_OUT) continue;
+        int32_t own = own_group(contact, n, &g);
+        if (own >= 0)
+            contact->due[own] = 0;
+        else
+            contact->offset[contact->offset_count++] = (lar_penetration_offset){local, 0};
+    }
+}
 
 /* ---- motion and searches, of the whole model ------------------------------------------------ */
 

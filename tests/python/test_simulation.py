@@ -91,14 +91,9 @@ class Bits(unittest.TestCase):
         self.pull_and_stiffen(model, grip, to, ({}, {"grid": "1x1x1"}, {"grid": "2x1x1"},
                                                 {"grid": "2x2x1", "threads": 2}))
 
-    def throw_about(self, seed, options):
-        # Two blocks, by gravity that goes in all directions, as soft and as hard as they may be.
+    def throw_about(self, model, seed, options):
+        # By gravity that goes in all directions, as soft and as hard as it may be.
         random_ = random.Random(seed)
-        lower, upper = block_arrays((3, 2, 3)), block_arrays((2, 4, 2))
-        nodes = lower[0] + [[x, y, z + 3.05 * EDGE] for x, y, z in upper[0]]
-        hexahedra = lower[1] + [[n + len(lower[0]) for n in h] for h in upper[1]]
-        scene = {**SCENE, "tools": [], "damping": 5, "contact": [{"self": True}]}
-        model = lariat.Model.from_arrays(nodes, hexahedra, scene, sets={"floor": lower[2]["floor"]})
         with lariat.Simulation(model, **options) as sim:
             for _ in range(8):
                 sim.gravity = [random_.uniform(-300, 300), random_.uniform(-300, 300),
@@ -110,11 +105,26 @@ class Bits(unittest.TestCase):
                     return str(error)
             return sim.hash()
 
-    def test_bodies_that_crush_each_other_break_alike_however_contact_is_looked_for(self):
-        for seed in (2, 10, 42):
-            ends = {self.throw_about(seed, options) for options in (
-                {}, {"search_always": True}, {"grid": "2x1x1"}, {"grid": "1x2x2", "threads": 2})}
+    def ends_alike(self, model, seeds):
+        for seed in seeds:
+            ends = {self.throw_about(model, seed, options) for options in (
+                {}, {"search_always": True}, {"grid": "2x1x1"}, {"grid": "1x2x1", "threads": 2})}
             self.assertEqual(len(ends), 1, ends)
+
+    def test_bodies_that_crush_each_other_break_alike_however_contact_is_looked_for(self):
+        lower, upper = block_arrays((3, 2, 3)), block_arrays((2, 4, 2))
+        nodes = lower[0] + [[x, y, z + 3.05 * EDGE] for x, y, z in upper[0]]
+        hexahedra = lower[1] + [[n + len(lower[0]) for n in h] for h in upper[1]]
+        scene = {**SCENE, "tools": [], "damping": 5, "contact": [{"self": True}]}
+        self.ends_alike(lariat.Model.from_arrays(nodes, hexahedra, scene,
+                                                 sets={"floor": lower[2]["floor"]}), (2, 10, 42))
+
+    def test_a_sheet_that_folds_remembers_alike_what_lay_within_it(self):
+        nodes, hexahedra, _ = block_arrays((4, 2, 1))
+        scene = {key: value for key, value in SCENE.items() if key not in ("fix", "tools")}
+        floor = {"faces": "all", "plane": {"through": [0, 0, 0], "normal": [0, 0, 1]}}
+        scene.update(damping=5, contact=[{"self": True}, floor])
+        self.ends_alike(lariat.Model.from_arrays(nodes, hexahedra, scene), (2, 11, 16))
 
 
 class Rest(unittest.TestCase):
