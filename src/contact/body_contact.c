@@ -456,7 +456,7 @@ static bool in_contact(lar_body_contact *contact, const lar_state *state, int32_
     int32_t face = closest(contact, state, g, &s, &point);
     if (face >= 0 && touches(contact, group->node, face, &point))
         return push(contact, state, g, face, &point, &s, t);
-    if (same_body(contact, group->node, contact->list.face[group->first])) {
+    if (lar_group_is_own(contact->surface, &contact->list, group)) {
         leave_offset(contact, state, group->node, face);
     } else if (face >= 0) {
         double clear = 0.999 * clear_of(contact, state, g, &s, &point) / APPROACH;

@@ -29,10 +29,8 @@ static int32_t own_group(const lar_body_contact *contact, int32_t n, int32_t *g)
     const lar_contact_list *list = &contact->list;
     int32_t own = -1;
     while (*g < list->group_count && list->group[*g].node < n) (*g)++;
-    for (int32_t k = *g; k < list->group_count && list->group[k].node == n; k++) {
-        int32_t face = list->face[list->group[k].first];
-        if (contact->surface->face[face].body == contact->surface->node[n].body) own = k;
-    }
+    for (int32_t k = *g; k < list->group_count && list->group[k].node == n; k++)
+        if (lar_group_is_own(contact->surface, list, &list->group[k])) own = k;
     return own;
 }
 

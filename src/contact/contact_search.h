@@ -41,6 +41,12 @@ typedef struct lar_contact_list {
     double skin; /* [m] */
 } lar_contact_list;
 
+/* Whether a group's faces are of its node's own body. */
+static inline bool lar_group_is_own(const lar_contact_surface *surface,
+                                    const lar_contact_list *list, const lar_contact_group *group) {
+    return surface->face[list->face[group->first]].body == surface->node[group->node].body;
+}
+
 /* A patch: faces first .. first + count - 1 of lar_contact_tree.order; its left half follows it,
  * its right half is `right`, 0 for one that is not divided. */
 typedef struct lar_patch {

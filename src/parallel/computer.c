@@ -304,8 +304,8 @@ static void advance_thread(void *context, int32_t number) {
     lar_thread_result *result = &computer->result[number];
     lar_processor *p = processor_of(computer, number);
     lar_worker *worker = &p->worker[number % computer->threads];
-    bool faulted =
-        worker->fault.kind != LAR_FAULT_NONE; /* and what has begun of that step goes on */
+    /* In the stretch before, which ended within that step: what it was is known. */
+    bool faulted = worker->fault.kind != LAR_FAULT_NONE;
     if (p->exchange) lar_contact_publish(worker, worker->round + 1);
     while (!must_stop(computer, worker)) {
         result->status = lar_worker_step(worker, &result->error);

@@ -84,11 +84,6 @@ static bool has_node(const lar_contact_map *map, int32_t processor, int32_t node
 
 /* ---- who takes part -------------------------------------------------------------------------- */
 
-static bool is_own_body(const lar_contact_surface *s, const lar_contact_list *list,
-                        const lar_contact_group *group) {
-    return s->face[list->face[group->first]].body == s->node[group->node].body;
-}
-
 /* Whether a processor adds forces of a group, or has the node and keeps what it remembers. */
 static bool concerns(const lar_contact_map *map, const lar_contact_list *list,
                      const lar_contact_group *group, int32_t processor) {
@@ -100,7 +95,7 @@ static bool concerns(const lar_contact_map *map, const lar_contact_list *list,
         if (map->reporter[parent[k]] == processor ||
             (s->rough && has_node(map, processor, parent[k])))
             return true;
-    if (is_own_body(s, list, group) && has_node(map, processor, group->node)) return true;
+    if (lar_group_is_own(s, list, group) && has_node(map, processor, group->node)) return true;
     for (int32_t i = group->first; i < group->first + group->count; i++) {
         int32_t f = list->face[i];
         if (map->recoverer[f] == processor &&
@@ -172,7 +167,7 @@ static void take_groups(lar_worker *worker, const lar_contact_list *list) {
         int32_t parent[LAR_CONTACT_PARENTS];
         double weight[LAR_CONTACT_PARENTS];
         int count = lar_contact_parents(contact->surface, group->node, parent, weight);
-        bool remembers = contact->friction || is_own_body(contact->surface, list, group);
+        bool remembers = contact->friction || lar_group_is_own(contact->surface, list, group);
         bool takes = false;
         for (int k = 0; k < count; k++)
             takes =

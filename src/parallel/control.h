@@ -45,9 +45,8 @@ typedef enum lar_order_kind {
 } lar_order_kind;
 
 typedef struct lar_order {
-    uint64_t kind; /* lar_order_kind */
-    uint64_t
-        argument; /* advance, continue: the round to stop before; gathering: of asking, from 0 */
+    uint64_t kind;     /* lar_order_kind */
+    uint64_t argument; /* advance, continue: the round to stop before; gathering: which asking */
 } lar_order;
 
 /* Bytes of payload in one packet. */

@@ -179,7 +179,7 @@ static void hurl(lar_simulation *s) {
 }
 
 /* Who is too fast for the search is named, and where it is, and the tool beside it. (Where all stop
- * after every step, as with tools and the step that this model would take, nothing is.) */
+ * after every round, as with tools and the step that this model would take, nothing is.) */
 static void what_is_too_fast_says_who_and_where(void **unused) {
     (void)unused;
     for (int with_tool = 0; with_tool < 2; with_tool++)
