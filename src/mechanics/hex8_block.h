@@ -139,7 +139,7 @@ typedef struct lar_block_run {
     lar_block_shape shape;
     lar_block_rows rows;
     int turn;      /* of boxes, 0..2; else 0 */
-    bool streamed; /* the blocks of the model are more than caches hold: ask ahead */
+    bool streamed; /* the model's blocks are more than the second-level cache holds: ask ahead */
     int32_t count;
     size_t axis_stride; /* values from one axis of a node to the next, in all of its arrays */
     const void

@@ -57,11 +57,51 @@ static lane_nodes nodes_of(const lar_block_run *run, const double *value) {
     return (lane_nodes){value, run->axis_stride};
 }
 
+/* Of some memory every so many lines are asked for, from the first one on.
+ *
+ * Blocks that come from beyond the second-level cache are asked for while the chunk before them is
+ * computed: a few lines of each, evenly. Hardware fetches on from a line that was asked for, some
+ * twenty lines, but only while somebody asks, and a core can wait for sixteen lines at once; asked
+ * for in one go they keep it from computing (docs/performance.md, "Large models"). */
+LAR_INLINE void ask(const char *memory, size_t bytes, size_t first, size_t each) {
+    enum { LINE = 64 };
+#pragma GCC unroll 1
+    for (size_t k = first * LINE; k < bytes; k += each * LINE) __builtin_prefetch(memory + k, 0, 3);
+}
+
+/* Of a lean block in a model that caches do not hold nearly all that comes from memory is its
+ * nodes. They are numbered as blocks come: what this many nodes further stands is needed soon. */
+__attribute__((noinline)) static void ask_for_nodes(const lar_block_run *run,
+                                                    const lar_block_head *head, const double *u,
+                                                    const int64_t *force) {
+    enum { AHEAD = 128 };
+    __asm__ volatile(""); /* else calls of a function that changes nothing are left out */
+    size_t at = (size_t)head->node[left_node[3]][0] + AHEAD;
+    for (int i = 0; i < 3; i++, at += run->axis_stride) {
+        __builtin_prefetch(run->rest + at, 0, 3);
+        __builtin_prefetch(u + at, 0, 3);
+        __builtin_prefetch(force + at, 1, 3);
+    }
+}
+
 static void expand(const lar_block_run *run, int32_t b, lar_hex8_block *whole) {
     const void *block = lar_run_block(run, b);
     lar_lean_head(run, block, &whole->head);
     for (int lane = 0; lane < LAR_BLOCK; lane += LAR_LANES)
         expand_lanes(block, lane, run->rows, nodes_of(run, run->rest), whole);
+}
+
+/* The blocks of a chunk that begins with block b as phases take them. */
+static const char *whole_blocks(const lar_block_run *run, int32_t b, size_t count, const double *u,
+                                const int64_t *force, lar_hex8_block *made) {
+    const char *kept = lar_run_block(run, b);
+    if (!run->rest) return kept;
+    if (run->streamed) ask(kept + count * lar_run_stride(run), count * lar_run_stride(run), 0, 1);
+    for (size_t i = 0; i < count; i++) {
+        expand(run, b + (int32_t)i, &made[i]);
+        if (run->streamed) ask_for_nodes(run, &made[i].head, u, force);
+    }
+    return (const char *)made;
 }
 
 /* ---- phases -------------------------------------------------------------------------------- */
@@ -263,7 +303,7 @@ typedef unsigned (*stress_phase)(const char *blocks, const lar_block_more *more,
                                  double share, const double *limit, lane_strain *strain,
                                  unsigned *strained);
 typedef void (*force_phase)(const char *blocks, size_t count, lar_block_rows rows, int turn,
-                            const lane_record *record, lane_sums force);
+                            size_t ahead, const lane_record *record, lane_sums force);
 
 #define DEFINE_PHASES(name, shape, fours)                                                          \
     static void strain_##name(const char *blocks, size_t count, lar_block_rows rows, int turn,     \
@@ -272,9 +312,11 @@ typedef void (*force_phase)(const char *blocks, size_t count, lar_block_rows row
         strain_lanes(block, lane, shape, rows, fours, turn, u, record);                            \
     }                                                                                              \
     static void force_##name(const char *blocks, size_t count, lar_block_rows rows, int turn,      \
-                             const lane_record *record, lane_sums force) {                         \
-        FOR_PARTS(blocks, count, lar_block_size(shape))                                            \
-        force_lanes(block, lane, shape, rows, fours, turn, record, force);                         \
+                             size_t ahead, const lane_record *record, lane_sums force) {           \
+        FOR_PARTS(blocks, count, lar_block_size(shape)) {                                          \
+            if (ahead && lane == 0) ask(block + ahead, lar_block_size(shape), 2, 5);               \
+            force_lanes(block, lane, shape, rows, fours, turn, record, force);                     \
+        }                                                                                          \
     }
 DEFINE_PHASES(generals, LAR_SHAPE_GENERAL, false)
 DEFINE_PHASES(boxes, LAR_SHAPE_BOX, false)
@@ -318,13 +360,6 @@ LAR_LAWS(DEFINE_LAW)
 static const stress_phase stress_table[LAR_LAW_COUNT] = {LAR_LAWS(LAW_ROW)};
 
 _Static_assert(CHUNK *LAR_BLOCK <= 32, "one bit per element of a chunk");
-
-/* Blocks that come from memory, not from a cache, are asked for one chunk ahead: the hardware's own
- * prefetching sees too many streams (31.8 to 22.1 ns per element for a million of them; for models
- * that fit, asking costs 1.5 ns). */
-LAR_INLINE void ask_for_next_chunk(const char *blocks, size_t bytes) {
-    for (size_t k = 0; k < bytes; k += 64) __builtin_prefetch(blocks + bytes + k, 0, 3);
-}
 
 /* Flat elements of a chunk that are strained too much for their shape. */
 LAR_INLINE unsigned flat_lanes(const double *area, size_t parts, const lane_strain *strain) {
@@ -417,31 +452,38 @@ LAR_INLINE int64_t recover_form(const lar_block_run *run, int fibrous, const lar
     strain_phase strain = strain_table[run->shape][run->rows];
     stress_phase stress = stress_table[run->law];
     force_phase forces = force_table[run->shape][run->rows];
-    size_t size = lar_block_size(run->shape), stride = lar_run_stride(run);
+    size_t size = lar_block_size(run->shape);
+    /* Where blocks are asked for, a little before the stress of each and before its force. */
+    size_t ahead = run->streamed && !run->rest ? CHUNK * size : 0, together = ahead ? 1 : CHUNK;
     int64_t first = -1;
     lar_hex8_block made[CHUNK];
     for (int32_t b = 0; b < run->count; b += CHUNK) {
         size_t count = (size_t)(run->count - b < CHUNK ? run->count - b : CHUNK);
-        const char *kept = (const char *)run->blocks + (size_t)b * stride, *blocks = kept;
-        if (run->rest) {
-            for (size_t i = 0; i < count; i++) expand(run, b + (int32_t)i, &made[i]);
-            blocks = (const void *)made;
-        }
+        const char *blocks = whole_blocks(run, b, count, u, force, made);
         strain(blocks, count, run->rows, run->turn, nodes_of(run, u), record);
-        if (run->streamed) ask_for_next_chunk(kept, CHUNK * stride);
         unsigned strained = 0;
         const double *limit = monitor ? monitor->limit + b * LAR_BLOCK : NULL;
         const lar_block_more *more = run->more ? run->more + b : NULL;
         for (size_t i = 0; (step || fibrous) && i < count * PARTS; i++)
             memcpy(gradient[i], record[i].F, sizeof gradient[i]);
-        unsigned beyond =
-            stress(blocks, more, count, size, record, limits, share, limit, strains, &strained);
+        unsigned beyond = 0;
+        for (size_t i = 0; i < count; i += together) {
+            unsigned some = 0;
+            if (ahead) ask(blocks + i * size + ahead, size, 0, 10);
+            beyond |=
+                stress(blocks + i * size, more ? more + i : NULL,
+                       count < together ? count : together, size, record + i * PARTS, limits, share,
+                       limit ? limit + i * LAR_BLOCK : NULL, strains + i * PARTS, &some)
+                << i * LAR_BLOCK;
+            strained |= some << i * LAR_BLOCK;
+        }
         if (fibrous)
             beyond |= stretch(run, b, count, limits->stress_square, limit, gradient, record,
                               strains, &strained);
         if (step) beyond |= relax(run, step, b, count, limits, gradient, record);
         if (fibrous) beyond |= contract(run, active, b, count, limits, gradient, record);
-        forces(blocks, count, run->rows, run->turn, record, (lane_sums){force, run->axis_stride});
+        forces(blocks, count, run->rows, run->turn, ahead, record,
+               (lane_sums){force, run->axis_stride});
         unsigned flat = 0;
         if (monitor && monitor->area)
             flat = flat_lanes(monitor->area + b * LAR_BLOCK, count * PARTS, strains);

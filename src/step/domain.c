@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "contact/tool_body.h"
 #include "mechanics/hex8_full.h"
@@ -116,15 +117,27 @@ static void fill_lane(const lar_domain *domain, const lar_block_run *run, void *
     domain->area_limit[base - domain->base] = lar_hex8_area_limit(&hex8);
 }
 
-/* More than this is read from memory in every step: beyond the second-level cache and a fair share
- * of the third. Decides about prefetching and lean blocks only. */
-enum { CACHED_BYTES = 12 << 20 };
+/* How many bytes of blocks caches hold, beside nodes and other programs: of the second level, from
+ * where on they are asked for, and of the third, from where on they are lean. A quarter of what the
+ * machine has, which a server's cores share; where it does not say, 12 MiB. Decides about time
+ * only. */
+enum { SECOND_LEVEL_BYTES = 1 << 20, THIRD_LEVEL_MIN = 12 << 20, THIRD_LEVEL_MAX = 40 << 20 };
+
+static size_t third_level_bytes(void) {
+    long bytes = 0;
+#ifdef _SC_LEVEL3_CACHE_SIZE
+    bytes = sysconf(_SC_LEVEL3_CACHE_SIZE) / 4;
+#endif
+    return bytes < THIRD_LEVEL_MIN   ? THIRD_LEVEL_MIN
+           : bytes > THIRD_LEVEL_MAX ? THIRD_LEVEL_MAX
+                                     : (size_t)bytes;
+}
 
 /* LARIAT_BLOCKS chooses for measurements and tests: the result is the same to the bit. */
 static lar_status choose_blocks(lar_domain *domain, lar_error *error) {
     const char *wanted = getenv("LARIAT_BLOCKS");
     if (!wanted || !*wanted || strcmp(wanted, "auto") == 0)
-        domain->lean = domain->block_bytes > CACHED_BYTES;
+        domain->lean = domain->block_bytes > third_level_bytes();
     else if (strcmp(wanted, "lean") == 0 || strcmp(wanted, "whole") == 0)
         domain->lean = *wanted == 'l';
     else
@@ -249,7 +262,7 @@ static bool fill_blocks(lar_domain *domain) {
         run->blocks = memory;
         if (lar_law_has_more(run->law)) run->more = domain->more + domain->run_first[r];
         if (run->viscous) run->relaxing = domain->relaxing + domain->run_first[r];
-        run->streamed = domain->block_bytes > CACHED_BYTES;
+        run->streamed = domain->block_bytes > SECOND_LEVEL_BYTES;
         for (int32_t b = 0; b < run->count && same; b++) {
             same = fill_block(domain, r, b, memory, &steepest);
             memory += lar_run_stride(run);
