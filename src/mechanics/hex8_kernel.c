@@ -390,9 +390,13 @@ static void list_strained(lar_hex8_monitor *monitor, int32_t b, unsigned straine
 #ifdef LAR_KERNEL_ELASTIC
 typedef struct lar_viscous_step lar_viscous_step;
 typedef struct lar_active_step lar_active_step;
+typedef struct viscous_lane {
+    int nothing;
+} viscous_lane;
 enum { SOFTER = 1 };
+#define viscous_begin(of)                                                   ((void)(of))
 #define softer_of(run)                                                      ((void)(run), SOFTER)
-#define relax(run, step, b, count, limits, gradient, record)                0U
+#define relax(run, step, b, count, limits, gradient, of, record)            0U
 #define stretch(run, b, count, limits, limit, gradient, record, strain, of) 0U
 #define contract(run, active, b, count, limits, gradient, record)           ((void)(active), 0U)
 #else
@@ -457,6 +461,8 @@ LAR_INLINE int64_t recover_form(const lar_block_run *run, int fibrous, const lar
     size_t ahead = run->streamed && !run->rest ? CHUNK * size : 0, together = ahead ? 1 : CHUNK;
     int64_t first = -1;
     lar_hex8_block made[CHUNK];
+    viscous_lane fade;
+    if (step) viscous_begin(&fade);
     for (int32_t b = 0; b < run->count; b += CHUNK) {
         size_t count = (size_t)(run->count - b < CHUNK ? run->count - b : CHUNK);
         const char *blocks = whole_blocks(run, b, count, u, force, made);
@@ -480,7 +486,7 @@ LAR_INLINE int64_t recover_form(const lar_block_run *run, int fibrous, const lar
         if (fibrous)
             beyond |= stretch(run, b, count, limits->stress_square, limit, gradient, record,
                               strains, &strained);
-        if (step) beyond |= relax(run, step, b, count, limits, gradient, record);
+        if (step) beyond |= relax(run, step, b, count, limits, gradient, &fade, record);
         if (fibrous) beyond |= contract(run, active, b, count, limits, gradient, record);
         forces(blocks, count, run->rows, run->turn, ahead, record,
                (lane_sums){force, run->axis_stride});

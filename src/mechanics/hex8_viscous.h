@@ -11,8 +11,8 @@
 #include "law/viscous_stress.h"
 #include "mechanics/hex8_gather.h"
 
-/* Coefficients of some lanes. What the terms do in a step stays where the rates do: the next lanes
- * are mostly of the same material. */
+/* Coefficients of some lanes. What the terms do in a step stays where the rates do, from one chunk
+ * of a run to the next: the next lanes are mostly of the same material. */
 typedef struct viscous_lane {
     lar_lane rate[LAR_VISCOUS_TERMS];
     lar_viscous_lane c;
@@ -46,12 +46,11 @@ LAR_INLINE void viscous_load(const lar_viscous_block *block, int lane, int terms
 /* relax, with as many terms as are known when it is compiled. */
 LAR_INLINE unsigned relax_terms(const lar_block_run *run, int terms, const lar_viscous_step *step,
                                 int32_t b, size_t count, const lar_hex8_limits *limits,
-                                lar_lane gradient[][9], lane_record *record) {
+                                lar_lane gradient[][9], viscous_lane *kept, lane_record *record) {
     double nowhere[LAR_HISTORY_MAX * LAR_BLOCK] __attribute__((aligned(64)));
     size_t size = (size_t)lar_history_values(terms) * LAR_BLOCK, part = 0;
     unsigned beyond = 0;
-    viscous_lane of;
-    viscous_begin(&of);
+    viscous_lane of = *kept;
     for (size_t i = (size_t)b; i < (size_t)b + count; i++)
         for (int lane = 0; lane < LAR_BLOCK; lane += LAR_LANES, part++) {
             double *before = step->history + i * size + lane;
@@ -62,6 +61,7 @@ LAR_INLINE unsigned relax_terms(const lar_block_run *run, int terms, const lar_v
             beyond |= lar_lane_not_greater(lar_lane_set(limits->stress_square), stress)
                       << part * LAR_LANES;
         }
+    *kept = of;
     return beyond;
 }
 
@@ -69,12 +69,13 @@ LAR_INLINE unsigned relax_terms(const lar_block_run *run, int terms, const lar_v
 __attribute__((noinline)) static unsigned relax(const lar_block_run *run,
                                                 const lar_viscous_step *step, int32_t b,
                                                 size_t count, const lar_hex8_limits *limits,
-                                                lar_lane gradient[][9], lane_record *record) {
+                                                lar_lane gradient[][9], viscous_lane *of,
+                                                lane_record *record) {
 #if LAR_LANES > 1
-    if (run->terms == 1) return relax_terms(run, 1, step, b, count, limits, gradient, record);
-    if (run->terms == 2) return relax_terms(run, 2, step, b, count, limits, gradient, record);
+    if (run->terms == 1) return relax_terms(run, 1, step, b, count, limits, gradient, of, record);
+    if (run->terms == 2) return relax_terms(run, 2, step, b, count, limits, gradient, of, record);
 #endif
-    return relax_terms(run, run->terms, step, b, count, limits, gradient, record);
+    return relax_terms(run, run->terms, step, b, count, limits, gradient, of, record);
 }
 
 #endif
