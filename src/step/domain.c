@@ -118,15 +118,15 @@ static void fill_lane(const lar_domain *domain, const lar_block_run *run, void *
 }
 
 /* How many bytes of blocks caches hold, beside nodes and other programs: of the second level, from
- * where on they are asked for, and of the third, from where on they are lean. A quarter of what the
- * machine has, which a server's cores share; where it does not say, 12 MiB. Decides about time
- * only. */
+ * where on they are asked for, and of the third, from where on they are lean. A twelfth of what the
+ * system says that there is: a server's cores share it, and some systems say the sum of several
+ * caches. Where it says nothing, 12 MiB. Decides about time only. */
 enum { SECOND_LEVEL_BYTES = 1 << 20, THIRD_LEVEL_MIN = 12 << 20, THIRD_LEVEL_MAX = 40 << 20 };
 
 static size_t third_level_bytes(void) {
     long bytes = 0;
 #ifdef _SC_LEVEL3_CACHE_SIZE
-    bytes = sysconf(_SC_LEVEL3_CACHE_SIZE) / 4;
+    bytes = sysconf(_SC_LEVEL3_CACHE_SIZE) / 12;
 #endif
     return bytes < THIRD_LEVEL_MIN   ? THIRD_LEVEL_MIN
            : bytes > THIRD_LEVEL_MAX ? THIRD_LEVEL_MAX
