@@ -531,6 +531,12 @@ void lar_guard_apply_all(const lar_domain *domain, lar_state *state) {
         apply(domain, e, LAR_ALL_CORNERS, false, NULL, state, NULL);
 }
 
+void lar_guard_half_work(const lar_domain *domain, lar_state *state) {
+    lar_damped damped;
+    for (lar_gid e = 0; e < domain->model->mesh.element_count; e++)
+        apply(domain, e, LAR_ALL_CORNERS, false, &damped, state, NULL);
+}
+
 double lar_guard_energy(const lar_domain *domain, const lar_state *state, lar_gid e) {
     double rest[8][3], now[8][3];
     lar_guard guard;

@@ -59,6 +59,11 @@ void lar_guard_select_and_apply(const lar_domain *domain, int32_t r,
 /* The same of all elements of the model, looked for one by one. */
 void lar_guard_apply_all(const lar_domain *domain, lar_state *state);
 
+/* The first half of what dampers of barriers take in the step that follows, to state->contact, and
+ * of what barriers lack, to state->external, as if none had lacked anything before. For who looks:
+ * adds forces as well. */
+void lar_guard_half_work(const lar_domain *domain, lar_state *state);
+
 /* Energy of an element's barriers [J]. */
 double lar_guard_energy(const lar_domain *domain, const lar_state *state, lar_gid e);
 

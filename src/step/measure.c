@@ -248,11 +248,13 @@ static void add_motion(const look *l, lar_energy *energy) {
 
 /* ---- energies and forces ------------------------------------------------------------------- */
 
-/* The first half of the present step's work of tools and bodies, as the loads'. */
+/* The first half of the present step's work of tools, bodies and barriers, as the loads'. Forces do
+ * not count any more. */
 static void add_contact(look *l, lar_energy *energy) {
     double external = l->state.external, contact = l->state.contact;
     lar_tool_contact_half_work(&l->interactions->tool_contact, &l->context, &l->state);
     lar_body_contact_half_work(&l->interactions->body_contact, &l->context, &l->state);
+    if (l->domain->kind == LAR_ELEMENT_HEX8) lar_guard_half_work(l->domain, &l->state);
     energy->external += l->state.external - external;
     energy->contact += l->state.contact - contact;
 }
@@ -267,10 +269,10 @@ void lar_measure_energy(const lar_domain *domain, lar_measure_scratch *scratch,
     energy->external += lar_conditions_half_work(&domain->surroundings.conditions, &l.context,
                                                  lar_state_time(domain, &l.state),
                                                  &l.interactions->notes, &l.state);
-    add_contact(&l, energy);
     if (!lar_gravity_varies(domain->model, lar_settings_of(l.interactions)))
         energy->external += gravity_potential(&l);
     add_motion(&l, energy);
+    add_contact(&l, energy);
     end_look(&l);
 
     for (lar_gid e = 0; e < domain->model->mesh.element_count; e++) {
