@@ -447,6 +447,9 @@ typedef struct lar_meshing_options {
                                    figures: REGION=FILE, or FILE for all regions but bones (=FILE
                                    where its name has a "="); the later one counts; NULL: none */
     int32_t tissue_count;
+    int apart; /* not 0: regions are bodies of their own that touch where they meet, each with its
+                  nodes; the starter scene has contact between them, and there is no true surface
+                  that is embedded */
 } lar_meshing_options;
 
 LAR_SIZED lar_meshing_options lar_meshing_options_default(void);
@@ -505,6 +508,7 @@ typedef struct lar_meshing_info {
     int image;      /* not 0: made from a label image, which says how large it is */
     int32_t joined; /* nodes of a mesh that stood at the place of another one, and were joined */
     lar_mesh_quality quality;
+    int32_t parted; /* nodes that bodies which touch have more than if they hung together */
 } lar_meshing_info;
 
 typedef struct lar_region_info {

@@ -413,20 +413,21 @@ static bool take_source(request *r) {
 }
 
 static bool parse(PyObject *args, PyObject *keywords, request *r) {
-    static char *names[] = {"source", "triangles", "affine", "label",     "names",  "elements",
-                            "size",   "scale",     "fuse",   "principal", "voxel",  "fix",
-                            "title",  "progress",  "fibres", "fibres_in", "tissue", NULL};
+    static char *names[] = {"source",    "triangles", "affine", "label",    "names",
+                            "elements",  "size",      "scale",  "fuse",     "principal",
+                            "voxel",     "fix",       "title",  "progress", "fibres",
+                            "fibres_in", "tissue",    "apart",  NULL};
     lar_meshing_options *o = &r->options;
     int elements = 0;
     PyObject *number[3] = {NULL}, *word[4] = {NULL};
     r->triangles = r->affine = r->label = r->names = r->tissue = r->progress = Py_None;
     r->kept = PyList_New(0);
     if (!r->kept ||
-        !PyArg_ParseTupleAndKeywords(args, keywords, "O|O$OOOOOOpppOOOOOO:mesh", names, &r->source,
+        !PyArg_ParseTupleAndKeywords(args, keywords, "O|O$OOOOOOpppOOOOOOp:mesh", names, &r->source,
                                      &r->triangles, &r->affine, &r->label, &r->names, &number[0],
                                      &number[1], &number[2], &o->fuse, &o->principal, &o->voxel,
                                      &word[0], &word[1], &r->progress, &word[2], &word[3],
-                                     &r->tissue) ||
+                                     &r->tissue, &o->apart) ||
         !python_int(number[0], "elements", &elements) ||
         !python_real(number[1], "size", &o->size) || !python_real(number[2], "scale", &o->scale) ||
         !python_word(word[0], "fix", &o->fix) || !python_word(word[1], "title", &o->title) ||

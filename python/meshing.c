@@ -97,13 +97,13 @@ static PyObject *get_info(PyObject *me, void *unused) {
     (void)unused;
     lar_meshing_info i;
     lar_meshing_inspect(meshing_of(me), &i);
-    return Py_BuildValue("{s:s,s:s,s:i,s:i,s:i,s:d,s:i,s:i,s:i,s:i,s:i,s:s,s:i,s:i,s:i,s:N}",
-                         "title", i.title, "name", i.name, "nodes", (int)i.nodes, "elements",
-                         (int)i.elements, "regions", (int)i.regions, "size", i.size, "islands",
-                         (int)i.islands, "pinholes", (int)i.pinholes, "added", (int)i.added,
-                         "removed", (int)i.removed, "cuts", (int)i.cuts, "fix", i.fix,
-                         "extra_supports", (int)i.extra_supports, "fixed_nodes", (int)i.fixed_nodes,
-                         "joined", (int)i.joined, "quality", quality_dict(&i.quality));
+    return Py_BuildValue(
+        "{s:s,s:s,s:i,s:i,s:i,s:d,s:i,s:i,s:i,s:i,s:i,s:s,s:i,s:i,s:i,s:i,s:N}", "title", i.title,
+        "name", i.name, "nodes", (int)i.nodes, "elements", (int)i.elements, "regions",
+        (int)i.regions, "size", i.size, "islands", (int)i.islands, "pinholes", (int)i.pinholes,
+        "added", (int)i.added, "removed", (int)i.removed, "cuts", (int)i.cuts, "fix", i.fix,
+        "extra_supports", (int)i.extra_supports, "fixed_nodes", (int)i.fixed_nodes, "joined",
+        (int)i.joined, "parted", (int)i.parted, "quality", quality_dict(&i.quality));
 }
 
 static PyObject *get_regions(PyObject *me, void *unused) {

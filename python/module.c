@@ -86,7 +86,7 @@ static PyMethodDef functions[] = {
     {"mesh", (PyCFunction)(void (*)(void))python_mesh, METH_VARARGS | METH_KEYWORDS,
      "mesh(source, triangles=None, *, affine=None, label=None, names=None, elements=0, size=0.0,\n"
      "     scale=0.0, fuse=False, principal=False, voxel=False, fix=None, title=None,\n"
-     "     progress=None, fibres=None, fibres_in=None, tissue=None)\n--\n\n"
+     "     progress=None, fibres=None, fibres_in=None, tissue=None, apart=False)\n--\n\n"
      "Hexahedra that lie on the true boundary of a body, and a scene that runs: a Meshing.\n\n"
      "source     a path: label image (.nii .nii.gz .nrrd .nhdr), surface (.stl .obj .vtk .vtp) or "
      "mesh\n"
@@ -115,7 +115,8 @@ static PyMethodDef functions[] = {
      "bones;\n"
      "           or a dict of region: path, with None for all but bones; the later one counts. "
      "Fibres\n"
-     "           in it need `fibres`\n\n"
+     "           in it need `fibres`\n"
+     "apart      regions are bodies of their own, which touch where they meet\n\n"
      "Works on all cores and lets other threads run; Ctrl-C ends it at the next stage or round."},
     {"checkpoint_info", checkpoint_info, METH_O,
      "checkpoint_info(path)\n--\n\ndict of a checkpoint: element, nodes, elements, tools, spares, "

@@ -50,6 +50,7 @@ def mesh(
     fibres: Union[str, None] = None,
     fibres_in: Union[str, None] = None,
     tissue: Union[_Path, Mapping[Union[str, None], _Path], None] = None,
+    apart: bool = False,
 ) -> Meshing: ...
 
 class Answer:

@@ -21,7 +21,7 @@ typedef struct mesh_settings {
     int64_t elements; /* 0: not given */
     double size, scale;
     int fix; /* index into fix_names; 0: not given */
-    bool fuse, principal, voxel, force, list, json, real_time;
+    bool fuse, apart, principal, voxel, force, list, json, real_time;
 } mesh_settings;
 
 static const char *const fix_names[] = {"auto",   "left", "right", "back", "front",
@@ -228,6 +228,7 @@ static lar_status make(void *context, int32_t elements, lar_meshing **meshing, l
     options.labels = s->labels.text;
     options.label_count = s->labels.count;
     options.fuse = s->fuse;
+    options.apart = s->apart;
     options.names = s->names;
     options.principal = s->principal;
     options.voxel = s->voxel;
@@ -280,6 +281,9 @@ static int check_settings(const mesh_settings *s) {
     if (s->size > 0 && s->elements > 0)
         return cli_complain(&cli_mesh, CLI_USAGE,
                             "--elements and --size both say how fine the mesh is; give one");
+    if (s->apart && s->fuse)
+        return cli_complain(&cli_mesh, CLI_USAGE,
+                            "--fuse makes one region of all, --apart a body of each; give one");
     if (s->fibres_in && !s->fibres)
         return cli_complain(&cli_mesh, CLI_USAGE,
                             "--fibres-in names a region, but no fibres are asked for; add --fibres "
@@ -299,6 +303,10 @@ static int mesh_main(int argc, char **argv) {
                   "without: all labels",
                   &s.labels),
         CLI_FLAG("--fuse", "all labels, or regions of a mesh, become one region", &s.fuse),
+        CLI_FLAG("--apart",
+                 "labels, or regions, become bodies of their own that\ntouch, slide and come apart "
+                 "where they meet; without:\nthey hang together",
+                 &s.apart),
         CLI_TEXT("--names", "FILE", "names of the labels, a line LABEL,NAME for each", &s.names),
         CLI_FLAG("--list", "list the image's labels, and do nothing else", &s.list),
         CLI_COUNT("--elements", "N", "about so many elements (5000)", &s.elements, 1, 1e7),

@@ -4,7 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/union_find.h"
 #include "divide/incidence.h"
 #include "mechanics/contact.h"
 #include "mechanics/hex8.h"
@@ -47,16 +46,6 @@ static lar_status allocate_workspace(workspace *d, lar_error *error) {
     if (d->body && d->passes && d->touched && d->active && d->index_of && d->face_of && d->seen)
         return lar_incidence_build(&d->model->mesh, &d->incidence, error);
     return lar_fail_memory(error, 24 * nodes + 12 * faces, "the surfaces in contact");
-}
-
-/* ---- bodies --------------------------------------------------------------------------------- */
-
-/* The lowest node of each connected part stands for it. */
-static void find_bodies(const lar_mesh *mesh, int32_t *body) {
-    lar_union_start(body, mesh->node_count);
-    for (int32_t e = 0; e < mesh->element_count; e++)
-        for (int a = 1; a < 8; a++) lar_union_join(body, mesh->element[e][0], mesh->element[e][a]);
-    for (int32_t n = 0; n < mesh->node_count; n++) body[n] = lar_union_root(body, n);
 }
 
 /* ---- passes --------------------------------------------------------------------------------- */
@@ -405,7 +394,7 @@ lar_status lar_contact_surface_create(const lar_model *model, const double *mass
     if (!asked_for(model)) return LAR_OK;
     workspace d = {.model = model, .surface = surface};
     lar_status status = allocate_workspace(&d, error);
-    if (!status) find_bodies(&model->mesh, d.body);
+    if (!status) lar_mesh_bodies(&model->mesh, d.body);
     if (!status) status = add_passes(&d, error);
     if (!status) status = list_all(&d, mass, local, error);
     if (!status) status = lar_contact_surface_edges(surface, error);

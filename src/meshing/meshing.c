@@ -127,6 +127,9 @@ static lar_status check_options(work *w) {
                       "other, set one of them to 0");
     if (o->title && !*o->title)
         return refuse(w, "%s", "the title is empty; leave it NULL or name one");
+    if (o->apart && o->fuse)
+        return refuse(w, "%s",
+                      "regions are to be fused and to be bodies of their own, apart; ask for one");
     lar_status status = check_paths(w);
     if (!status) status = lar_support_check(o->fix, w->error);
     return status ? status : check_image_options(w);
@@ -334,7 +337,10 @@ static lar_status make_mesh(work *w) {
     m->fitted = !w->options.voxel;
     if (!status && m->fitted) status = lar_fit(&m->boundary, &w->unfitted, &fit, w->error);
     m->info.size = w->unfitted.size;
-    if (!status) status = lar_unfitted_finish(&w->unfitted, &m->boundary, &m->mesh, w->error);
+    m->apart = w->options.apart;
+    if (!status)
+        status = lar_unfitted_finish(&w->unfitted, &m->boundary, m->apart ? &m->info.parted : NULL,
+                                     &m->mesh, w->error);
     return status;
 }
 
@@ -376,6 +382,9 @@ static void count_regions(lar_meshing *m) {
 static lar_status measure(const work *w, lar_error *error) {
     lar_meshing *m = w->meshing;
     const double size = m->info.size;
+    /* Bodies that come apart show what no outer surface has: where they met. */
+    if (m->apart)
+        return lar_quality_measure(&m->mesh, &m->boundary.triangles, &m->info.quality, error);
     lar_status status = lar_fine_surface_drop(&m->mesh, size, &m->outer, error);
     if (!status) status = lar_quality_measure(&m->mesh, &m->outer, &m->info.quality, error);
     return status ? status : lar_fine_surface_draw(&m->mesh, size, &m->outer, error);
@@ -461,6 +470,7 @@ static lar_status describe(work *w) {
     count_regions(m);
     lar_status status = tell(w, "measuring", 0);
     if (!status) status = judge(w);
+    if (m->apart) lar_triangles_clear(&m->outer);
     if (!status) status = check_volume(w);
     if (!status && w->options.fibres) status = lay_fibres(w);
     if (!status) status = lar_starter_check_tissues(m, w->error);

@@ -47,6 +47,7 @@ struct lar_meshing {
     bool image;  /* from an image, not from surfaces */
     bool solids; /* from the mesh of a volume */
     bool fitted;
+    bool apart; /* its regions are bodies of their own */
     lar_boundary boundary;
     lar_mesh mesh;
     lar_triangles outer; /* the true surface that is seen from outside */

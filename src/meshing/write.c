@@ -1,5 +1,6 @@
-/* A meshing on disk: mesh, embedded surface and scene, all three or none. They are written beside
- * the places that they shall have, and get their names when the last one is whole. */
+/* A meshing on disk: mesh, embedded surface, where there is one, and scene, all or none. They are
+ * written beside the places that they shall have, and get their names when the last one is whole.
+ */
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -22,7 +23,12 @@ static char *file_beside(const lar_meshing *m, const char *folder, const char *e
     return path;
 }
 
+static bool is_there(const lar_meshing *m, int which) {
+    return which != SURFACE || !m->apart;
+}
+
 static lar_status write_file(const lar_meshing *m, int which, const char *path, lar_error *error) {
+    if (!is_there(m, which)) return LAR_OK;
     if (which == MESH) return lar_vtu_write(path, &(lar_vtu_frame){.mesh = &m->mesh}, error);
     if (which == SURFACE) return lar_vtp_write(path, &m->outer, error);
     return lar_starter_write(m, path, error);
@@ -35,7 +41,7 @@ static lar_status write_all(const lar_meshing *m, char *const path[FILES], char 
     for (; !status && written < FILES; written += !status)
         status = write_file(m, written, fresh[written], error);
     for (int i = 0; !status && i < FILES; i++)
-        if (rename(fresh[i], path[i]) != 0)
+        if (is_there(m, i) && rename(fresh[i], path[i]) != 0)
             status =
                 lar_fail(error, LAR_ERROR_IO,
                          "%s: cannot be given its name: %s; check the folder and what is there "

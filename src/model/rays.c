@@ -10,7 +10,6 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "base/union_find.h"
 #include "base/vector.h"
 #include "model/model.h"
 #include "model/triangles/tree.h"
@@ -119,10 +118,7 @@ static void surface_clear(surface_now *now) {
 
 static void find_bodies(const lar_mesh *mesh, int32_t *body) {
     int32_t bodies = 0;
-    lar_union_start(body, mesh->node_count);
-    for (lar_gid e = 0; e < mesh->element_count; e++)
-        for (int a = 1; a < 8; a++) lar_union_join(body, mesh->element[e][0], mesh->element[e][a]);
-    for (int32_t n = 0; n < mesh->node_count; n++) body[n] = lar_union_root(body, n);
+    lar_mesh_bodies(mesh, body);
     /* The first node of a body stands before all others of it. */
     for (int32_t n = 0; n < mesh->node_count; n++)
         body[n] = body[n] == n ? bodies++ : body[body[n]];

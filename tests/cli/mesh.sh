@@ -205,6 +205,11 @@ expect 0 "$LARIAT" mesh cut.nrrd --names names.csv --label Spleen --elements 200
 [ -s spleen/spleen.yaml ] || fail "names.csv was not heard"
 expect 0 "$LARIAT" mesh cut.nrrd --label 1 --label 7 --fuse --voxel --out cubes --title cubes
 says '^cubes: [0-9]* elements of about 2 mm'
+expect 0 "$LARIAT" mesh cut.nrrd --label 1 --label 7 --elements 400 --apart --out apart --title apart
+[ ! -e apart/apart_surface.vtp ] || fail "bodies of their own have a true surface"
+grep -q '^contact: ' apart/apart.yaml || fail "bodies of their own without contact"
+expect 0 "$LARIAT" run apart/apart.yaml --time 0.05
+expect 2 "$LARIAT" mesh cut.nrrd --apart --fuse
 expect 0 "$LARIAT" mesh two.nrrd --label liver --principal --elements 200 --fix none --out free
 says '^held  *nowhere'
 expect 0 "$LARIAT" run free/liver.yaml

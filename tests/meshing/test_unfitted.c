@@ -131,7 +131,7 @@ static void sets_of_the_mesh(void **state) {
     lar_mesh mesh = {0};
     lar_error error;
     assert_int_equal(lar_unfitted_create(&voxel_grid, &boundary, &unfitted, &error), LAR_OK);
-    assert_int_equal(lar_unfitted_finish(&unfitted, &boundary, &mesh, &error), LAR_OK);
+    assert_int_equal(lar_unfitted_finish(&unfitted, &boundary, NULL, &mesh, &error), LAR_OK);
     assert_int_equal(mesh.element_tag[0], 7);
     assert_int_equal(mesh.element_tag[2], 5);
     assert_int_equal(set_count(&mesh, "surface", LAR_SET_FACES), 42);
@@ -195,7 +195,7 @@ static void the_cut_has_its_number(void **state) {
                 assert_false(meets(&unfitted, n, 0, 1));
             }
         }
-        assert_int_equal(lar_unfitted_finish(&unfitted, &boundary, &mesh, &error), LAR_OK);
+        assert_int_equal(lar_unfitted_finish(&unfitted, &boundary, NULL, &mesh, &error), LAR_OK);
         const int32_t faces = set_count(&mesh, "cut_top", LAR_SET_FACES);
         if (oblique)
             assert_in_range(faces, 30, 90);

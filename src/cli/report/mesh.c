@@ -46,6 +46,7 @@ void mesh_report_json(const mesh_report *report) {
     lar_json_integer(&json, "added", info->added);
     lar_json_integer(&json, "removed", info->removed);
     lar_json_close(&json);
+    lar_json_integer(&json, "parted", info->parted);
     lar_json_integer(&json, "cuts", info->cuts);
     lar_json_text(&json, "fix", info->fix);
     lar_json_integer(&json, "pads", info->extra_supports);
@@ -156,6 +157,9 @@ void mesh_report_table(const mesh_report *report) {
     printf("%s: %d elements of about %s, %d nodes, in %.1f s\n", info->title, (int)info->elements,
            cli_length(info->size).text, (int)info->nodes, report->seconds);
     print_regions(report);
+    if (info->parted > 0)
+        printf("%-17s%d nodes more, where regions meet and come apart\n", "bodies",
+               (int)info->parted);
     print_cleaning(info);
     print_support(report);
     cli_print_deviation(&info->quality);

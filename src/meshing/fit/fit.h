@@ -47,8 +47,9 @@ lar_status lar_fit(const lar_boundary *boundary, lar_unfitted_mesh *unfitted,
 /* Cell tags become those of the regions; named sets are added: faces "surface" (all outer faces),
  * "NAME_surface" per region when there are several (its outer faces), "A_B" per interface as faces
  * of A, "cut_left" ... per flat cut; elements "NAME" per region. Names are made of letters, digits
- * and "_". Moves the mesh out. */
+ * and "_". With `added` (not NULL) regions become bodies of their own (grid/part_regions.h). Moves
+ * the mesh out. */
 lar_status lar_unfitted_finish(lar_unfitted_mesh *unfitted, const lar_boundary *boundary,
-                               lar_mesh *mesh, lar_error *error);
+                               int32_t *added, lar_mesh *mesh, lar_error *error);
 
 #endif

@@ -4,7 +4,9 @@
 #include <string.h>
 
 #include "base/vector.h"
+#include "meshing/fit/body_gaps.h"
 #include "meshing/fit/fit.h"
+#include "meshing/grid/part_regions.h"
 #include "model/mesh/faces.h"
 
 /* Interfaces that get a set: of a model with hundreds of regions the larger ones. */
@@ -196,17 +198,34 @@ static lar_status add_interfaces(finishing *work, int32_t *index) {
     return status;
 }
 
+/* Where regions are cut off and meet is seen while they hang together. */
+static lar_status add_borders(finishing *work, int32_t *index) {
+    lar_status status = add_cuts(work, index);
+    return status ? status : add_interfaces(work, index);
+}
+
+static lar_status part(finishing *work, int32_t *added) {
+    lar_mesh *mesh = &work->unfitted->mesh;
+    lar_status status = lar_regions_part(mesh, added, work->error);
+    free(work->outer);
+    work->outer = NULL;
+    if (!status) status = lar_body_gaps_open(mesh, work->unfitted->size, work->error);
+    if (!status) status = lar_mesh_boundary(mesh, &work->outer, &work->outer_count, work->error);
+    return status;
+}
+
 lar_status lar_unfitted_finish(lar_unfitted_mesh *unfitted, const lar_boundary *boundary,
-                               lar_mesh *mesh, lar_error *error) {
+                               int32_t *added, lar_mesh *mesh, lar_error *error) {
     finishing work = {.unfitted = unfitted, .boundary = boundary, .error = error};
     const size_t faces = (size_t)unfitted->mesh.element_count * 6;
     int32_t *index = lar_calloc(faces, sizeof *index);
     if (!index) return lar_fail_memory(error, faces * sizeof *index, "the sets of the mesh");
     lar_status status = lar_mesh_boundary(&unfitted->mesh, &work.outer, &work.outer_count, error);
+    if (!status && added) status = add_borders(&work, index);
+    if (!status && added) status = part(&work, added);
     if (!status) status = add_set(&work, "surface", LAR_SET_FACES, work.outer, work.outer_count);
     if (!status) status = add_regions(&work, index);
-    if (!status) status = add_cuts(&work, index);
-    if (!status) status = add_interfaces(&work, index);
+    if (!status && !added) status = add_borders(&work, index);
     free(work.outer);
     free(index);
     if (status) return status;

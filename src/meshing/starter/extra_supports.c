@@ -4,7 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/union_find.h"
 #include "base/vector.h"
 
 /* Of a piece's length: how far its weight may move it; how far extra supports are apart, at first;
@@ -49,15 +48,11 @@ static void find_underside(search *s, int axis, int sign) {
 static lar_status find_lengths(search *s, lar_error *error) {
     const lar_mesh *mesh = &s->meshing->mesh;
     size_t nodes = (size_t)mesh->node_count;
-    int32_t *parent = s->piece;
     double(*box)[2][3] = lar_calloc(nodes, sizeof *box);
     bool ready = box != NULL;
-    if (ready) lar_union_start(parent, mesh->node_count);
-    for (int32_t e = 0; ready && e < mesh->element_count; e++)
-        for (int a = 1; a < 8; a++)
-            lar_union_join(parent, mesh->element[e][0], mesh->element[e][a]);
+    if (ready) lar_mesh_bodies(mesh, s->piece);
     for (int32_t n = 0; ready && n < mesh->node_count; n++) {
-        int32_t root = lar_union_root(parent, n);
+        int32_t root = s->piece[n];
         for (int i = 0; i < 3; i++) {
             double x = mesh->position[n][i], *low = &box[root][0][i], *high = &box[root][1][i];
             *low = root == n ? x : fmin(*low, x); /* the least node comes first */
@@ -65,7 +60,7 @@ static lar_status find_lengths(search *s, lar_error *error) {
         }
     }
     for (int32_t n = 0; ready && n < mesh->node_count; n++) {
-        int32_t root = s->piece[n] = lar_union_root(parent, n);
+        int32_t root = s->piece[n];
         for (int i = 0; i < 3; i++)
             s->length[n] = fmax(s->length[n], box[root][1][i] - box[root][0][i]);
     }

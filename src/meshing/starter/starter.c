@@ -103,10 +103,10 @@ static double squeezed_step(const lar_meshing *m) {
 }
 
 static void put_files(const lar_meshing *m, FILE *f) {
-    fprintf(f,
-            "\nmesh: \"%s.vtu\"\n"
-            "surface: \"%s_surface.vtp\"   # the true surface, embedded in the mesh\n",
-            m->stem, m->stem);
+    fprintf(f, "\nmesh: \"%s.vtu\"\n", m->stem);
+    if (!m->apart)
+        fprintf(f, "surface: \"%s_surface.vtp\"   # the true surface, embedded in the mesh\n",
+                m->stem);
 }
 
 static void put_head(const lar_meshing *m, bool files, FILE *f) {
@@ -386,12 +386,21 @@ static void put_tools(const lar_meshing *m, FILE *f) {
 }
 
 static void put_end(const lar_meshing *m, FILE *f) {
-    fputs(
-        "# It does not pass through itself: takes some of each step.\n"
-        "# contact: [ { self: true } ]\n\n"
-        "output:\n  every: 0.02\n  fields: [displacement, von_mises]\n"
-        "# surface: true   # the true surface in every frame too, for ParaView: takes more room\n",
-        f);
+    if (m->apart)
+        fputs("# Bodies touch, slide and come apart, and pass neither through each other nor "
+              "through\n"
+              "# themselves. Coulomb's friction: { self: true, friction: 0.1 }\n"
+              "contact: [ { self: true } ]\n\n",
+              f);
+    else
+        fputs("# It does not pass through itself: takes some of each step.\n"
+              "# contact: [ { self: true } ]\n\n",
+              f);
+    fputs("output:\n  every: 0.02\n  fields: [displacement, von_mises]\n", f);
+    if (!m->apart)
+        fputs("# surface: true   # the true surface in every frame too, for ParaView: takes more "
+              "room\n",
+              f);
     if (!m->support.handle && !m->support.held) return;
     fputs("  probes:\n", f);
     if (m->support.handle)

@@ -16,7 +16,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/union_find.h"
 #include "meshing/meshing.h"
 #include "meshing/starter/extra_supports.h"
 
@@ -171,22 +170,18 @@ static void mark_rigid(choice *c) {
 
 /* Pieces of the mesh, each named by its least node, with their extent along an axis. */
 typedef struct pieces {
-    int32_t *parent;    /* [nodes] */
+    int32_t *body;      /* [nodes] */
     double (*range)[2]; /* [nodes] at the least nodes: lowest and highest place */
     bool *held;         /* [nodes] the same: by the rule or by a bone */
 } pieces;
 
 static void find_pieces(const choice *c, int axis, pieces *p) {
     const lar_mesh *mesh = &c->meshing->mesh;
-    lar_union_start(p->parent, mesh->node_count);
+    lar_mesh_bodies(mesh, p->body);
     for (int32_t e = 0; e < mesh->element_count; e++)
-        for (int a = 1; a < 8; a++)
-            lar_union_join(p->parent, mesh->element[e][0], mesh->element[e][a]);
-    for (int32_t e = 0; e < mesh->element_count; e++)
-        if (is_rigid(c, mesh->element_tag[e]))
-            p->held[lar_union_root(p->parent, mesh->element[e][0])] = true;
+        if (is_rigid(c, mesh->element_tag[e])) p->held[p->body[mesh->element[e][0]]] = true;
     for (int32_t n = 0; n < mesh->node_count; n++) {
-        int32_t root = lar_union_root(p->parent, n);
+        int32_t root = p->body[n];
         double place = mesh->position[n][axis], *range = p->range[root];
         range[0] = root == n ? place : fmin(range[0], place); /* the least node comes first */
         range[1] = root == n ? place : fmax(range[1], place);
@@ -199,13 +194,13 @@ static void find_pieces(const choice *c, int axis, pieces *p) {
 static lar_status mark_loose_pieces(choice *c, int side) {
     const lar_mesh *mesh = &c->meshing->mesh;
     size_t nodes = (size_t)mesh->node_count;
-    pieces p = {.parent = lar_calloc(nodes, sizeof *p.parent),
+    pieces p = {.body = lar_calloc(nodes, sizeof *p.body),
                 .range = lar_calloc(nodes, sizeof *p.range),
                 .held = lar_calloc(nodes, sizeof *p.held)};
-    bool ready = p.parent && p.range && p.held;
+    bool ready = p.body && p.range && p.held;
     if (ready) find_pieces(c, side / 2, &p);
     for (int32_t e = 0; ready && e < mesh->element_count; e++) {
-        int32_t root = lar_union_root(p.parent, mesh->element[e][0]);
+        int32_t root = p.body[mesh->element[e][0]];
         const double *range = p.range[root];
         double min = DBL_MAX;
         for (int a = 0; a < 8; a++) {
@@ -215,7 +210,7 @@ static lar_status mark_loose_pieces(choice *c, int side) {
         bool reaches = !p.held[root] && min <= TENTH * (range[1] - range[0]);
         for (int a = 0; reaches && a < 8; a++) c->held[mesh->element[e][a]] = true;
     }
-    free(p.parent);
+    free(p.body);
     free(p.range);
     free(p.held);
     return ready ? LAR_OK : lar_fail_memory(c->error, 24 * nodes, "the mesh's pieces");

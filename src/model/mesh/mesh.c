@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/union_find.h"
+
 const uint8_t lar_face_node[6][4] = {{0, 4, 7, 3}, {1, 2, 6, 5}, {0, 1, 5, 4},
                                      {3, 7, 6, 2}, {0, 3, 2, 1}, {4, 5, 6, 7}};
 
@@ -54,6 +56,13 @@ const lar_set *lar_mesh_find_set(const lar_mesh *mesh, const char *name, lar_set
     for (int32_t s = 0; s < mesh->set_count; s++)
         if (mesh->set[s].kind == kind && strcmp(mesh->set[s].name, name) == 0) return &mesh->set[s];
     return NULL;
+}
+
+void lar_mesh_bodies(const lar_mesh *mesh, int32_t *body) {
+    lar_union_start(body, mesh->node_count);
+    for (int32_t e = 0; e < mesh->element_count; e++)
+        for (int a = 1; a < 8; a++) lar_union_join(body, mesh->element[e][0], mesh->element[e][a]);
+    for (int32_t n = 0; n < mesh->node_count; n++) body[n] = lar_union_root(body, n);
 }
 
 void lar_mesh_corners(const lar_mesh *mesh, int32_t e, double corner[8][3]) {

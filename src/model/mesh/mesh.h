@@ -128,6 +128,9 @@ double lar_hexahedron_volume(const double corner[8][3]);
 /* Mean length of the elements' edges [m], each counted as often as elements have it. */
 double lar_mesh_mean_edge(const lar_mesh *mesh);
 
+/* Bodies, the parts of a mesh that hang together: body[n] becomes the least node of n's. */
+void lar_mesh_bodies(const lar_mesh *mesh, int32_t *body);
+
 /* Copies the corners of element e. */
 void lar_mesh_corners(const lar_mesh *mesh, int32_t e, double corner[8][3]);
 
