@@ -33,24 +33,14 @@ static lar_status count_crossings(const lar_mesh *mesh, const int32_t *face, int
                                   lar_mesh_quality *quality, lar_error *error) {
     lar_face_crossings found = {0};
     int32_t(*node)[4] = lar_calloc((size_t)count, sizeof *node);
-    int32_t *body = lar_calloc((size_t)count, sizeof *body);
-    int32_t *piece = lar_calloc((size_t)mesh->node_count, sizeof *piece);
-    lar_status status = LAR_OK;
-    if (!node || !body || !piece)
-        status = lar_fail_memory(error, (size_t)count * sizeof *node, "the outer faces");
-    if (!status) lar_mesh_bodies(mesh, piece);
-    for (int32_t f = 0; !status && f < count; f++) {
+    if (!node) return lar_fail_memory(error, (size_t)count * sizeof *node, "the outer faces");
+    for (int32_t f = 0; f < count; f++)
         for (int a = 0; a < 4; a++)
             node[f][a] = mesh->element[face[f] / 6][lar_face_node[face[f] % 6][a]];
-        body[f] = piece[node[f][0]];
-    }
-    if (!status)
-        status =
-            lar_faces_find_crossings((const double(*)[3])mesh->position, (const int32_t(*)[4])node,
-                                     body, count, 0, NULL, &found, error);
+    lar_status status =
+        lar_faces_find_crossings((const double(*)[3])mesh->position, (const int32_t(*)[4])node,
+                                 count, 0, NULL, &found, error);
     free(node);
-    free(body);
-    free(piece);
     quality->crossings = found.pairs;
     quality->crossing_depth = found.deepest;
     return status;

@@ -180,7 +180,7 @@ static void test_all_pairs(void **state) {
         memcpy(x + (N + 1) * (N + 1), at, sizeof at);
         for (int k = 0; above && k < 4; k++) x[(N + 1) * (N + 1) + k][2] += 1;
         assert_int_equal(lar_faces_find_crossings((const double(*)[3])x, (const int32_t(*)[4])face,
-                                                  NULL, FACES, 0, crosses, &found, &error),
+                                                  FACES, 0, crosses, &found, &error),
                          LAR_OK);
         int marked = 0;
         for (int f = 0; f < FACES; f++) marked += crosses[f];

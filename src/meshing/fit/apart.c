@@ -298,7 +298,7 @@ static lar_status find(lar_fit_work *work, double gap, bool *any, lar_error *err
     lar_face_crossings found;
     lar_status status =
         lar_faces_find_crossings((const double(*)[3])work->x, (const int32_t(*)[4])apart->face,
-                                 NULL, apart->count, gap, apart->crosses, &found, error);
+                                 apart->count, gap, apart->crosses, &found, error);
     *any = !status && found.pairs > 0;
     return status;
 }

@@ -203,32 +203,6 @@ double lar_faces_cross(const double (*x)[3], const int32_t a[4], const int32_t b
     return deepest;
 }
 
-/* Whether faces of two bodies go through each other as contact takes them: four triangles around
- * the middle (mechanics/face_contact.h). */
-static bool bodies_cross(const double (*x)[3], const int32_t a[4], const int32_t b[4]) {
-    double corner[2][5][3] = {{{0}}};
-    if (boxes_apart(x, a, b, 0)) return false;
-    for (int k = 0; k < 4; k++)
-        for (int i = 0; i < 3; i++) {
-            corner[0][k][i] = x[a[k]][i];
-            corner[1][k][i] = x[b[k]][i];
-            corner[0][4][i] += 0.25 * x[a[k]][i];
-            corner[1][4][i] += 0.25 * x[b[k]][i];
-        }
-    for (int s = 0; s < 16; s++) {
-        double part[2][3][3];
-        for (int f = 0; f < 2; f++) {
-            const int k = f ? s & 3 : s >> 2;
-            memcpy(part[f][0], corner[f][k], sizeof part[f][0]);
-            memcpy(part[f][1], corner[f][(k + 1) & 3], sizeof part[f][1]);
-            memcpy(part[f][2], corner[f][4], sizeof part[f][2]);
-        }
-        if (lar_triangle_overlap((const double(*)[3])part[0], (const double(*)[3])part[1], 0) > 0)
-            return true;
-    }
-    return false;
-}
-
 /* ---- how far they are apart ----------------------------------------------------------------- */
 
 /* Corners of two faces, seen from one of the first. */
@@ -369,7 +343,6 @@ double lar_faces_clearance(const double (*x)[3], const int32_t a[4], const int32
 typedef struct search {
     const double (*x)[3];
     const int32_t (*face)[4];
-    const int32_t *body; /* [faces] or NULL */
     double gap;
     const lar_face_boxes *boxes;
     int32_t *pairs;  /* [faces] with faces of higher number */
@@ -385,10 +358,7 @@ static bool compare(void *context, int32_t other) {
     const comparison *c = context;
     const search *s = c->search;
     if (other == c->face) return true;
-    const int32_t *one = s->face[c->face], *two = s->face[other];
-    const bool strange = s->body && s->body[other] != s->body[c->face];
-    if (strange && !bodies_cross(s->x, one, two)) return true;
-    const double depth = lar_faces_cross(s->x, one, two, s->gap);
+    const double depth = lar_faces_cross(s->x, s->face[c->face], s->face[other], s->gap);
     if (!(depth > 0)) return true;
     s->pairs[c->face] += other > c->face;
     s->deepest[c->face] = fmax(s->deepest[c->face], depth);
@@ -403,12 +373,12 @@ static void look_around(void *context, int32_t first, int32_t end) {
     }
 }
 
-lar_status lar_faces_find_crossings(const double (*x)[3], const int32_t (*face)[4],
-                                    const int32_t *body, int32_t count, double gap, bool *crosses,
-                                    lar_face_crossings *found, lar_error *error) {
+lar_status lar_faces_find_crossings(const double (*x)[3], const int32_t (*face)[4], int32_t count,
+                                    double gap, bool *crosses, lar_face_crossings *found,
+                                    lar_error *error) {
     enum { PORTION = 256 };
     lar_face_boxes boxes = {0};
-    search s = {.x = x, .face = face, .body = body, .gap = gap, .boxes = &boxes};
+    search s = {.x = x, .face = face, .gap = gap, .boxes = &boxes};
     s.pairs = lar_calloc((size_t)count, sizeof *s.pairs);
     s.deepest = lar_calloc((size_t)count, sizeof *s.deepest);
     lar_status status = s.pairs && s.deepest ? LAR_OK

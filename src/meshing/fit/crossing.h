@@ -30,12 +30,10 @@ double lar_faces_cross(const double (*x)[3], const int32_t a[4], const int32_t b
 double lar_faces_clearance(const double (*x)[3], const int32_t a[4], const int32_t b[4],
                            double gap);
 
-/* All pairs of `count` faces. Those of different bodies, by `body` [count] (NULL: all are one's),
- * are folded as contact does it, around their middle: bodies that lie on each other would cross
- * wherever their faces fold along different diagonals. `crosses` [count], by the caller, is set for
- * each face that crosses another one; NULL: not wanted. */
-lar_status lar_faces_find_crossings(const double (*x)[3], const int32_t (*face)[4],
-                                    const int32_t *body, int32_t count, double gap, bool *crosses,
-                                    lar_face_crossings *found, lar_error *error);
+/* All pairs of `count` faces. `crosses` [count], by the caller, is set for each face that crosses
+ * another one; NULL: not wanted. */
+lar_status lar_faces_find_crossings(const double (*x)[3], const int32_t (*face)[4], int32_t count,
+                                    double gap, bool *crosses, lar_face_crossings *found,
+                                    lar_error *error);
 
 #endif

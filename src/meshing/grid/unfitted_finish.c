@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "base/vector.h"
-#include "meshing/fit/body_gaps.h"
 #include "meshing/fit/fit.h"
 #include "meshing/grid/part_regions.h"
 #include "model/mesh/faces.h"
@@ -209,7 +208,6 @@ static lar_status part(finishing *work, int32_t *added) {
     lar_status status = lar_regions_part(mesh, added, work->error);
     free(work->outer);
     work->outer = NULL;
-    if (!status) status = lar_body_gaps_open(mesh, work->unfitted->size, work->error);
     if (!status) status = lar_mesh_boundary(mesh, &work->outer, &work->outer_count, work->error);
     return status;
 }
