@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "contact/friction/body_friction.h"
+#include "contact/history/body_friction.h"
 #include "mechanics/face_contact.h"
 
 /* How much nearer a node and a face come when all nodes move by 1 along every axis. */
@@ -130,60 +130,6 @@ static int32_t choose_face(const lar_body_contact *contact, const lar_state *sta
         chosen = i;
     }
     return chosen;
-}
-
-/* ---- offsets --------------------------------------------------------------------------------- */
-
-static bool same_body(const lar_body_contact *contact, int32_t node, int32_t face) {
-    return contact->surface->node[node].body == contact->surface->face[face].body;
-}
-
-static double offset_of(const lar_body_contact *contact, const lar_state *state, int32_t node) {
-    const lar_contact_view *view = &contact->view;
-    return view->place ? view->place[view->slot[node]][6] : state->level[view->local[node]];
-}
-
-/* Notes the offset that the node will have when it moves. */
-static void set_offset(lar_body_contact *contact, const lar_state *state, int32_t node,
-                       double offset) {
-    if (offset == offset_of(contact, state, node) || (contact->keeps && !contact->keeps[node]))
-        return;
-    contact->offset[contact->offset_count++] =
-        (lar_penetration_offset){contact->view.local[node], offset};
-}
-
-/* Who is so deep when it appears behind a face belongs inside. */
-static double deep_of(const lar_body_contact *contact, int32_t node, int32_t face) {
-    const lar_contact_surface *s = contact->surface;
-    return 0.25 * lar_contact_reach(s, &s->node[node], &s->face[face]);
-}
-
-/* From which depth on a node is pushed by a face of its own body, `depth` deep and sinking at
- * `rate`. Who was before the face a step ago has come through it. */
-static double follow_offset(lar_body_contact *contact, const lar_state *state, int32_t node,
-                            int32_t face, double depth, double rate) {
-    double before = offset_of(contact, state, node), offset = depth;
-    double deep = deep_of(contact, node, face);
-    bool returning = before == LAR_OFFSET_OUT || before == LAR_OFFSET_RETURN;
-    if (returning)
-        offset = LAR_OFFSET_RETURN;
-    else if (depth <= contact->time_step * rate)
-        offset = LAR_OFFSET_FRONT;
-    else if (before > 0 && (before < depth || before >= deep))
-        offset = before;
-    set_offset(contact, state, node, offset);
-    return returning ? depth : offset;
-}
-
-/* The node is before the closest face of its own body, or none is near (-1). Who belongs inside
- * has come out through the back. */
-static void leave_offset(lar_body_contact *contact, const lar_state *state, int32_t node,
-                         int32_t face) {
-    double before = offset_of(contact, state, node), offset = 0;
-    bool inside =
-        before == LAR_OFFSET_RETURN || (face >= 0 && before >= deep_of(contact, node, face));
-    if (before == LAR_OFFSET_OUT || (face >= 0 && inside)) offset = LAR_OFFSET_OUT;
-    set_offset(contact, state, node, offset);
 }
 
 /* ---- one node and one face ------------------------------------------------------------------ */
@@ -365,14 +311,15 @@ static bool push(lar_body_contact *contact, const lar_state *state, int32_t g, i
     if (isnan(depth)) return false;
     double together = push_together(t, LAR_FACE_TIE * f->size, &depth);
     for (int i = 0; i < 3; i++) rate += together * (point.velocity[i] - v[i]) * way[i];
-    double offset =
-        same_body(contact, node, face) ? follow_offset(contact, state, node, face, depth, rate) : 0;
+    bool own = lar_same_body(contact, node, face);
+    double offset = own ? lar_offset_follow(contact, state, node, face, depth, rate) : 0;
+    if (!own && !lar_offset_pushes(contact, state, g, face, depth, rate)) return false;
     if (!lar_contact_active(&surface->node[node], f)) return false;
     double moved = lar_contact_pair_mass(surface->node[node].mass, point.mass);
     double standoff = lar_contact_standoff(surface, &surface->node[node], f);
     double from = standoff - offset;
     moved *= softness(contact, standoff);
-    double force = f->fades && !same_body(contact, node, face)
+    double force = f->fades && !own
                        ? fade(contact, x, &known, closest, full_of(contact, node, face), moved,
                               depth + from, rate, t)
                        : lar_contact_force(&contact->law, moved, depth + from, rate);
@@ -457,8 +404,11 @@ static bool in_contact(lar_body_contact *contact, const lar_state *state, int32_
     if (face >= 0 && touches(contact, group->node, face, &point))
         return push(contact, state, g, face, &point, &s, t);
     if (lar_group_is_own(contact->surface, &contact->list, group)) {
-        leave_offset(contact, state, group->node, face);
-    } else if (face >= 0) {
+        lar_offset_leave(contact, state, group->node, face);
+        return false;
+    }
+    lar_offset_out(contact, state, g);
+    if (face >= 0) {
         double clear = 0.999 * clear_of(contact, state, g, &s, &point) / APPROACH;
         contact->due[g] = fmax(contact->due[g], fmin(contact->travel + clear, s.next));
     }

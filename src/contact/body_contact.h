@@ -26,8 +26,15 @@
  * appears is its offset, and only what it sinks below that pushes it; coming out, it takes the
  * offset along. A node that came through the face has the offset 0. One that appears deep belongs
  * inside, as in a thin part that is squeezed: it keeps its offset, and when it comes out through
- * the back of the face nothing hinders it on its way in. Offsets are the one thing that contact
- * remembers: they stand in state->level [m], 0 for who is
+ * the back of the face nothing hinders it on its way in.
+ *
+ * Nor may faces of another body push who comes behind them from the back. Of a surface that is
+ * folded so far that it goes through itself the closest face may turn its back to a node outside,
+ * and once that is within reach it would be thrown out from the bottom of a layer that it never
+ * sank into. Whether it was in the layer before is seen from where all were a step ago; that it is
+ * not pushed is remembered until it touches nothing.
+ *
+ * Offsets are the one thing that contact remembers: they stand in state->level [m], 0 for who is
  * not inside, and belong to the state like u and v.
  *
  * Prediction (T 3.8.2). The thesis assumes a greatest acceleration. Here nothing is assumed: the
@@ -58,7 +65,7 @@ static inline double lar_larger(double max, double other) {
 /* Of a contact node in the exchange buffer: place, velocity, offset. */
 enum { LAR_PLACE_VALUES = 7 };
 
-/* And behind it, where bodies rub (friction/body_friction.h). */
+/* And behind it, where bodies rub (history/body_friction.h). */
 enum { LAR_STICK_VALUES = 4 };
 
 typedef struct lar_body_friction lar_body_friction;
@@ -91,6 +98,15 @@ typedef struct lar_body_contact_part {
 #define LAR_OFFSET_FRONT  1e-300
 #define LAR_OFFSET_OUT    2e-300
 #define LAR_OFFSET_RETURN 3e-300
+
+/* And of a node that has come behind the faces of another body from the back: these do not push it
+ * before it is out. Of which body is told apart, so that it may be before those of a third. */
+static inline double lar_offset_behind(int32_t body) {
+    return 4e-300 + 1e-300 * body;
+}
+static inline bool lar_offset_is_behind(double offset) {
+    return offset > 3.5e-300 && offset < 1e-280;
+}
 
 /* An offset that is another than in the last step. */
 typedef struct lar_penetration_offset {
@@ -184,6 +200,32 @@ static inline void lar_contact_corners(const lar_body_contact *contact, const la
         lar_contact_place_of_node(contact, state, contact->surface->face[face].corner[a], x[a],
                                   v ? v[a] : NULL);
 }
+
+/* ---- offsets (history/body_offset.c) --------------------------------------------------------- */
+
+static inline bool lar_same_body(const lar_body_contact *contact, int32_t node, int32_t face) {
+    return contact->surface->node[node].body == contact->surface->face[face].body;
+}
+
+/* From which depth on a node is pushed by a face of its own body, `depth` deep and sinking at
+ * `rate`. Who was before the face a step ago has come through it. */
+double lar_offset_follow(lar_body_contact *contact, const lar_state *state, int32_t node,
+                         int32_t face, double depth, double rate);
+
+/* The node is before the closest face of its own body, or none is near (-1). Who belongs inside
+ * has come out through the back. */
+void lar_offset_leave(lar_body_contact *contact, const lar_state *state, int32_t node,
+                      int32_t face);
+
+/* Whether a face of another body pushes the node or point of group g, `depth` deep behind it
+ * (negative: before it) and sinking at `rate`: not where that has come behind the body's faces from
+ * the back, and is not yet so far before them that nothing would push it. */
+bool lar_offset_pushes(lar_body_contact *contact, const lar_state *state, int32_t g, int32_t face,
+                       double depth, double rate);
+
+/* The node of group g touches no face of that other body: from now on it is pushed like any other.
+ */
+void lar_offset_out(lar_body_contact *contact, const lar_state *state, int32_t g);
 
 /* ---- the step -------------------------------------------------------------------------------- */
 

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "contact/friction/body_friction.h"
+#include "contact/history/body_friction.h"
 
 /* ---- a new list ------------------------------------------------------------------------------ */
 
@@ -23,15 +23,24 @@ void lar_body_contact_restart(lar_body_contact *contact) {
     }
 }
 
-/* The group of node n among those from *g on that has faces of its own body; -1: there is none.
- * They are in the order of nodes. */
-static int32_t own_group(const lar_body_contact *contact, int32_t n, int32_t *g) {
+/* The group of node n, among those from *g on, that has faces of a body; -1: there is none. They
+ * are in the order of nodes. */
+static int32_t group_with(const lar_body_contact *contact, int32_t n, int32_t body, int32_t *g) {
     const lar_contact_list *list = &contact->list;
-    int32_t own = -1;
+    int32_t found = -1;
     while (*g < list->group_count && list->group[*g].node < n) (*g)++;
     for (int32_t k = *g; k < list->group_count && list->group[k].node == n; k++)
-        if (lar_group_is_own(contact->surface, list, &list->group[k])) own = k;
-    return own;
+        if (contact->surface->face[list->face[list->group[k].first]].body == body) found = k;
+    return found;
+}
+
+/* Which body's faces a node's offset is about. */
+static int32_t body_behind(const lar_body_contact *contact, int32_t n, double offset) {
+    const lar_contact_surface *s = contact->surface;
+    if (lar_offset_is_behind(offset))
+        for (int32_t b = 0; b < s->body_count; b++)
+            if (offset == lar_offset_behind(b)) return b;
+    return s->node[n].body;
 }
 
 void lar_body_contact_end_offsets(lar_body_contact *contact, const lar_state *state) {
@@ -42,9 +51,9 @@ void lar_body_contact_end_offsets(lar_body_contact *contact, const lar_state *st
         int32_t local = contact->view.local[n];
         double before = state->level[local];
         if (before == 0 || before == LAR_OFFSET_OUT) continue;
-        int32_t own = own_group(contact, n, &g);
-        if (own >= 0)
-            contact->due[own] = 0;
+        int32_t found = group_with(contact, n, body_behind(contact, n, before), &g);
+        if (found >= 0)
+            contact->due[found] = 0;
         else
             contact->offset[contact->offset_count++] = (lar_penetration_offset){local, 0};
     }

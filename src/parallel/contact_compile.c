@@ -2,7 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "contact/friction/body_friction.h"
+#include "contact/history/body_friction.h"
 #include "divide/incidence.h"
 #include "parallel/contact_exchange.h"
 

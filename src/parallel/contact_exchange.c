@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "contact/friction/body_friction.h"
+#include "contact/history/body_friction.h"
 
 /* ---- waiting --------------------------------------------------------------------------------- */
 

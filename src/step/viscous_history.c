@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "contact/friction/body_friction.h"
+#include "contact/history/body_friction.h"
 
 int lar_viscous_count(const lar_domain *domain, int32_t item) {
     if (lar_history_node(domain, item) >= 0) return LAR_STICK_VALUES;

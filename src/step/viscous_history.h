@@ -1,5 +1,5 @@
 /* What viscous elements remember (law/viscosity.h), and behind it nodes of bodies that rub
- * (contact/friction/body_friction.h), in the state of a domain and on its way to and from others.
+ * (contact/history/body_friction.h), in the state of a domain and on its way to and from others.
  *
  *     model     element 0, 1, 2, ...          one element's values one after the other; those of
  *                   |                         what is elastic have none. Hash, checkpoint and

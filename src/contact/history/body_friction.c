@@ -1,4 +1,4 @@
-#include "contact/friction/body_friction.h"
+#include "contact/history/body_friction.h"
 
 #include <stdlib.h>
 
