@@ -305,13 +305,40 @@ static void test_bad_meshes(void **state) {
 
 /* ---- sections -------------------------------------------------------------------------------- */
 
+#define GRAVITY                                                                                    \
+    "<Loads><body_load "                                                                           \
+    "type=\"gravity\"><x>0</x><y>0</y><z>9.81</z></body_load></Loads>"
+#define VISCOUS                                                                                    \
+    "<Material><material id=\"7\" name=\"soft\" type=\"viscoelastic\"><density>1000</density>"     \
+    "<t1>1</t1><g1>1</g1><elastic type=\"neo-Hookean\"><E>3000</E><v>0.25</v></elastic>"           \
+    "</material></Material>\n"
+static const double PI = 3.14159265358979;
+
 static void test_static_and_step(void **state) {
     (void)state;
-    lar_model *model = read_deck(HEAD4 CONTROL("STATIC") MATERIAL MESH4 DOMAINS TAIL);
+    lar_model *model = read_deck(HEAD4 CONTROL("STATIC") MATERIAL MESH4 DOMAINS GRAVITY TAIL);
     assert_int_equal(notices_with(model, "the analysis is static"), 1);
-    /* pi sqrt(1200 / 1000) / 2: the body is 2 long */
-    assert_true(fabs(model->damping - 1.7207) < 1e-3);
+    /* twice within the second of the deck: 2 omega = 4 pi / (1/2 s), and density so that this is
+     * pi sqrt(1200 / density) / 2, the body being 2 long; its weight stays what it is */
+    assert_true(fabs(model->damping / (8 * PI) - 1) < 1e-12);
+    assert_true(fabs(model->material[0].density / (1200.0 / 256) - 1) < 1e-12);
+    assert_true(fabs(model->material[0].density * model->gravity[2] / -9810 - 1) < 1e-12);
     assert_int_equal(lar_model_until_rest(model), 1);
+    lar_model_destroy(model);
+
+    /* what is viscous has a time of its own: to the deck's end, a hundred times as fast */
+    model = read_deck(HEAD4 CONTROL("STATIC") VISCOUS MESH4 DOMAINS GRAVITY TAIL);
+    assert_int_equal(notices_with(model, "to the deck's end, 1 s"), 1);
+    assert_int_equal(lar_model_until_rest(model), 0);
+    assert_true(lar_model_duration(model) == 1);
+    assert_true(fabs(model->damping / (0.1 * 400 * PI) - 1) < 1e-12);
+    assert_true(fabs(model->material[0].density * model->gravity[2] / -9810 - 1) < 1e-12);
+    lar_model_destroy(model);
+
+    /* without an end of its own it is followed to rest, and without a period in its own time */
+    model = read_deck(HEAD4 VISCOUS MESH4 DOMAINS TAIL);
+    assert_int_equal(lar_model_until_rest(model), 1);
+    assert_true(model->material[0].density == 1000);
     lar_model_destroy(model);
 
     /* the loads end with the deck's last step, 1 s, whatever their curves do behind it */

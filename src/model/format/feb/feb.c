@@ -43,38 +43,52 @@ static lar_status check_control(lar_feb *feb, const xmlNode *control) {
 }
 
 /* The word in <analysis>, or in its attribute type. */
-static lar_status read_analysis(lar_feb *feb, const xmlNode *control, bool *is_static) {
+static lar_status read_analysis(lar_feb *feb, const xmlNode *control) {
     const xmlNode *analysis = control ? lar_feb_child(control, "analysis") : NULL;
-    *is_static = true; /* FEBio's default */
+    feb->is_static = true; /* FEBio's default */
     if (!analysis) return LAR_OK;
     const char *type = lar_feb_attribute(feb, analysis, "type");
     lar_span word = type ? (lar_span){type, strlen(type)} : lar_feb_text(feb, analysis);
     if (lar_span_equal_nocase(word, "STATIC") || lar_span_equal(word, "0")) return LAR_OK;
-    *is_static = false;
+    feb->is_static = false;
     if (lar_span_equal_nocase(word, "DYNAMIC") || lar_span_equal(word, "1")) return LAR_OK;
     return lar_feb_fail(feb, analysis, LAR_ERROR_UNSUPPORTED,
                         "the analysis '%.*s' is not read; Lariat does DYNAMIC and STATIC",
                         (int)(word.length < 40 ? word.length : 40), word.at);
 }
 
-/* What an analysis without time becomes: see model/rest.h. */
-static lar_status damp_static(lar_feb *feb, const xmlNode *control) {
-    bool is_static;
-    lar_status status = read_analysis(feb, control, &is_static);
-    if (status || !is_static) return status;
-    feb->model->damping = lar_model_rest_damping(feb->model);
-    feb->model->until_rest = true;
-    return lar_feb_notice(feb, control ? control : feb->root,
-                          "the analysis is static: Lariat follows it in time, with a damping of "
-                          "%.3g 1/s, until it is at rest",
-                          feb->model->damping);
-}
-
-/* The analysis ends with the deck's last step, and so do its loads, whatever their curves would do
- * behind it. */
-static void hold_loads(lar_model *model) {
-    for (int i = 0; model->until_rest && model->duration > 0.0 && i < model->curve_count; i++)
-        lar_curve_hold_from(&model->curve[i], model->duration);
+/* What an analysis without time becomes: see model/rest.h. Its answer does not depend on mass, so
+ * that is such that the body would swing twice while the loads come, whatever units and durations
+ * the deck has. The analysis ends with the deck's last step, and so do its loads,
+ * whatever their curves would do behind it.
+ *
+ * With a viscous material the deck's time is the material's, and its end the answer. There mass
+ * must not be felt on the way: the body answers in a hundredth of the deck, and with a tenth of
+ * that damping lags behind its loads by 0.1/pi of that (2 zeta/omega); what swings at first is
+ * less by exp(-2 pi 10) in the end. */
+static lar_status finish_static(lar_feb *feb, const xmlNode *control) {
+    static const double PERIODS = 2, VISCOUS_PERIODS = 100, VISCOUS_DAMPING = 0.1;
+    lar_model *model = feb->model;
+    const xmlNode *at = control ? control : feb->root;
+    const double end = model->duration;
+    if (!feb->is_static) return LAR_OK;
+    model->by_material_time = end > 0 && lar_model_viscous(model);
+    model->until_rest = !model->by_material_time;
+    if (end > 0) lar_model_slow_to(model, end / (model->until_rest ? PERIODS : VISCOUS_PERIODS));
+    model->damping = lar_model_rest_damping(model);
+    for (int i = 0; end > 0 && i < model->curve_count; i++)
+        lar_curve_hold_from(&model->curve[i], end);
+    if (model->until_rest)
+        return lar_feb_notice(feb, at,
+                              "the analysis is static: Lariat follows it in time, with a damping "
+                              "of %.3g 1/s, until it is at rest",
+                              model->damping);
+    model->damping *= VISCOUS_DAMPING;
+    return lar_feb_notice(feb, at,
+                          "the analysis is static and a material viscous: Lariat follows it in the "
+                          "material's time to the deck's end, %g s, with little mass and a damping "
+                          "of %.3g 1/s; only a slender body that bends may lag behind its loads",
+                          end, model->damping);
 }
 
 /* Of the solver's settings one is physics: the explicit solver can damp by a factor per step. */
@@ -232,14 +246,14 @@ static lar_status read_model(lar_feb *feb) {
     if (!control) control = lar_feb_child(feb->root, "Control");
     if (control) status = check_control(feb, control);
     if (!status && control) status = read_duration(feb, control);
-    if (!status) status = damp_static(feb, control);
+    if (!status) status = read_analysis(feb, control);
     if (!status) status = notice_solver_damping(feb, control);
     if (!status) status = lar_feb_read_curves(feb);
     if (!status) status = lar_feb_read_activation(feb);
     if (!status) status = read_sections(feb, feb->root);
     if (!status && step) status = read_sections(feb, step);
     if (!status) status = lar_feb_notice_attributes(feb, feb->root);
-    hold_loads(feb->model);
+    if (!status) status = finish_static(feb, control);
     return status ? status : lar_model_check(feb->model, feb->error);
 }
 
