@@ -408,6 +408,7 @@ static void axes_turn_directions(void **state) {
 #define AXES "<mat_axis type=\"vector\"><a>0,2,0</a><d>-1,5,0</d></mat_axis>" /* y, -x, z */
 #define DATA(type, values)                                                                         \
     "<ElementData type=\"" type "\" elem_set=\"back\"><e lid=\"1\">" values "</e></ElementData>"
+#define CALCIUM            "<active_contraction type=\"active_contraction\"/>"
 #define TURNED             "<fiber type=\"angles\"><theta>90</theta><phi>90</phi></fiber>"
 #define EXP_ALONG          "<solid type=\"fiber-exp-pow\">" EXP ALONG "</solid>"
 #define OWN_AXES           DATA("mat_axis", "<a>0,0,1</a><d>0,1,0</d>") /* z, y, -x */
@@ -422,7 +423,7 @@ static void axes_turn_directions(void **state) {
         {TI(AXES, OWN_AXES), {0, 1, 0}, {0, 0, 1}},
         {TI(ALONG AXES, OWN_AXES DATA("fiber", "0,0,3")), {-0.6, 0, 0.8}, {-1, 0, 0}},
         {TI(ALONG AXES, DATA("fiber", "0,0,3")), {-0.6, 0, 0.8}, {0, 0, 1}},
-        {TI(AXES TURNED, ""), {-1, 0, 0}, {-1, 0, 0}},
+        {TI(AXES TURNED CALCIUM, ""), {-1, 0, 0}, {-1, 0, 0}},
         {DECK("solid mixture", AXES SOLID EXP_ALONG, ""), {-0.6, 0, 0.8}, {-0.6, 0, 0.8}},
     };
     for (size_t i = 0; i < sizeof decks / sizeof *decks; i++) {
@@ -522,6 +523,8 @@ static void decks_say_what_is_wrong(void **state) {
         {OF(ISO "<fiber type=\"local\">1,9</fiber>", ""), "one corner to another, of 1 to 8"},
         {OF(ISO ALONG "<active_contraction><ascl lc=\"1\">1</ascl></active_contraction>", ""),
          "<active_contraction>, which follows calcium"},
+        {OF(ISO ALONG "<active_contraction type=\"magic\"/>", ""), "of type 'magic' is not read"},
+        {OF(ISO ALONG "<active_contraction><T0/></active_contraction>", ""), "take a prescribed"},
         {OF("<k>9</k><c1>1</c1><c3>1</c3>" ALONG, ""), "no parameter <c4>"},
         {DECK("solid mixture", CONTRACTS(" lc=\"3\""), CURVE("<pt>0,0</pt><pt>1,-1</pt>")),
          "has values below 0"},

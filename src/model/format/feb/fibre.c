@@ -168,8 +168,17 @@ static lar_status refuse_angles(lar_feb *feb, const xmlNode *node) {
 /* Calcium and sarcomeres; without a scale nothing contracts. */
 static lar_status refuse_calcium(lar_feb *feb, const xmlNode *node) {
     const xmlNode *muscle = lar_feb_child(node, "active_contraction");
-    const xmlNode *scale = muscle && lar_feb_first(muscle) ? lar_feb_child(muscle, "ascl") : NULL;
+    if (!muscle) return LAR_OK;
+    const char *type = lar_feb_attribute(feb, muscle, "type");
+    const bool calcium = !type || strcmp(type, "active_contraction") == 0 ||
+                         strcmp(type, "force-velocity-Estrada") == 0;
+    const xmlNode *scale = lar_feb_child(muscle, "ascl");
     double value = 0;
+    if (!calcium || lar_feb_child(muscle, "T0"))
+        return lar_feb_fail(feb, muscle, LAR_ERROR_UNSUPPORTED,
+                            "<active_contraction> of type '%.60s' is not read; take a "
+                            "prescribed active contraction in a mixture",
+                            type ? type : "");
     lar_status status = scale ? lar_feb_doubles(feb, scale, &value, 1) : LAR_OK;
     if (status || value == 0) return status;
     return lar_feb_fail(feb, muscle, LAR_ERROR_UNSUPPORTED,
