@@ -210,8 +210,8 @@ static void test_bad_materials(void **state) {
                    "g0 is 2 and nothing relaxes");
     expect_failure(OF_TYPE("uncoupled viscoelastic", OGDEN TERMS), LAR_ERROR_FORMAT, 6,
                    "no parameter <k>");
-    expect_failure(OF_TYPE("uncoupled viscoelastic", SOFT TERMS "<k>9</k>"), LAR_ERROR_MODEL, 6,
-                   "has no isochoric part that could relax alone");
+    expect_failure(OF_TYPE("uncoupled viscoelastic", SOFT TERMS "<k>9</k>"), LAR_ERROR_UNSUPPORTED,
+                   7, "'neo-Hookean' is no uncoupled material");
     lar_model *viscous = read_deck(
         OF_TYPE("uncoupled viscoelastic", OGDEN TERMS "<k>9</k><g0>2</g0><g2>0</g2><t2>0</t2>"));
     const lar_viscosity *v = &viscous->material[0].viscosity;
@@ -365,17 +365,23 @@ static void test_sections(void **state) {
     enum { LINE = BC_LINE - 1 };
     lar_model *model = read_deck(BASE4 "<Contact/><Rigid></Rigid><Output><plotfile/></Output>"
                                        "<Globals/><MeshData><NodeData/></MeshData>\n"
-                                       "<Wishes><wish/></Wishes>" TAIL);
+                                       "<Wishes><wish/></Wishes><Hopes>1</Hopes><Step><step>"
+                                       "<Dreams>1</Dreams></step></Step>" TAIL);
+    assert_int_equal(notices_with(model, "deck.feb:22: the section <Hopes>"), 1);
+    assert_int_equal(notices_with(model, "deck.feb:22: the section <Dreams>"), 1);
     assert_int_equal(notices_with(model, "deck.feb:21: <MeshData>"), 1);
     assert_int_equal(notices_with(model, "deck.feb:22: the section <Wishes>"), 1);
     lar_model_destroy(model);
-    model = read_deck(HEAD4 "<Control><analysis>DYNAMIC</analysis><time_steps>1</time_steps>"
-                            "<step_size>1</step_size><solver><dyn_damping>0.9</dyn_damping>"
-                            "</solver></Control>" MATERIAL MESH4 DOMAINS
-                            "<Boundary><bc type=\"fix\" node_set=\"tip\"><dofs>x</dofs><warp/>"
-                            "</bc></Boundary>" TAIL);
+    model =
+        read_deck(HEAD4 "<Control><analysis>DYNAMIC</analysis><time_steps>1</time_steps>"
+                        "<step_size lc=\"1\">1</step_size><solver><dyn_damping>0.9</dyn_damping>"
+                        "</solver></Control>" MATERIAL MESH4 DOMAINS
+                        "<Boundary><bc lc=\"1\" type=\"fix\" node_set=\"tip\"><dofs>x</dofs><warp/>"
+                        "</bc></Boundary>" TAIL);
     assert_int_equal(notices_with(model, "<dyn_damping> 0.9"), 1);
     assert_int_equal(notices_with(model, "<warp> in <bc>"), 1);
+    assert_int_equal(notices_with(model, "the attribute lc of <step_size>"), 1);
+    assert_int_equal(notices_with(model, "the attribute lc of <bc>"), 1);
     lar_model_destroy(model);
     expect_failure(BASE4 "<Contact>\n<contact type=\"sliding\"/></Contact>" TAIL,
                    LAR_ERROR_UNSUPPORTED, LINE + 1, "<contact> of type 'sliding' asks for contact");
@@ -389,6 +395,14 @@ static void test_sections(void **state) {
                    LAR_ERROR_UNSUPPORTED, LINE + 1, "several steps");
     expect_failure(BASE4 "<Include>x.feb</Include>" TAIL, LAR_ERROR_UNSUPPORTED, LINE, "<Include>");
     expect_failure(BASE4 "<Loads from=\"x.feb\"/>" TAIL, LAR_ERROR_UNSUPPORTED, LINE, "<Loads>");
+    static const char *const apart[] = {"Material", "LoadData", "MeshDomains", "Step"};
+    for (int i = 0; i < 4; i++) {
+        char text[200];
+        snprintf(text, sizeof text, HEAD4 "<%s from=\"x.feb\"/>" TAIL, apart[i]);
+        expect_failure(text, LAR_ERROR_UNSUPPORTED, 4, "stands in another file (from=");
+    }
+    expect_failure(BASE4 "<Boundary>\n<bc from=\"x.feb\"/></Boundary>" TAIL, LAR_ERROR_UNSUPPORTED,
+                   LINE + 1, "<bc> stands in another file");
     expect_failure(BASE4 "<Mesh/>" TAIL, LAR_ERROR_UNSUPPORTED, LINE, "second <Mesh>");
     expect_failure(HEAD4 CONTROL("MODAL") MATERIAL MESH4 DOMAINS TAIL, LAR_ERROR_UNSUPPORTED, 4,
                    "'MODAL'");

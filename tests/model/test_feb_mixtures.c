@@ -110,6 +110,13 @@ static void moduli_and_densities_add_up(void **state) {
 /* What would be another model is refused. */
 static void mixtures_that_are_refused(void **state) {
     (void)state;
+    expect_failure(DECK("uncoupled solid mixture", "<k>9</k>" SOLID), LAR_ERROR_UNSUPPORTED, 5,
+                   "'neo-Hookean' is no uncoupled material");
+    expect_failure(DECK("uncoupled solid mixture", "<k>9</k>" MOONEY FIBRES("fiber-exp-pow")),
+                   LAR_ERROR_UNSUPPORTED, 5, "'fiber-exp-pow' is no uncoupled material");
+    expect_failure(DECK("uncoupled viscoelastic",
+                        "<k>9</k>" TERM "<elastic type=\"solid mixture\">" MOONEY "</elastic>"),
+                   LAR_ERROR_UNSUPPORTED, 5, "'solid mixture' is no uncoupled material");
     expect_failure(
         DECK("viscoelastic", TERM "<elastic type=\"solid mixture\">" SOLID PULLS "</elastic>"),
         LAR_ERROR_UNSUPPORTED, 5, "an active contraction within a viscous material");

@@ -545,8 +545,6 @@ static void decks_say_what_is_wrong(void **state) {
         {OF(ISO ALONG "<mat_axis type=\"local\">1,2,4</mat_axis>", ""),
          "a <mat_axis> of type 'local' around a <fiber> is not read"},
         {OF(ISO ALONG, DATA("mat_axis", "<a>0,0,1</a>")), "give it <a> and <d>"},
-        {OF(ISO ALONG "<mat_axis type=\"vector\"><a>1,0,0</a><d>2,0,0</d></mat_axis>", ""),
-         "span no plane"},
         {OF(ISO ALONG, OWN_AXES OWN_AXES), "a second <mat_axis> for element 2; keep one"},
         {MIX(SOLID "<solid type=\"fiber-exp-pow\">" EXP ALONG "<lam0>1.1</lam0></solid>"),
          "<lam0> of fibres is 1.1, which is not read; give it 1"},

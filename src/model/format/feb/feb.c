@@ -133,10 +133,6 @@ static const char *refusal(const xmlNode *section) {
 
 static lar_status check_section(lar_feb *feb, const xmlNode *section) {
     const xmlNode *content = lar_feb_first(section);
-    if (lar_feb_attribute(feb, section, "from"))
-        return lar_feb_fail(feb, section, LAR_ERROR_UNSUPPORTED,
-                            "<%s> stands in another file (from=\"...\"); put it into this one",
-                            (const char *)section->name);
     const char *what = refusal(section);
     if (what && (content || lar_feb_is(section, "Include"))) {
         const char *type = content ? lar_feb_attribute(feb, content, "type") : NULL;
@@ -145,7 +141,8 @@ static lar_status check_section(lar_feb *feb, const xmlNode *section) {
                             (const char *)(content ? content : section)->name,
                             type ? " of type '" : "", type ? type : "", type ? "'" : "", what);
     }
-    if (what || is_harmless(feb, section) || !content) return LAR_OK;
+    const bool known = lar_feb_is_any(section, "Boundary Loads Initial MeshData");
+    if (what || is_harmless(feb, section) || (known && !content)) return LAR_OK;
     if (lar_feb_is(section, "Boundary")) return lar_feb_read_boundary(feb, section);
     if (lar_feb_is(section, "Loads")) return lar_feb_read_loads(feb, section);
     if (lar_feb_is(section, "Initial")) return lar_feb_read_initial(feb, section);
@@ -232,7 +229,8 @@ static lar_status check_domains(lar_feb *feb) {
 
 static lar_status read_model(lar_feb *feb) {
     const xmlNode *step = NULL;
-    lar_status status = check_module(feb);
+    lar_status status = lar_feb_refuse_files(feb, feb->root);
+    if (!status) status = check_module(feb);
     if (!status) status = check_single(feb);
     if (!status) status = check_domains(feb);
     if (!status) status = find_step(feb, &step);

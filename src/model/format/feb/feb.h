@@ -76,6 +76,8 @@ lar_status lar_feb_notice(const lar_feb *feb, const xmlNode *at, const char *for
 lar_status lar_feb_notice_others(const lar_feb *feb, const xmlNode *parent, const char *known);
 /* The same for attributes, in all that is read of the deck. */
 lar_status lar_feb_notice_attributes(const lar_feb *feb, const xmlNode *parent);
+/* Refuses an element that another file holds: from="...". */
+lar_status lar_feb_refuse_files(lar_feb *feb, const xmlNode *parent);
 lar_status lar_feb_no_memory(const lar_feb *feb, const char *what);
 int lar_feb_line(const xmlNode *at);
 

@@ -269,6 +269,23 @@ static lar_status read_law_part(lar_feb *feb, const xmlNode *node, const xmlNode
     return status || !fibres ? status : lar_feb_read_trans_iso(feb, node, &material->fibre);
 }
 
+/* FEBio takes only uncoupled materials into an uncoupled one (`outer`). */
+static lar_status refuse_coupled(lar_feb *feb, const xmlNode *node, const xmlNode *outer,
+                                 const char *type) {
+    const lar_law law = find_law(type);
+    bool coupled = !strstr(type, "uncoupled");
+    if (law != LAR_LAW_COUNT)
+        coupled = !lar_law_table[law].febio->volume;
+    else
+        coupled = coupled && (lar_feb_is_fibre(type) || lar_feb_is_active(type) ||
+                              is_mixture(type) || is_viscous(type));
+    if (!outer || !coupled) return LAR_OK;
+    return lar_feb_fail(feb, node, LAR_ERROR_UNSUPPORTED,
+                        "'%s' is no uncoupled material, which FEBio wants within an uncoupled one; "
+                        "take its uncoupled form, or the coupled form of what is around it",
+                        type);
+}
+
 /* Where the bulk modulus of what is within stands: the outermost uncoupled material. */
 static const xmlNode *outermost(const xmlNode *node, const char *type, const xmlNode *outer) {
     return outer || strncmp(type, "uncoupled ", 10) != 0 ? outer : node;
@@ -315,6 +332,7 @@ static lar_status read_mixture(lar_feb *feb, const xmlNode *node, const xmlNode 
         const char *type;
         if (!lar_feb_is(solid, "solid")) continue;
         status = lar_feb_need_attribute(feb, solid, "type", &type);
+        if (!status) status = refuse_coupled(feb, solid, outer, type);
         if (status) return status;
         if (lar_feb_is_fibre(type)) {
             if (material->fibre.law != LAR_FIBRE_NONE)
@@ -380,6 +398,8 @@ static lar_status read_viscous(lar_feb *feb, const xmlNode *node, const xmlNode 
     if (status) return status;
     const bool active = lar_fibre_active(&material->fibre);
     outer = outermost(node, of, outer);
+    status = refuse_coupled(feb, inner, outer, type);
+    if (status) return status;
     status = is_mixture(type) ? read_mixture(feb, inner, outer, material)
                               : read_law_part(feb, inner, outer, type, material);
     if (!status && lar_fibre_active(&material->fibre) != active)
