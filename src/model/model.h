@@ -153,6 +153,8 @@ struct lar_model {
     lar_surface surface;           /* of the mesh; lar_model_check fills it */
     lar_embedded_surface embedded; /* a fine surface for display; without vertices: there is none */
 
+    const char *fibre_remedy; /* how this kind of file gives directions, NULL: as scenes do */
+
     /* What a deck asks for and Lariat does not do, one sentence each, named to the user. */
     int notice_count;
     char **notice;

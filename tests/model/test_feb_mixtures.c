@@ -175,6 +175,10 @@ static void directions_turn(void **state) {
     expect_direction("<mat_axis type=\"cylindrical\"><center>7,0.5,2.5</center><axis>1,0,0</axis>"
                      "<vector>0,1,0</vector></mat_axis>",
                      0, 1, 0);
+    /* what FEBio takes where a deck does not say */
+    expect_direction("<fiber>0,0,2</fiber>", 0, 0, 1);
+    expect_direction("<fiber type=\"local\">0,0</fiber>", 1, 0, 0);
+    expect_direction("<mat_axis type=\"local\"><local>0,0,0</local></mat_axis>", 1, 0, 0);
     /* a parameter that means nothing at its default, and a muscle that is never active */
     expect_direction(ALONG "<active_contraction><ascl>0</ascl><Tmax>1</Tmax></active_contraction>",
                      0, 0, 1);

@@ -515,8 +515,9 @@ static void decks_say_what_is_wrong(void **state) {
 #define OF(material, data) DECK("trans iso Mooney-Rivlin", material, data)
 #define MIX(material)      DECK("solid mixture", material, "")
     static const char *const wrong[][2] = {
-        {OF(ISO, ""), "element 1 has fibres and nothing says along what"},
+        {OF(ISO, ""), "nothing says along what; give it a direction, as <fiber> of its material"},
         {OF(ISO "<fiber type=\"user\"/>", ""), "nothing says along what"},
+        {OF(ISO "<fiber type=\"map\">grain</fiber>", ""), "the map 'grain' of directions is not"},
         {OF(ISO "<fiber type=\"vector\">0,0,0</fiber>", ""), "their direction is 0, 0, 0"},
         {OF(ISO "<fiber type=\"polar\">0,0,0</fiber>", ""),
          "a direction of type 'polar' is not read"},

@@ -282,7 +282,7 @@ static lar_status read_corners(lar_feb *feb, const xmlNode *rule, int corner[2])
     int count = lar_feb_is(rule, "mat_axis") ? 3 : 2;
     lar_status status = lar_feb_ids(feb, of ? of : rule, id, count);
     if (status) return status;
-    if (count == 2 && id[0] == 0 && id[1] == 0) id[0] = 1, id[1] = 2; /* FEBio's default */
+    if (id[0] == 0 && id[1] == 0) id[0] = 1, id[1] = 2; /* FEBio's default, of axes 1, 2, 4 */
     for (int i = 0; i < 2; i++) {
         if (id[i] < 1 || id[i] > 8 || id[0] == id[1])
             return lar_feb_fail(feb, rule, LAR_ERROR_FORMAT,
@@ -370,18 +370,34 @@ lar_status lar_feb_turn(lar_feb *feb, const xmlNode *at, int32_t e, const double
     return LAR_OK;
 }
 
+/* A map is read where <MeshData> says of it that it is one of directions. */
+static lar_status check_map(lar_feb *feb, const xmlNode *rule) {
+    const xmlNode *section = lar_feb_child(feb->root, "MeshData");
+    const xmlNode *data = section ? lar_feb_first(section) : NULL;
+    while (data && !lar_feb_is_direction(feb, data)) data = lar_feb_next(data);
+    if (data) return LAR_OK;
+    lar_span name = lar_feb_text(feb, rule);
+    return lar_feb_fail(feb, rule, LAR_ERROR_UNSUPPORTED,
+                        "the map '%.*s' of directions is not read; give them as <ElementData "
+                        "type=\"%s\">",
+                        (int)(name.length < 60 ? name.length : 60), name.at,
+                        (const char *)rule->name);
+}
+
 /* The directions of one material's elements, but for those that are `done`. A direction that an
  * element has already is one in the axes. */
 static lar_status lay(lar_feb *feb, const xmlNode *rule, int material, const bool *done) {
     lar_mesh *mesh = feb->mesh;
     const char *type = lar_feb_attribute(feb, rule, "type");
+    if (!type && lar_feb_is(rule, "fiber")) type = "vector";
     double a[3] = {0}, d[3], way[3] = {0};
     int corner[2];
     round_rule around;
     bool local = type && strcmp(type, "local") == 0;
     bool cylindrical = type && strcmp(type, "cylindrical") == 0;
     bool round = cylindrical || (type && strcmp(type, "spherical") == 0);
-    if (type && (strcmp(type, "user") == 0 || strcmp(type, "map") == 0)) return LAR_OK;
+    if (type && strcmp(type, "map") == 0) return check_map(feb, rule);
+    if (type && strcmp(type, "user") == 0) return LAR_OK;
     if (!type || (!local && !round && strcmp(type, "vector") != 0 && strcmp(type, "angles") != 0))
         return lar_feb_fail(feb, rule, LAR_ERROR_UNSUPPORTED,
                             "a direction of type '%.40s' is not read; vector, local, angles, "
@@ -569,6 +585,7 @@ static lar_status read_rules(lar_feb *feb, bool axes, const bool *done) {
  * or for each of its elements, which counts before. So first directions, then axes, which turn
  * them; without a direction fibres run along the first axis. */
 lar_status lar_feb_lay_fibres(lar_feb *feb) {
+    feb->model->fibre_remedy = "as <fiber> of its material or in <ElementData> of type fiber";
     bool *done = lar_calloc((size_t)feb->mesh->element_count, sizeof *done);
     lar_status status =
         done ? read_rules(feb, false, done) : lar_feb_no_memory(feb, "the directions of fibres");
