@@ -97,7 +97,7 @@ double lar_auto_step(const lar_model *model, double stable_step) {
     if (model->duration > 0) step = fmin(step, model->duration / 200);
     for (int i = 0; model->by_material_time && i < model->material_count; i++)
         for (int k = 0; k < model->material[i].viscosity.terms; k++)
-            step = fmin(step, model->material[i].viscosity.time[k]);
+            step = fmin(step, fmax(model->material[i].viscosity.time[k], model->duration / 1e6));
     return model->by_material_time ? model->duration / ceil(model->duration / step) : step;
 }
 

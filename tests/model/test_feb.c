@@ -326,6 +326,19 @@ static void test_static_and_step(void **state) {
     assert_int_equal(lar_model_until_rest(model), 1);
     lar_model_destroy(model);
 
+    /* in 100 s it would swing 14 times with its own mass, in 1000 s more than 20 times */
+    const double seconds[] = {10, 100}, damping[] = {1.7207, 4 * PI / 50};
+    for (int i = 0; i < 2; i++) {
+        char text[6000];
+        snprintf(text, sizeof text,
+                 HEAD4 "<Control><time_steps>10</time_steps><step_size>%g</step_size></Control>%s",
+                 seconds[i], MATERIAL MESH4 DOMAINS TAIL);
+        model = read_deck(text);
+        assert_true(fabs(model->damping / damping[i] - 1) < 1e-4);
+        assert_true(i == 1 || fabs(model->material[0].density / 1000 - 1) < 1e-12);
+        lar_model_destroy(model);
+    }
+
     /* what is viscous has a time of its own: to the deck's end, a hundred times as fast */
     model = read_deck(HEAD4 CONTROL("STATIC") VISCOUS MESH4 DOMAINS GRAVITY TAIL);
     assert_int_equal(notices_with(model, "to the deck's end, 1 s"), 1);

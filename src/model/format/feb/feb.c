@@ -58,23 +58,26 @@ static lar_status read_analysis(lar_feb *feb, const xmlNode *control) {
 }
 
 /* What an analysis without time becomes: see model/rest.h. Its answer does not depend on mass, so
- * that is such that the body would swing twice while the loads come, whatever units and durations
- * the deck has. The analysis ends with the deck's last step, and so do its loads,
- * whatever their curves would do behind it.
+ * that is such that the body would swing two to twenty times while the loads come, whatever units
+ * and durations the deck has: less, and loads would be blows; more, and they would be followed wave
+ * by wave. The analysis ends with the deck's last step, and so do its loads, whatever their curves
+ * would do behind it.
  *
  * With a viscous material the deck's time is the material's, and its end the answer. There mass
  * must not be felt on the way: the body answers in a hundredth of the deck, and with a tenth of
  * that damping lags behind its loads by 0.1/pi of that (2 zeta/omega); what swings at first is
  * less by exp(-2 pi 10) in the end. */
 static lar_status finish_static(lar_feb *feb, const xmlNode *control) {
-    static const double PERIODS = 2, VISCOUS_PERIODS = 100, VISCOUS_DAMPING = 0.1;
+    static const double FEW = 2, MANY = 20, VISCOUS = 100, VISCOUS_DAMPING = 0.1;
     lar_model *model = feb->model;
     const xmlNode *at = control ? control : feb->root;
     const double end = model->duration;
+    double period = end / VISCOUS;
     if (!feb->is_static) return LAR_OK;
     model->by_material_time = end > 0 && lar_model_viscous(model);
     model->until_rest = !model->by_material_time;
-    if (end > 0) lar_model_slow_to(model, end / (model->until_rest ? PERIODS : VISCOUS_PERIODS));
+    if (model->until_rest) period = fmin(fmax(lar_model_slow_period(model), end / MANY), end / FEW);
+    if (end > 0) lar_model_slow_to(model, period);
     model->damping = lar_model_rest_damping(model);
     for (int i = 0; end > 0 && i < model->curve_count; i++)
         lar_curve_hold_from(&model->curve[i], end);
