@@ -99,6 +99,12 @@ static void moduli_and_densities_add_up(void **state) {
         assert_int_equal(notices_with(model, "and not its own, 1000"), m->density != 1000);
         lar_model_destroy(model);
     }
+    lar_model *model = read_deck(
+        HEAD4 CONTROL("STATIC") "<Material><material id=\"7\" name=\"soft\" "
+                                "type=\"solid mixture\"><density>9</density>" SOLID FIBRES(
+                                    "fiber-exp-pow") "</material></Material>" MESH4 DOMAINS TAIL);
+    assert_int_equal(notices_with(model, "density"), 0); /* nothing depends on it */
+    lar_model_destroy(model);
     expect_failure(DECK("uncoupled viscoelastic", TERM ELASTIC("")), LAR_ERROR_FORMAT, 5,
                    "no parameter <k>, nor has what is within it; add it");
     expect_failure(DECK("uncoupled viscoelastic",

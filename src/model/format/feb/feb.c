@@ -230,6 +230,11 @@ static lar_status check_domains(lar_feb *feb) {
 
 /* ---- the whole ------------------------------------------------------------------------------- */
 
+static bool has_weight(const xmlNode *parent) {
+    const xmlNode *loads = lar_feb_child(parent, "Loads");
+    return loads && lar_feb_child(loads, "body_load");
+}
+
 static lar_status read_model(lar_feb *feb) {
     const xmlNode *step = NULL;
     lar_status status = lar_feb_refuse_files(feb, feb->root);
@@ -237,17 +242,18 @@ static lar_status read_model(lar_feb *feb) {
     if (!status) status = check_single(feb);
     if (!status) status = check_domains(feb);
     if (!status) status = find_step(feb, &step);
+    const xmlNode *control = step ? lar_feb_child(step, "Control") : NULL;
+    if (!control) control = lar_feb_child(feb->root, "Control");
+    if (!status) status = read_analysis(feb, control);
+    feb->weightless = feb->is_static && !has_weight(feb->root) && !(step && has_weight(step));
     if (!status) status = lar_feb_list_materials(feb);
     if (!status) status = lar_feb_read_mesh(feb);
     if (!status) lar_mesh_turn(feb->mesh);
     if (!status) status = lar_mesh_check(feb->mesh, feb->error);
     if (!status) status = lar_feb_read_materials(feb);
     if (status) return status;
-    const xmlNode *control = step ? lar_feb_child(step, "Control") : NULL;
-    if (!control) control = lar_feb_child(feb->root, "Control");
     if (control) status = check_control(feb, control);
     if (!status && control) status = read_duration(feb, control);
-    if (!status) status = read_analysis(feb, control);
     if (!status) status = notice_solver_damping(feb, control);
     if (!status) status = lar_feb_read_curves(feb);
     if (!status) status = lar_feb_read_activation(feb);

@@ -150,14 +150,14 @@ static lar_status add_density(lar_feb *feb, const xmlNode *node, double *density
                       strcmp(lar_feb_attribute(feb, feb->root, "version"), "2.5") != 0;
     double own = 1, parts = 0; /* FEBio's default */
     lar_status status = lar_feb_parameter(feb, node, "density", false, &own);
-    if (!status && !said && !sums)
+    if (!status && !said && !sums && !feb->weightless)
         status =
             lar_feb_notice(feb, node, "the material has no density; it gets FEBio's default, 1");
     for (const xmlNode *solid = sums ? lar_feb_first(node) : NULL; solid && !status;
          solid = lar_feb_next(solid))
         if (lar_feb_is(solid, "solid")) status = add_density(feb, solid, &parts);
     *density += sums ? parts : own;
-    if (status || !sums || !said || parts == own) return status;
+    if (status || !sums || !said || parts == own || feb->weightless) return status;
     return lar_feb_notice(feb, node,
                           "the density of the mixture is the sum of its parts', %g, as in FEBio "
                           "since version 3, and not its own, %g",
