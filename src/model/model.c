@@ -161,17 +161,19 @@ static bool make_unit(double a[3]) {
 /* One of the directions of an element, `a` NULL: nobody said. */
 static lar_status check_direction(const lar_model *model, lar_gid e, double *a, bool second,
                                   lar_error *error) {
+    const char *own = model->fibre_remedy;
     if (a && make_unit(a)) return LAR_OK;
-    return lar_fail(error, LAR_ERROR_MODEL,
-                    "%s:%d: element %lld has %s and %s; give it a direction, in the mesh as a cell "
-                    "array \"%s\" of three components, or by a rule",
-                    lar_model_source(model), lar_model_material_of(model, e)->fibre.line,
-                    (long long)model->mesh.element_id[e],
-                    second ? "a second family of fibres" : "fibres",
-                    !a           ? "nothing says along what"
-                    : finite3(a) ? "their direction is 0, 0, 0"
-                                 : "their direction is not finite",
-                    second ? "fibre2" : "fibre");
+    return lar_fail(
+        error, LAR_ERROR_MODEL, "%s:%d: element %lld has %s and %s; give it a direction, %s%s",
+        lar_model_source(model), lar_model_material_of(model, e)->fibre.line,
+        (long long)model->mesh.element_id[e], second ? "a second family of fibres" : "fibres",
+        !a           ? "nothing says along what"
+        : finite3(a) ? "their direction is 0, 0, 0"
+                     : "their direction is not finite",
+        own      ? own
+        : second ? "in the mesh as a cell array \"fibre2"
+                 : "in the mesh as a cell array \"fibre",
+        own ? "" : "\" of three components, or by a rule");
 }
 
 /* A material with fibres needs directions in all of its elements. */

@@ -134,6 +134,8 @@ struct lar_model {
     double view[3];        /* where viewers look from at first, a unit vector; 0 0 0: they choose */
     double duration;       /* seconds that the description lasts, 0: open */
     bool until_rest;       /* a run goes on until the body is at rest, see model/rest.h */
+    bool by_material_time; /* mass only serves to find the states of rest on the way that viscous
+                              materials take: no step may be longer than their times */
 
     int fix_count, move_count, load_count, pressure_count, initial_count;
     lar_fix *fix;
@@ -150,6 +152,8 @@ struct lar_model {
 
     lar_surface surface;           /* of the mesh; lar_model_check fills it */
     lar_embedded_surface embedded; /* a fine surface for display; without vertices: there is none */
+
+    const char *fibre_remedy; /* how this kind of file gives directions, NULL: as scenes do */
 
     /* What a deck asks for and Lariat does not do, one sentence each, named to the user. */
     int notice_count;

@@ -27,6 +27,12 @@ double lar_model_slow_period(const lar_model *model) {
     return damping > 0.0 ? 4.0 * PI / damping : 1.0;
 }
 
+void lar_model_slow_to(lar_model *model, double period) {
+    double share = period / lar_model_slow_period(model), factor = share * share;
+    for (int i = 0; i < model->material_count; i++) model->material[i].density *= factor;
+    for (int axis = 0; axis < 3; axis++) model->gravity[axis] /= factor;
+}
+
 double lar_model_loads_end(const lar_model *model) {
     double end = 0.0;
     for (int i = 0; i < model->curve_count; i++) end = fmax(end, lar_curve_end(&model->curve[i]));

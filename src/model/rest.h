@@ -18,6 +18,10 @@ double lar_model_rest_damping(const lar_model *model);
 /* The period of that motion, 2 pi / omega [s]; 1 when there is no such number. */
 double lar_model_slow_period(const lar_model *model);
 
+/* Gives the body so much more or less mass that this period becomes `period` [s], and gravity so
+ * much less or more: forces and what they come to at rest stay as they are. */
+void lar_model_slow_to(lar_model *model, double period);
+
 /* Time after which no load, no prescribed value and no activation changes [s], at least 0; of waves
  * that come again and again it knows nothing. */
 double lar_model_loads_end(const lar_model *model);

@@ -94,7 +94,11 @@ lar_status lar_stable_step(const lar_model *model, lar_element_kind kind, double
 
 double lar_auto_step(const lar_model *model, double stable_step) {
     double step = 0.8 * stable_step;
-    return model->duration > 0 ? fmin(step, model->duration / 200) : step;
+    if (model->duration > 0) step = fmin(step, model->duration / 200);
+    for (int i = 0; model->by_material_time && i < model->material_count; i++)
+        for (int k = 0; k < model->material[i].viscosity.terms; k++)
+            step = fmin(step, fmax(model->material[i].viscosity.time[k], model->duration / 1e6));
+    return model->by_material_time ? model->duration / ceil(model->duration / step) : step;
 }
 
 lar_step_room lar_step_room_of(double time_step, double stable_step) {

@@ -171,6 +171,92 @@ static void what_cannot_be_is_refused(void **unused) {
     lar_model_destroy(model);
 }
 
+/* ---- static decks --------------------------------------------------------------------------- */
+
+#define SIDE(name, nodes) "<NodeSet name=\"" name "\">" nodes "</NodeSet>"
+#define HELD(name, axis)                                                                           \
+    "<bc type=\"zero displacement\" node_set=\"" name "\"><" axis "_dof>1</" axis "_dof></bc>"
+#define DECK(steps, time, conditions)                                                              \
+    "<?xml version=\"1.0\"?><febio_spec version=\"4.0\"><Control><analysis>STATIC</analysis>"      \
+    "<time_steps>" steps "</time_steps><step_size>0.1</step_size></Control><Material><material "   \
+    "id=\"1\" name=\"m\" type=\"viscoelastic\"><density>1</density><t1>" time "</t1><g1>1</g1>"    \
+    "<elastic type=\"neo-Hookean\"><E>1</E><v>0</v></elastic></material></Material><Mesh><Nodes>"  \
+    "<node id=\"1\">0,0,0</node><node id=\"2\">1,0,0</node><node id=\"3\">1,1,0</node><node "      \
+    "id=\"4\">0,1,0</node><node id=\"5\">0,0,1</node><node id=\"6\">1,0,1</node><node id=\"7\">"   \
+    "1,1,1</node><node id=\"8\">0,1,1</node></Nodes><Elements type=\"hex8\" name=\"p\"><elem "     \
+    "id=\"1\">1,2,3,4,5,6,7,8</elem></Elements>" SIDE("x0", "1,4,5,8") SIDE("x1", "2,3,6,7")       \
+        SIDE("y0", "1,2,5,6")                                                                      \
+            SIDE("z0", "1,2,3,4") "</Mesh><MeshDomains><SolidDomain name=\"p\" "                   \
+                                  "mat=\"m\"/></MeshDomains><Boundary>" HELD("x0", "x")            \
+                                      HELD("y0", "y") HELD("z0", "z") conditions                   \
+        "<LoadData><load_controller id=\"1\" type=\"loadcurve\"><points><pt>0,0</pt><pt>1,1"       \
+        "</pt></points></load_controller></LoadData></febio_spec>"
+#define PULLED                                                                                     \
+    "<bc type=\"prescribed displacement\" node_set=\"x1\"><dof>x</dof><value lc=\"1\">0.2</value>" \
+    "</bc></Boundary>"
+#define LOADED                                                                                     \
+    "</Boundary><Loads><nodal_load node_set=\"x1\" type=\"nodal_force\"><value lc=\"1\">0.1,0,0"   \
+    "</value></nodal_load></Loads>"
+
+/* The stress of the law along a cube that does not bulge, 1/E of it, as a second Piola-Kirchhoff's.
+ */
+static double law(double stretch) {
+    return 0.5 * (1 - 1 / (stretch * stretch));
+}
+
+/* Stress (pulled) or stretch (loaded) at the end of `end`, by steps of 1/4000 of the ramp. */
+static double material_alone(double end, double time, bool loaded) {
+    double past = 0, before = 0, stretch = 1, step = 1 / 4000.0, x = step / time;
+    const double keeps = exp(-x), takes = -expm1(-x) / x;
+    for (int n = 1; n <= (int)(end / step + 0.5); n++) {
+        double t = fmin(1, n * step), inner = 0;
+        if (!loaded) stretch = 1 + 0.2 * t;
+        for (int k = 0; loaded && k < 20; k++) { /* Newton: 0.4 t = stretch (law + past) */
+            double rest = keeps * past - takes * before;
+            double f = stretch * ((1 + takes) * law(stretch) + rest) - 0.4 * t;
+            stretch -= f / ((1 + takes) * (law(stretch) + 1 / (stretch * stretch)) + rest);
+        }
+        inner = law(stretch);
+        past = keeps * past + takes * (inner - before);
+        before = inner;
+    }
+    return loaded ? stretch : stretch * (before + past);
+}
+
+/* Of a static deck that is viscous its end is the answer, also where it still creeps or relaxes.
+ */
+static void static_decks_end_with_their_time(void **unused) {
+    (void)unused;
+    static const struct {
+        const char *text;
+        double end, time;
+        bool loaded;
+    } decks[] = {{DECK("10", "1", PULLED), 1, 1, false},
+                 {DECK("20", "1", PULLED), 2, 1, false},
+                 {DECK("20", "0.03", PULLED), 2, 0.03, false},
+                 {DECK("20", "100", LOADED), 2, 100, true},
+                 {DECK("30", "1", LOADED), 3, 1, true}};
+    for (size_t i = 0; i < sizeof decks / sizeof *decks; i++) {
+        lar_bytes bytes = {(unsigned char *)lar_strdup(decks[i].text), strlen(decks[i].text)};
+        lar_model *model = NULL;
+        lar_error error;
+        if (lar_feb_parse("viscous.feb", &bytes, &model, &error)) fail_msg("%s", error.message);
+        lar_bytes_free(&bytes);
+        lar_simulation *simulation = start(model);
+        double step = lar_simulation_time_step(simulation), found;
+        advance(simulation, (int)lround(decks[i].end / step));
+        assert_true(fabs(lar_simulation_time(simulation) - decks[i].end) < 1e-9);
+        if (decks[i].loaded)
+            found = 1 + lar_simulation_state(simulation)->u[node_at(simulation, 6, 0)];
+        else
+            found = axial_stress(simulation);
+        double wanted = material_alone(decks[i].end, decks[i].time, decks[i].loaded);
+        print_message("deck %zu: %.6g, the material alone %.6g\n", i, found, wanted);
+        assert_below(fabs(found / wanted - 1), 1e-3);
+        finish(simulation, model);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         SAME_BITS_TESTS(body),
@@ -179,6 +265,7 @@ int main(void) {
         cmocka_unit_test(a_pulled_cube_relaxes_by_the_closed_form),
         cmocka_unit_test(every_joule_is_accounted_for),
         cmocka_unit_test(what_cannot_be_is_refused),
+        cmocka_unit_test(static_decks_end_with_their_time),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -210,8 +210,8 @@ static void test_bad_materials(void **state) {
                    "g0 is 2 and nothing relaxes");
     expect_failure(OF_TYPE("uncoupled viscoelastic", OGDEN TERMS), LAR_ERROR_FORMAT, 6,
                    "no parameter <k>");
-    expect_failure(OF_TYPE("uncoupled viscoelastic", SOFT TERMS "<k>9</k>"), LAR_ERROR_MODEL, 6,
-                   "has no isochoric part that could relax alone");
+    expect_failure(OF_TYPE("uncoupled viscoelastic", SOFT TERMS "<k>9</k>"), LAR_ERROR_UNSUPPORTED,
+                   7, "'neo-Hookean' is no uncoupled material");
     lar_model *viscous = read_deck(
         OF_TYPE("uncoupled viscoelastic", OGDEN TERMS "<k>9</k><g0>2</g0><g2>0</g2><t2>0</t2>"));
     const lar_viscosity *v = &viscous->material[0].viscosity;
@@ -305,13 +305,53 @@ static void test_bad_meshes(void **state) {
 
 /* ---- sections -------------------------------------------------------------------------------- */
 
+#define GRAVITY                                                                                    \
+    "<Loads><body_load "                                                                           \
+    "type=\"gravity\"><x>0</x><y>0</y><z>9.81</z></body_load></Loads>"
+#define VISCOUS                                                                                    \
+    "<Material><material id=\"7\" name=\"soft\" type=\"viscoelastic\"><density>1000</density>"     \
+    "<t1>1</t1><g1>1</g1><elastic type=\"neo-Hookean\"><E>3000</E><v>0.25</v></elastic>"           \
+    "</material></Material>\n"
+static const double PI = 3.14159265358979;
+
 static void test_static_and_step(void **state) {
     (void)state;
-    lar_model *model = read_deck(HEAD4 CONTROL("STATIC") MATERIAL MESH4 DOMAINS TAIL);
+    lar_model *model = read_deck(HEAD4 CONTROL("STATIC") MATERIAL MESH4 DOMAINS GRAVITY TAIL);
     assert_int_equal(notices_with(model, "the analysis is static"), 1);
-    /* pi sqrt(1200 / 1000) / 2: the body is 2 long */
-    assert_true(fabs(model->damping - 1.7207) < 1e-3);
+    /* twice within the second of the deck: 2 omega = 4 pi / (1/2 s), and density so that this is
+     * pi sqrt(1200 / density) / 2, the body being 2 long; its weight stays what it is */
+    assert_true(fabs(model->damping / (8 * PI) - 1) < 1e-12);
+    assert_true(fabs(model->material[0].density / (1200.0 / 256) - 1) < 1e-12);
+    assert_true(fabs(model->material[0].density * model->gravity[2] / -9810 - 1) < 1e-12);
     assert_int_equal(lar_model_until_rest(model), 1);
+    lar_model_destroy(model);
+
+    /* in 100 s it would swing 14 times with its own mass, in 1000 s more than 20 times */
+    const double seconds[] = {10, 100}, damping[] = {1.7207, 4 * PI / 50};
+    for (int i = 0; i < 2; i++) {
+        char text[6000];
+        snprintf(text, sizeof text,
+                 HEAD4 "<Control><time_steps>10</time_steps><step_size>%g</step_size></Control>%s",
+                 seconds[i], MATERIAL MESH4 DOMAINS TAIL);
+        model = read_deck(text);
+        assert_true(fabs(model->damping / damping[i] - 1) < 1e-4);
+        assert_true(i == 1 || fabs(model->material[0].density / 1000 - 1) < 1e-12);
+        lar_model_destroy(model);
+    }
+
+    /* what is viscous has a time of its own: to the deck's end, a hundred times as fast */
+    model = read_deck(HEAD4 CONTROL("STATIC") VISCOUS MESH4 DOMAINS GRAVITY TAIL);
+    assert_int_equal(notices_with(model, "to the deck's end, 1 s"), 1);
+    assert_int_equal(lar_model_until_rest(model), 0);
+    assert_true(lar_model_duration(model) == 1);
+    assert_true(fabs(model->damping / (0.1 * 400 * PI) - 1) < 1e-12);
+    assert_true(fabs(model->material[0].density * model->gravity[2] / -9810 - 1) < 1e-12);
+    lar_model_destroy(model);
+
+    /* without an end of its own it is followed to rest, and without a period in its own time */
+    model = read_deck(HEAD4 VISCOUS MESH4 DOMAINS TAIL);
+    assert_int_equal(lar_model_until_rest(model), 1);
+    assert_true(model->material[0].density == 1000);
     lar_model_destroy(model);
 
     /* the loads end with the deck's last step, 1 s, whatever their curves do behind it */
@@ -338,17 +378,23 @@ static void test_sections(void **state) {
     enum { LINE = BC_LINE - 1 };
     lar_model *model = read_deck(BASE4 "<Contact/><Rigid></Rigid><Output><plotfile/></Output>"
                                        "<Globals/><MeshData><NodeData/></MeshData>\n"
-                                       "<Wishes><wish/></Wishes>" TAIL);
+                                       "<Wishes><wish/></Wishes><Hopes>1</Hopes><Step><step>"
+                                       "<Dreams>1</Dreams></step></Step>" TAIL);
+    assert_int_equal(notices_with(model, "deck.feb:22: the section <Hopes>"), 1);
+    assert_int_equal(notices_with(model, "deck.feb:22: the section <Dreams>"), 1);
     assert_int_equal(notices_with(model, "deck.feb:21: <MeshData>"), 1);
     assert_int_equal(notices_with(model, "deck.feb:22: the section <Wishes>"), 1);
     lar_model_destroy(model);
-    model = read_deck(HEAD4 "<Control><analysis>DYNAMIC</analysis><time_steps>1</time_steps>"
-                            "<step_size>1</step_size><solver><dyn_damping>0.9</dyn_damping>"
-                            "</solver></Control>" MATERIAL MESH4 DOMAINS
-                            "<Boundary><bc type=\"fix\" node_set=\"tip\"><dofs>x</dofs><warp/>"
-                            "</bc></Boundary>" TAIL);
+    model =
+        read_deck(HEAD4 "<Control><analysis>DYNAMIC</analysis><time_steps>1</time_steps>"
+                        "<step_size lc=\"1\">1</step_size><solver><dyn_damping>0.9</dyn_damping>"
+                        "</solver></Control>" MATERIAL MESH4 DOMAINS
+                        "<Boundary><bc lc=\"1\" type=\"fix\" node_set=\"tip\"><dofs>x</dofs><warp/>"
+                        "</bc></Boundary>" TAIL);
     assert_int_equal(notices_with(model, "<dyn_damping> 0.9"), 1);
     assert_int_equal(notices_with(model, "<warp> in <bc>"), 1);
+    assert_int_equal(notices_with(model, "the attribute lc of <step_size>"), 1);
+    assert_int_equal(notices_with(model, "the attribute lc of <bc>"), 1);
     lar_model_destroy(model);
     expect_failure(BASE4 "<Contact>\n<contact type=\"sliding\"/></Contact>" TAIL,
                    LAR_ERROR_UNSUPPORTED, LINE + 1, "<contact> of type 'sliding' asks for contact");
@@ -362,6 +408,14 @@ static void test_sections(void **state) {
                    LAR_ERROR_UNSUPPORTED, LINE + 1, "several steps");
     expect_failure(BASE4 "<Include>x.feb</Include>" TAIL, LAR_ERROR_UNSUPPORTED, LINE, "<Include>");
     expect_failure(BASE4 "<Loads from=\"x.feb\"/>" TAIL, LAR_ERROR_UNSUPPORTED, LINE, "<Loads>");
+    static const char *const apart[] = {"Material", "LoadData", "MeshDomains", "Step"};
+    for (int i = 0; i < 4; i++) {
+        char text[200];
+        snprintf(text, sizeof text, HEAD4 "<%s from=\"x.feb\"/>" TAIL, apart[i]);
+        expect_failure(text, LAR_ERROR_UNSUPPORTED, 4, "stands in another file (from=");
+    }
+    expect_failure(BASE4 "<Boundary>\n<bc from=\"x.feb\"/></Boundary>" TAIL, LAR_ERROR_UNSUPPORTED,
+                   LINE + 1, "<bc> stands in another file");
     expect_failure(BASE4 "<Mesh/>" TAIL, LAR_ERROR_UNSUPPORTED, LINE, "second <Mesh>");
     expect_failure(HEAD4 CONTROL("MODAL") MATERIAL MESH4 DOMAINS TAIL, LAR_ERROR_UNSUPPORTED, 4,
                    "'MODAL'");

@@ -57,9 +57,72 @@ static void mixtures_may_be_viscous(void **state) {
            LAR_LAW_mooney_rivlin, 0, LAR_FIBRE_EXP_LINEAR, 50);
 }
 
+/* Uncoupled materials add their bulk moduli, mixtures only where they have none of their own; and
+ * mixtures the densities of their parts. */
+static void moduli_and_densities_add_up(void **state) {
+    (void)state;
+#define PART(type, inside) "<solid type=\"" type "\">" inside "</solid>"
+#define MR(k)              "<c1>500</c1><c2>0</c2>" k
+#define ELASTIC(k)         "<elastic type=\"Mooney-Rivlin\">" MR(k) "</elastic>"
+#define EXP                "<ksi>300</ksi><alpha>1.5</alpha><beta>2.5</beta>" ALONG
+    static const struct {
+        const char *text;
+        double bulk, density;
+    } decks[] = {
+        {DECK("uncoupled viscoelastic", "<k>50</k>" TERM ELASTIC("<k>30</k>")), 80, 1000},
+        {DECK("uncoupled viscoelastic", "<k>0</k>" TERM ELASTIC("<k>30</k>")), 30, 1000},
+        {DECK("uncoupled viscoelastic", TERM ELASTIC("<k>30</k>")), 30, 1000},
+        {DECK("uncoupled viscoelastic",
+              "<k>50</k>" TERM "<elastic type=\"uncoupled solid mixture\"><k>30</k>" PART(
+                  "Mooney-Rivlin", MR("<k>7</k>")) "</elastic>"),
+         80, 1000},
+        {DECK("uncoupled solid mixture",
+              "<k>50</k>" PART("Mooney-Rivlin", MR("<k>70</k>") "<density>3</density>")),
+         50, 3},
+        {DECK("uncoupled solid mixture",
+              "<k>0</k>" PART("Mooney-Rivlin", MR("<k>70</k>") "<density>900</density>")
+                  PART("uncoupled fiber-exp-pow", EXP "<k>30</k><density>100</density>")),
+         100, 1000},
+        {DECK("uncoupled solid mixture",
+              PART("uncoupled viscoelastic",
+                   "<k>5</k><density>7</density>" TERM ELASTIC("<k>30</k>"))),
+         35, 7},
+        {DECK("uncoupled solid mixture",
+              PART("Mooney-Rivlin", MR("<k>70</k>")) PART("uncoupled fiber-exp-pow", EXP)),
+         70, 2},
+    };
+    for (size_t i = 0; i < sizeof decks / sizeof *decks; i++) {
+        lar_model *model = read_deck(decks[i].text);
+        const lar_material *m = &model->material[0];
+        if (lar_material_bulk(m) != decks[i].bulk || m->density != decks[i].density)
+            fail_msg("deck %zu: bulk modulus %g, density %g", i, lar_material_bulk(m), m->density);
+        assert_int_equal(notices_with(model, "and not its own, 1000"), m->density != 1000);
+        lar_model_destroy(model);
+    }
+    lar_model *model = read_deck(
+        HEAD4 CONTROL("STATIC") "<Material><material id=\"7\" name=\"soft\" "
+                                "type=\"solid mixture\"><density>9</density>" SOLID FIBRES(
+                                    "fiber-exp-pow") "</material></Material>" MESH4 DOMAINS TAIL);
+    assert_int_equal(notices_with(model, "density"), 0); /* nothing depends on it */
+    lar_model_destroy(model);
+    expect_failure(DECK("uncoupled viscoelastic", TERM ELASTIC("")), LAR_ERROR_FORMAT, 5,
+                   "no parameter <k>, nor has what is within it; add it");
+    expect_failure(DECK("uncoupled viscoelastic",
+                        "<k>50</k>" TERM "<elastic type=\"uncoupled solid mixture\">" PART(
+                            "Mooney-Rivlin", MR("<k>7</k>")) "</elastic>"),
+                   LAR_ERROR_UNSUPPORTED, 5, "give the mixture its own");
+}
+
 /* What would be another model is refused. */
 static void mixtures_that_are_refused(void **state) {
     (void)state;
+    expect_failure(DECK("uncoupled solid mixture", "<k>9</k>" SOLID), LAR_ERROR_UNSUPPORTED, 5,
+                   "'neo-Hookean' is no uncoupled material");
+    expect_failure(DECK("uncoupled solid mixture", "<k>9</k>" MOONEY FIBRES("fiber-exp-pow")),
+                   LAR_ERROR_UNSUPPORTED, 5, "'fiber-exp-pow' is no uncoupled material");
+    expect_failure(DECK("uncoupled viscoelastic",
+                        "<k>9</k>" TERM "<elastic type=\"solid mixture\">" MOONEY "</elastic>"),
+                   LAR_ERROR_UNSUPPORTED, 5, "'solid mixture' is no uncoupled material");
     expect_failure(
         DECK("viscoelastic", TERM "<elastic type=\"solid mixture\">" SOLID PULLS "</elastic>"),
         LAR_ERROR_UNSUPPORTED, 5, "an active contraction within a viscous material");
@@ -118,6 +181,10 @@ static void directions_turn(void **state) {
     expect_direction("<mat_axis type=\"cylindrical\"><center>7,0.5,2.5</center><axis>1,0,0</axis>"
                      "<vector>0,1,0</vector></mat_axis>",
                      0, 1, 0);
+    /* what FEBio takes where a deck does not say */
+    expect_direction("<fiber>0,0,2</fiber>", 0, 0, 1);
+    expect_direction("<fiber type=\"local\">0,0</fiber>", 1, 0, 0);
+    expect_direction("<mat_axis type=\"local\"><local>0,0,0</local></mat_axis>", 1, 0, 0);
     /* a parameter that means nothing at its default, and a muscle that is never active */
     expect_direction(ALONG "<active_contraction><ascl>0</ascl><Tmax>1</Tmax></active_contraction>",
                      0, 0, 1);
@@ -189,9 +256,10 @@ static void old_decks_that_are_refused(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(mixtures_may_be_viscous), cmocka_unit_test(mixtures_that_are_refused),
-        cmocka_unit_test(directions_turn),         cmocka_unit_test(rays_that_are_none),
-        cmocka_unit_test(old_decks_are_read),      cmocka_unit_test(old_decks_that_are_refused),
+        cmocka_unit_test(mixtures_may_be_viscous),    cmocka_unit_test(moduli_and_densities_add_up),
+        cmocka_unit_test(mixtures_that_are_refused),  cmocka_unit_test(directions_turn),
+        cmocka_unit_test(rays_that_are_none),         cmocka_unit_test(old_decks_are_read),
+        cmocka_unit_test(old_decks_that_are_refused),
     };
     return cmocka_run_group_tests_name("feb_mixtures", tests, NULL, NULL);
 }

@@ -398,8 +398,41 @@ static void decks_say_laws_and_directions(void **state) {
                       "<ElementData type=\"mat_axis\" elem_set=\"left\"><e lid=\"2\"><a>1,0,0</a>"
                       "<d>0,1,0</d></e></ElementData>"));
     near(lar_model_fibre(model, 0), 0, 0.6, 0.8);
-    near(lar_model_fibre(model, 1), 1, 0, 0);
+    near(lar_model_fibre(model, 1), 0, 0.6, 0.8);
     lar_model_destroy(model);
+}
+
+/* A direction is one in the axes around it, which elements may have of their own. */
+static void axes_turn_directions(void **state) {
+    (void)state;
+#define AXES "<mat_axis type=\"vector\"><a>0,2,0</a><d>-1,5,0</d></mat_axis>" /* y, -x, z */
+#define DATA(type, values)                                                                         \
+    "<ElementData type=\"" type "\" elem_set=\"back\"><e lid=\"1\">" values "</e></ElementData>"
+#define CALCIUM            "<active_contraction type=\"active_contraction\"/>"
+#define TURNED             "<fiber type=\"angles\"><theta>90</theta><phi>90</phi></fiber>"
+#define EXP_ALONG          "<solid type=\"fiber-exp-pow\">" EXP ALONG "</solid>"
+#define OWN_AXES           DATA("mat_axis", "<a>0,0,1</a><d>0,1,0</d>") /* z, y, -x */
+#define TI(material, data) DECK("trans iso Mooney-Rivlin", ISO material, data)
+    static const struct {
+        const char *text;
+        double first[3], second[3]; /* of both elements; the set has the second one first */
+    } decks[] = {
+        {TI(AXES ALONG, ""), {-0.6, 0, 0.8}, {-0.6, 0, 0.8}},
+        {TI(ALONG AXES, OWN_AXES), {-0.6, 0, 0.8}, {-0.8, 0.6, 0}},
+        {TI(ALONG, OWN_AXES), {0, 0.6, 0.8}, {-0.8, 0.6, 0}},
+        {TI(AXES, OWN_AXES), {0, 1, 0}, {0, 0, 1}},
+        {TI(ALONG AXES, OWN_AXES DATA("fiber", "0,0,3")), {-0.6, 0, 0.8}, {-1, 0, 0}},
+        {TI(ALONG AXES, DATA("fiber", "0,0,3")), {-0.6, 0, 0.8}, {0, 0, 1}},
+        {TI(AXES TURNED CALCIUM, ""), {-1, 0, 0}, {-1, 0, 0}},
+        {DECK("solid mixture", AXES SOLID EXP_ALONG, ""), {-0.6, 0, 0.8}, {-0.6, 0, 0.8}},
+    };
+    for (size_t i = 0; i < sizeof decks / sizeof *decks; i++) {
+        lar_model *model = deck(decks[i].text);
+        const double *f = decks[i].first, *s = decks[i].second;
+        near(lar_model_fibre(model, 0), f[0], f[1], f[2]);
+        near(lar_model_fibre(model, 1), s[0], s[1], s[2]);
+        lar_model_destroy(model);
+    }
 }
 
 #define HGO_DECK "<c>800</c><k1>2500</k1><k2>1.4</k2><kappa>0.1</kappa><gamma>30</gamma><k>9e4</k>"
@@ -482,14 +515,17 @@ static void decks_say_what_is_wrong(void **state) {
 #define OF(material, data) DECK("trans iso Mooney-Rivlin", material, data)
 #define MIX(material)      DECK("solid mixture", material, "")
     static const char *const wrong[][2] = {
-        {OF(ISO, ""), "element 1 has fibres and nothing says along what"},
+        {OF(ISO, ""), "nothing says along what; give it a direction, as <fiber> of its material"},
         {OF(ISO "<fiber type=\"user\"/>", ""), "nothing says along what"},
+        {OF(ISO "<fiber type=\"map\">grain</fiber>", ""), "the map 'grain' of directions is not"},
         {OF(ISO "<fiber type=\"vector\">0,0,0</fiber>", ""), "their direction is 0, 0, 0"},
         {OF(ISO "<fiber type=\"polar\">0,0,0</fiber>", ""),
          "a direction of type 'polar' is not read"},
         {OF(ISO "<fiber type=\"local\">1,9</fiber>", ""), "one corner to another, of 1 to 8"},
         {OF(ISO ALONG "<active_contraction><ascl lc=\"1\">1</ascl></active_contraction>", ""),
          "<active_contraction>, which follows calcium"},
+        {OF(ISO ALONG "<active_contraction type=\"magic\"/>", ""), "of type 'magic' is not read"},
+        {OF(ISO ALONG "<active_contraction><T0/></active_contraction>", ""), "take a prescribed"},
         {OF("<k>9</k><c1>1</c1><c3>1</c3>" ALONG, ""), "no parameter <c4>"},
         {DECK("solid mixture", CONTRACTS(" lc=\"3\""), CURVE("<pt>0,0</pt><pt>1,-1</pt>")),
          "has values below 0"},
@@ -502,14 +538,15 @@ static void decks_say_what_is_wrong(void **state) {
         {OF(ISO ALONG,
             "<ElementData type=\"fiber\" elem_set=\"back\"><e lid=\"1\">1,0</e></ElementData>"),
          "deck.feb:"},
-        {MIX("<solid type=\"fiber-exp-pow\">" EXP ALONG "</solid>"), "no law besides its fibres"},
+        {MIX(EXP_ALONG), "no law besides its fibres"},
         {MIX(SOLID SOLID), "a second law in a solid mixture"},
-        {MIX(SOLID "<solid type=\"fiber-exp-pow\">" EXP ALONG
-                   "</solid><solid type=\"fiber-exp-pow\">" EXP ALONG "</solid>"),
-         "a second family of fibres in a solid mixture"},
-        {MIX(SOLID "<mat_axis type=\"vector\"><a>1,0,0</a><d>0,1,0</d></mat_axis>"
-                   "<solid type=\"fiber-exp-pow\">" EXP ALONG "</solid>"),
+        {MIX(SOLID EXP_ALONG EXP_ALONG), "a second family of fibres in a solid mixture"},
+        {MIX("<solid type=\"neo-Hookean\"><E>3000</E><v>0.25</v>" AXES "</solid>" EXP_ALONG),
          "a second direction within one material"},
+        {OF(ISO ALONG "<mat_axis type=\"local\">1,2,4</mat_axis>", ""),
+         "a <mat_axis> of type 'local' around a <fiber> is not read"},
+        {OF(ISO ALONG, DATA("mat_axis", "<a>0,0,1</a>")), "give it <a> and <d>"},
+        {OF(ISO ALONG, OWN_AXES OWN_AXES), "a second <mat_axis> for element 2; keep one"},
         {MIX(SOLID "<solid type=\"fiber-exp-pow\">" EXP ALONG "<lam0>1.1</lam0></solid>"),
          "<lam0> of fibres is 1.1, which is not read; give it 1"},
         {MIX(SOLID "<solid type=\"ellipsoidal fiber distribution\"/>"), "is not read"},
@@ -554,6 +591,7 @@ int main(void) {
         cmocka_unit_test(meshes_bring_directions),
         cmocka_unit_test(meshes_bring_second_families),
         cmocka_unit_test(decks_say_laws_and_directions),
+        cmocka_unit_test(axes_turn_directions),
         cmocka_unit_test(decks_say_two_families),
         cmocka_unit_test(decks_say_when_it_is_active),
         cmocka_unit_test(decks_say_what_is_wrong),

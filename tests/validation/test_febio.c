@@ -237,13 +237,18 @@ static void dy02_as_febio_steps(void **unused) {
     lar_model_destroy(model);
 }
 
-/* A viscoelastic cube and block that are loaded at once, and creep until the end: at rest, with
- * what is left of the stress. */
+/* With what is viscous the deck's end is the answer. */
+static void viscous_deck(const char *deck) {
+    double largest, norm = dynamic_norm(deck, LAR_ELEMENT_HEX8, 0, &largest);
+    assert_within(fabs(norm / gold_standard(deck) - 1), 0.02);
+}
+
+/* A viscoelastic cube and block that are loaded at once, and creep until the end. */
 static void ma05_ma06_a_cube_and_a_block_that_creep(void **unused) {
     (void)unused;
     NEED_REFERENCE();
-    static_deck_with("ma05", LAR_ELEMENT_HEX8);
-    static_deck_with("ma06", LAR_ELEMENT_HEX8);
+    viscous_deck("ma05");
+    viscous_deck("ma06");
 }
 
 /* Five terms from 10 ms to 100 s in a ligament that is pulled again and again, at the deck's end.
@@ -255,21 +260,14 @@ static void ma07_a_ligament(void **unused) {
     assert_within(fabs(norm / gold_standard("ma07") - 1), 1e-3);
 }
 
-/* A beam that bends by a fifth of its length under a traction, at rest. Two elements are too few
- * through its thickness; docs/validation.md has finer meshes. Its damping is that of bending. */
+/* A beam that bends by a fifth of its length under a traction, at the deck's end, which is long
+ * after its material has relaxed and it has come to rest. Two elements are too few through its
+ * thickness; docs/validation.md has finer meshes. */
 static void ma16_a_beam(void **unused) {
     (void)unused;
     NEED_REFERENCE();
-    lar_model *model = open_deck("ma16");
-    model->damping = 0.03;
-    lar_simulation *simulation = start(model, LAR_ELEMENT_HEX8);
-    begin_report();
-    run_until(simulation, 1500);
-    double difference = report("ma16", "hex8", "deck", "L2 norm [m]", gold_standard("ma16"),
-                               free_norm(simulation), simulation);
-    assert_within(difference, 0.125);
-    lar_simulation_destroy(simulation);
-    lar_model_destroy(model);
+    double largest, norm = dynamic_norm("ma16", LAR_ELEMENT_HEX8, 0, &largest);
+    assert_within(fabs(norm / gold_standard("ma16") - 1), 0.125);
 }
 
 /* Transversely isotropic blocks: fibres from corner to corner of every element in Mooney-Rivlin's

@@ -130,7 +130,7 @@ static lar_status read_fix(lar_feb *feb, const xmlNode *at) {
 /* Without a load curve a displacement is there at once. Of a static deck only the end matters. */
 static lar_status notice_at_once(lar_feb *feb, const xmlNode *value, double by, int curve) {
     const lar_model *model = feb->model;
-    if (by * lar_curve_value(&model->curve[curve], 0.0) == 0.0 || model->until_rest) return LAR_OK;
+    if (by * lar_curve_value(&model->curve[curve], 0.0) == 0.0 || feb->is_static) return LAR_OK;
     return lar_feb_notice(feb, value,
                           "this displacement is there at once: the body starts with these nodes "
                           "displaced, and shakes; to ramp it, name a load curve that rises from 0 "

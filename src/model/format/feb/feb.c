@@ -43,38 +43,55 @@ static lar_status check_control(lar_feb *feb, const xmlNode *control) {
 }
 
 /* The word in <analysis>, or in its attribute type. */
-static lar_status read_analysis(lar_feb *feb, const xmlNode *control, bool *is_static) {
+static lar_status read_analysis(lar_feb *feb, const xmlNode *control) {
     const xmlNode *analysis = control ? lar_feb_child(control, "analysis") : NULL;
-    *is_static = true; /* FEBio's default */
+    feb->is_static = true; /* FEBio's default */
     if (!analysis) return LAR_OK;
     const char *type = lar_feb_attribute(feb, analysis, "type");
     lar_span word = type ? (lar_span){type, strlen(type)} : lar_feb_text(feb, analysis);
     if (lar_span_equal_nocase(word, "STATIC") || lar_span_equal(word, "0")) return LAR_OK;
-    *is_static = false;
+    feb->is_static = false;
     if (lar_span_equal_nocase(word, "DYNAMIC") || lar_span_equal(word, "1")) return LAR_OK;
     return lar_feb_fail(feb, analysis, LAR_ERROR_UNSUPPORTED,
                         "the analysis '%.*s' is not read; Lariat does DYNAMIC and STATIC",
                         (int)(word.length < 40 ? word.length : 40), word.at);
 }
 
-/* What an analysis without time becomes: see model/rest.h. */
-static lar_status damp_static(lar_feb *feb, const xmlNode *control) {
-    bool is_static;
-    lar_status status = read_analysis(feb, control, &is_static);
-    if (status || !is_static) return status;
-    feb->model->damping = lar_model_rest_damping(feb->model);
-    feb->model->until_rest = true;
-    return lar_feb_notice(feb, control ? control : feb->root,
-                          "the analysis is static: Lariat follows it in time, with a damping of "
-                          "%.3g 1/s, until it is at rest",
-                          feb->model->damping);
-}
-
-/* The analysis ends with the deck's last step, and so do its loads, whatever their curves would do
- * behind it. */
-static void hold_loads(lar_model *model) {
-    for (int i = 0; model->until_rest && model->duration > 0.0 && i < model->curve_count; i++)
-        lar_curve_hold_from(&model->curve[i], model->duration);
+/* What an analysis without time becomes: see model/rest.h. Its answer does not depend on mass, so
+ * that is such that the body would swing two to twenty times while the loads come, whatever units
+ * and durations the deck has: less, and loads would be blows; more, and they would be followed wave
+ * by wave. The analysis ends with the deck's last step, and so do its loads, whatever their curves
+ * would do behind it.
+ *
+ * With a viscous material the deck's time is the material's, and its end the answer. There mass
+ * must not be felt on the way: the body answers in a hundredth of the deck, and with a tenth of
+ * that damping lags behind its loads by 0.1/pi of that (2 zeta/omega); what swings at first is
+ * less by exp(-2 pi 10) in the end. */
+static lar_status finish_static(lar_feb *feb, const xmlNode *control) {
+    static const double FEW = 2, MANY = 20, VISCOUS = 100, VISCOUS_DAMPING = 0.1;
+    lar_model *model = feb->model;
+    const xmlNode *at = control ? control : feb->root;
+    const double end = model->duration;
+    double period = end / VISCOUS;
+    if (!feb->is_static) return LAR_OK;
+    model->by_material_time = end > 0 && lar_model_viscous(model);
+    model->until_rest = !model->by_material_time;
+    if (model->until_rest) period = fmin(fmax(lar_model_slow_period(model), end / MANY), end / FEW);
+    if (end > 0) lar_model_slow_to(model, period);
+    model->damping = lar_model_rest_damping(model);
+    for (int i = 0; end > 0 && i < model->curve_count; i++)
+        lar_curve_hold_from(&model->curve[i], end);
+    if (model->until_rest)
+        return lar_feb_notice(feb, at,
+                              "the analysis is static: Lariat follows it in time, with a damping "
+                              "of %.3g 1/s, until it is at rest",
+                              model->damping);
+    model->damping *= VISCOUS_DAMPING;
+    return lar_feb_notice(feb, at,
+                          "the analysis is static and a material viscous: Lariat follows it in the "
+                          "material's time to the deck's end, %g s, with little mass and a damping "
+                          "of %.3g 1/s; only a slender body that bends may lag behind its loads",
+                          end, model->damping);
 }
 
 /* Of the solver's settings one is physics: the explicit solver can damp by a factor per step. */
@@ -119,10 +136,6 @@ static const char *refusal(const xmlNode *section) {
 
 static lar_status check_section(lar_feb *feb, const xmlNode *section) {
     const xmlNode *content = lar_feb_first(section);
-    if (lar_feb_attribute(feb, section, "from"))
-        return lar_feb_fail(feb, section, LAR_ERROR_UNSUPPORTED,
-                            "<%s> stands in another file (from=\"...\"); put it into this one",
-                            (const char *)section->name);
     const char *what = refusal(section);
     if (what && (content || lar_feb_is(section, "Include"))) {
         const char *type = content ? lar_feb_attribute(feb, content, "type") : NULL;
@@ -131,7 +144,8 @@ static lar_status check_section(lar_feb *feb, const xmlNode *section) {
                             (const char *)(content ? content : section)->name,
                             type ? " of type '" : "", type ? type : "", type ? "'" : "", what);
     }
-    if (what || is_harmless(feb, section) || !content) return LAR_OK;
+    const bool known = lar_feb_is_any(section, "Boundary Loads Initial MeshData");
+    if (what || is_harmless(feb, section) || (known && !content)) return LAR_OK;
     if (lar_feb_is(section, "Boundary")) return lar_feb_read_boundary(feb, section);
     if (lar_feb_is(section, "Loads")) return lar_feb_read_loads(feb, section);
     if (lar_feb_is(section, "Initial")) return lar_feb_read_initial(feb, section);
@@ -216,30 +230,37 @@ static lar_status check_domains(lar_feb *feb) {
 
 /* ---- the whole ------------------------------------------------------------------------------- */
 
+static bool has_weight(const xmlNode *parent) {
+    const xmlNode *loads = lar_feb_child(parent, "Loads");
+    return loads && lar_feb_child(loads, "body_load");
+}
+
 static lar_status read_model(lar_feb *feb) {
     const xmlNode *step = NULL;
-    lar_status status = check_module(feb);
+    lar_status status = lar_feb_refuse_files(feb, feb->root);
+    if (!status) status = check_module(feb);
     if (!status) status = check_single(feb);
     if (!status) status = check_domains(feb);
     if (!status) status = find_step(feb, &step);
+    const xmlNode *control = step ? lar_feb_child(step, "Control") : NULL;
+    if (!control) control = lar_feb_child(feb->root, "Control");
+    if (!status) status = read_analysis(feb, control);
+    feb->weightless = feb->is_static && !has_weight(feb->root) && !(step && has_weight(step));
     if (!status) status = lar_feb_list_materials(feb);
     if (!status) status = lar_feb_read_mesh(feb);
     if (!status) lar_mesh_turn(feb->mesh);
     if (!status) status = lar_mesh_check(feb->mesh, feb->error);
     if (!status) status = lar_feb_read_materials(feb);
     if (status) return status;
-    const xmlNode *control = step ? lar_feb_child(step, "Control") : NULL;
-    if (!control) control = lar_feb_child(feb->root, "Control");
     if (control) status = check_control(feb, control);
     if (!status && control) status = read_duration(feb, control);
-    if (!status) status = damp_static(feb, control);
     if (!status) status = notice_solver_damping(feb, control);
     if (!status) status = lar_feb_read_curves(feb);
     if (!status) status = lar_feb_read_activation(feb);
     if (!status) status = read_sections(feb, feb->root);
     if (!status && step) status = read_sections(feb, step);
     if (!status) status = lar_feb_notice_attributes(feb, feb->root);
-    hold_loads(feb->model);
+    if (!status) status = finish_static(feb, control);
     return status ? status : lar_model_check(feb->model, feb->error);
 }
 

@@ -45,6 +45,8 @@ typedef struct lar_feb {
 
     lar_mesh *mesh;
     lar_model *model;   /* NULL when only the mesh is wanted */
+    bool is_static;     /* the analysis */
+    bool weightless;    /* the answer does not depend on density: static, no body load */
     int constant_curve; /* the curve that is 1 for ever, -1 until wanted */
 
     int material_count;
@@ -75,6 +77,8 @@ lar_status lar_feb_notice(const lar_feb *feb, const xmlNode *at, const char *for
 lar_status lar_feb_notice_others(const lar_feb *feb, const xmlNode *parent, const char *known);
 /* The same for attributes, in all that is read of the deck. */
 lar_status lar_feb_notice_attributes(const lar_feb *feb, const xmlNode *parent);
+/* Refuses an element that another file holds: from="...". */
+lar_status lar_feb_refuse_files(lar_feb *feb, const xmlNode *parent);
 lar_status lar_feb_no_memory(const lar_feb *feb, const char *what);
 int lar_feb_line(const xmlNode *at);
 
@@ -155,6 +159,10 @@ bool lar_feb_is_active(const char *type);
 lar_status lar_feb_read_active(lar_feb *feb, const xmlNode *node, const char *type,
                                lar_fibre *fibre);
 lar_status lar_feb_read_activation(lar_feb *feb);
+/* Turns a direction of element e from its axes, of which the first runs along a and the second in
+ * the plane of a and d on d's side, to those of the mesh. */
+lar_status lar_feb_turn(lar_feb *feb, const xmlNode *at, int32_t e, const double a[3],
+                        const double d[3], double direction[3]);
 /* Gives all elements with fibres their directions; the materials are assigned. */
 lar_status lar_feb_lay_fibres(lar_feb *feb);
 /* Whether an entry of <MeshData> says directions. */

@@ -2,7 +2,7 @@
  *
  * A material with fibres is a "trans iso" one, or a "solid mixture" of a law and one family. What
  * says the direction stands in it or in the material around it, as <fiber> or <mat_axis>, of which
- * the first axis counts; or element by element in <MeshData>.
+ * the first axis counts, or which turns a <fiber>; or element by element in <MeshData>.
  */
 #include "model/format/feb/feb.h"
 
@@ -168,8 +168,17 @@ static lar_status refuse_angles(lar_feb *feb, const xmlNode *node) {
 /* Calcium and sarcomeres; without a scale nothing contracts. */
 static lar_status refuse_calcium(lar_feb *feb, const xmlNode *node) {
     const xmlNode *muscle = lar_feb_child(node, "active_contraction");
-    const xmlNode *scale = muscle && lar_feb_first(muscle) ? lar_feb_child(muscle, "ascl") : NULL;
+    if (!muscle) return LAR_OK;
+    const char *type = lar_feb_attribute(feb, muscle, "type");
+    const bool calcium = !type || strcmp(type, "active_contraction") == 0 ||
+                         strcmp(type, "force-velocity-Estrada") == 0;
+    const xmlNode *scale = lar_feb_child(muscle, "ascl");
     double value = 0;
+    if (!calcium || lar_feb_child(muscle, "T0"))
+        return lar_feb_fail(feb, muscle, LAR_ERROR_UNSUPPORTED,
+                            "<active_contraction> of type '%.60s' is not read; take a "
+                            "prescribed active contraction in a mixture",
+                            type ? type : "");
     lar_status status = scale ? lar_feb_doubles(feb, scale, &value, 1) : LAR_OK;
     if (status || value == 0) return status;
     return lar_feb_fail(feb, muscle, LAR_ERROR_UNSUPPORTED,
@@ -214,26 +223,37 @@ lar_status lar_feb_read_trans_iso(lar_feb *feb, const xmlNode *node, lar_fibre *
 
 /* ---- directions ------------------------------------------------------------------------------ */
 
-/* The rule that a material or a part of it has, NULL: none. */
-static const xmlNode *own_rule(const xmlNode *node) {
-    const xmlNode *fiber = lar_feb_child(node, "fiber");
-    return fiber ? fiber : lar_feb_child(node, "mat_axis");
+static lar_status refuse_second(lar_feb *feb, const xmlNode *rule, const xmlNode *first) {
+    return lar_feb_fail(feb, rule, LAR_ERROR_UNSUPPORTED,
+                        "a second direction within one material; it has one family of fibres, keep "
+                        "the first (line %d)",
+                        lar_feb_line(first));
 }
 
-/* The rule of a material of any depth; two of them would have to be put together. */
-static lar_status find_rule(lar_feb *feb, const xmlNode *node, const xmlNode **rule) {
-    const xmlNode *own = own_rule(node);
-    if (own && *rule)
-        return lar_feb_fail(feb, own, LAR_ERROR_UNSUPPORTED,
-                            "a second direction within one material; it has one family of "
-                            "fibres, keep the first (line %d)",
-                            lar_feb_line(*rule));
+/* What a material of any depth has of <fiber> or of <mat_axis>. */
+static lar_status find_rule(lar_feb *feb, const xmlNode *node, const char *name,
+                            const xmlNode **rule) {
+    const xmlNode *own = lar_feb_child(node, name);
+    if (own && *rule) return refuse_second(feb, own, *rule);
     if (own) *rule = own;
     lar_status status = LAR_OK;
     for (const xmlNode *inner = lar_feb_first(node); inner && !status; inner = lar_feb_next(inner))
         if (lar_feb_is(inner, "solid") || lar_feb_is(inner, "elastic"))
-            status = find_rule(feb, inner, rule);
+            status = find_rule(feb, inner, name, rule);
     return status;
+}
+
+/* Both: axes turn the direction of what stands in the same material or within it, not of another
+ * part. */
+static lar_status find_rules(lar_feb *feb, const xmlNode *node, const xmlNode **fiber,
+                             const xmlNode **axes) {
+    *fiber = *axes = NULL;
+    lar_status status = find_rule(feb, node, "fiber", fiber);
+    if (!status) status = find_rule(feb, node, "mat_axis", axes);
+    if (status || !*fiber || !*axes) return status;
+    const xmlNode *at = (*fiber)->parent;
+    while (at && at != (*axes)->parent) at = at->parent;
+    return at ? LAR_OK : refuse_second(feb, *axes, *fiber);
 }
 
 /* One direction for all: a vector, two angles, or the first of two vectors. */
@@ -262,7 +282,7 @@ static lar_status read_corners(lar_feb *feb, const xmlNode *rule, int corner[2])
     int count = lar_feb_is(rule, "mat_axis") ? 3 : 2;
     lar_status status = lar_feb_ids(feb, of ? of : rule, id, count);
     if (status) return status;
-    if (count == 2 && id[0] == 0 && id[1] == 0) id[0] = 1, id[1] = 2; /* FEBio's default */
+    if (id[0] == 0 && id[1] == 0) id[0] = 1, id[1] = 2; /* FEBio's default, of axes 1, 2, 4 */
     for (int i = 0; i < 2; i++) {
         if (id[i] < 1 || id[i] > 8 || id[0] == id[1])
             return lar_feb_fail(feb, rule, LAR_ERROR_FORMAT,
@@ -330,17 +350,54 @@ static lar_status need_directions(lar_feb *feb) {
                : lar_feb_no_memory(feb, "the directions of fibres");
 }
 
-/* The directions of one material's elements. */
-static lar_status lay(lar_feb *feb, const xmlNode *rule, int material) {
+lar_status lar_feb_turn(lar_feb *feb, const xmlNode *at, int32_t e, const double a[3],
+                        const double d[3], double direction[3]) {
+    double e2[3], e3[3];
+    lar_cross(a, d, e3);
+    lar_cross(e3, a, e2);
+    const double length[3] = {lar_length(a), lar_length(e2), lar_length(e3)};
+    double share[3];
+    for (int i = 0; i < 3; i++) {
+        if (!(length[i] > 0) || !isfinite(length[i]))
+            return lar_feb_fail(feb, at, LAR_ERROR_MODEL,
+                                "the two vectors of <mat_axis> of element %lld span no plane; give "
+                                "two that are not parallel",
+                                (long long)feb->mesh->element_id[e]);
+        share[i] = direction[i] / length[i];
+    }
+    for (int i = 0; i < 3; i++)
+        direction[i] = share[0] * a[i] + share[1] * e2[i] + share[2] * e3[i];
+    return LAR_OK;
+}
+
+/* A map is read where <MeshData> says of it that it is one of directions. */
+static lar_status check_map(lar_feb *feb, const xmlNode *rule) {
+    const xmlNode *section = lar_feb_child(feb->root, "MeshData");
+    const xmlNode *data = section ? lar_feb_first(section) : NULL;
+    while (data && !lar_feb_is_direction(feb, data)) data = lar_feb_next(data);
+    if (data) return LAR_OK;
+    lar_span name = lar_feb_text(feb, rule);
+    return lar_feb_fail(feb, rule, LAR_ERROR_UNSUPPORTED,
+                        "the map '%.*s' of directions is not read; give them as <ElementData "
+                        "type=\"%s\">",
+                        (int)(name.length < 60 ? name.length : 60), name.at,
+                        (const char *)rule->name);
+}
+
+/* The directions of one material's elements, but for those that are `done`. A direction that an
+ * element has already is one in the axes. */
+static lar_status lay(lar_feb *feb, const xmlNode *rule, int material, const bool *done) {
     lar_mesh *mesh = feb->mesh;
     const char *type = lar_feb_attribute(feb, rule, "type");
-    double a[3] = {0};
+    if (!type && lar_feb_is(rule, "fiber")) type = "vector";
+    double a[3] = {0}, d[3], way[3] = {0};
     int corner[2];
     round_rule around;
     bool local = type && strcmp(type, "local") == 0;
     bool cylindrical = type && strcmp(type, "cylindrical") == 0;
     bool round = cylindrical || (type && strcmp(type, "spherical") == 0);
-    if (type && (strcmp(type, "user") == 0 || strcmp(type, "map") == 0)) return LAR_OK;
+    if (type && strcmp(type, "map") == 0) return check_map(feb, rule);
+    if (type && strcmp(type, "user") == 0) return LAR_OK;
     if (!type || (!local && !round && strcmp(type, "vector") != 0 && strcmp(type, "angles") != 0))
         return lar_feb_fail(feb, rule, LAR_ERROR_UNSUPPORTED,
                             "a direction of type '%.40s' is not read; vector, local, angles, "
@@ -351,16 +408,26 @@ static lar_status lay(lar_feb *feb, const xmlNode *rule, int material) {
         status = local   ? read_corners(feb, rule, corner)
                  : round ? read_round(feb, rule, cylindrical, &around)
                          : read_constant(feb, rule, type, a);
+    const xmlNode *second = lar_feb_child(rule, "d");
+    if (!status && second) status = lar_feb_doubles(feb, second, d, 3);
     for (int32_t e = 0; e < mesh->element_count && !status; e++) {
-        if (feb->model->element_material[e] != material) continue;
+        if (feb->model->element_material[e] != material || done[e]) continue;
+        if (lar_length(mesh->fibre[e]) > 0) {
+            if (!second)
+                return lar_feb_fail(feb, rule, LAR_ERROR_UNSUPPORTED,
+                                    "a <mat_axis> of type '%.40s' around a <fiber> is not read; "
+                                    "give it the type vector, with <a> and <d>",
+                                    type);
+            status = lar_feb_turn(feb, rule, e, a, d, mesh->fibre[e]);
+            continue;
+        }
         if (round) {
             centre_of(mesh, e, a);
-            lay_round(&around, a, mesh->fibre[e]);
+            lay_round(&around, a, way);
         } else if (local)
             lar_minus(mesh->position[mesh->element[e][corner[1]]],
-                      mesh->position[mesh->element[e][corner[0]]], mesh->fibre[e]);
-        else
-            memcpy(mesh->fibre[e], a, sizeof a);
+                      mesh->position[mesh->element[e][corner[0]]], way);
+        memcpy(mesh->fibre[e], round || local ? way : a, sizeof a);
     }
     return status;
 }
@@ -403,8 +470,9 @@ static const xmlNode *find_elements(lar_feb *feb, const char *name) {
     return part;
 }
 
+/* Axes mark their elements as `done`. */
 static lar_status read_entries(lar_feb *feb, const xmlNode *data, const id_list *list,
-                               const lar_id_map *map) {
+                               const lar_id_map *map, bool axes, bool *done) {
     lar_status status = LAR_OK;
     for (xmlNode *entry = lar_feb_first(data); entry && !status; entry = lar_feb_next(entry)) {
         int64_t lid;
@@ -419,21 +487,31 @@ static lar_status read_entries(lar_feb *feb, const xmlNode *data, const id_list 
             return lar_feb_fail(feb, entry, LAR_ERROR_FORMAT,
                                 "lid %lld is no element of its set, which has %zu", (long long)lid,
                                 list->count);
-        if (!lar_model_material_of(feb->model, e)->fibre.paired) {
-            memcpy(feb->mesh->fibre[e], a, sizeof a);
+        if (axes && done[e])
+            return lar_feb_fail(feb, entry, LAR_ERROR_FORMAT,
+                                "a second <mat_axis> for element %lld; keep one",
+                                (long long)feb->mesh->element_id[e]);
+        done[e] = axes;
+        const bool paired = lar_model_material_of(feb->model, e)->fibre.paired;
+        double *fibre = feb->mesh->fibre[e];
+        if (!paired && (!axes || !(lar_length(fibre) > 0))) {
+            memcpy(fibre, a, sizeof a);
             continue;
         }
         if (!second)
             return lar_feb_fail(feb, entry, LAR_ERROR_FORMAT,
-                                "element %lld has two families of fibres; give it <a> and <d>",
+                                "element %lld has two families of fibres, or one along a direction "
+                                "in its axes; give it <a> and <d>",
                                 (long long)feb->mesh->element_id[e]);
         status = lar_feb_doubles(feb, second, d, 3);
-        if (!status) status = lar_feb_lay_pair(feb, entry, e, a, d);
+        if (!status)
+            status = paired ? lar_feb_lay_pair(feb, entry, e, a, d)
+                            : lar_feb_turn(feb, entry, e, a, d, fibre);
     }
     return status;
 }
 
-static lar_status read_data(lar_feb *feb, const xmlNode *data) {
+static lar_status read_data(lar_feb *feb, const xmlNode *data, bool axes, bool *done) {
     const lar_mesh *mesh = feb->mesh;
     const char *name;
     lar_status status = lar_feb_need_attribute(feb, data, "elem_set", &name);
@@ -455,38 +533,65 @@ static lar_status read_data(lar_feb *feb, const xmlNode *data) {
                                      sizeof *mesh->element_id, &clash))
         status = lar_feb_no_memory(feb, "the directions of fibres");
     if (!status) status = list_ids(feb, set, &list);
-    if (!status) status = read_entries(feb, data, &list, &map);
+    if (!status) status = read_entries(feb, data, &list, &map, axes, done);
     lar_id_map_clear(&map);
     free(list.id);
     return status;
 }
 
-bool lar_feb_is_direction(lar_feb *feb, const xmlNode *data) {
+static bool has_type(lar_feb *feb, const xmlNode *data, const char *wanted) {
     const char *type = lar_feb_attribute(feb, data, "type");
     if (!type) type = lar_feb_attribute(feb, data, "var"); /* version 3.0 */
-    return lar_feb_is(data, "ElementData") && type &&
-           (strcmp(type, "fiber") == 0 || strcmp(type, "mat_axis") == 0);
+    return lar_feb_is(data, "ElementData") && type && strcmp(type, wanted) == 0;
 }
 
-/* What a material says, and over it what the mesh says of its elements. */
-lar_status lar_feb_lay_fibres(lar_feb *feb) {
+bool lar_feb_is_direction(lar_feb *feb, const xmlNode *data) {
+    return has_type(feb, data, "fiber") || has_type(feb, data, "mat_axis");
+}
+
+static lar_status read_mesh_data(lar_feb *feb, bool axes, bool *done) {
+    const xmlNode *section = lar_feb_child(feb->root, "MeshData");
+    xmlNode *data = section ? lar_feb_first(section) : NULL;
+    lar_status status = LAR_OK;
+    for (; data && !status && lar_model_fibrous(feb->model); data = lar_feb_next(data))
+        if (has_type(feb, data, axes ? "mat_axis" : "fiber"))
+            status = read_data(feb, data, axes, done);
+    return status;
+}
+
+/* What materials say, by <fiber> or by <mat_axis>. */
+static lar_status read_rules(lar_feb *feb, bool axes, const bool *done) {
     lar_status status = LAR_OK;
     for (int i = 0; i < feb->material_count && !status; i++) {
         const lar_feb_material *entry = &feb->material[i];
-        const xmlNode *rule = NULL;
+        const xmlNode *fiber, *turned;
         if (entry->index < 0 || !lar_fibre_directed(&feb->model->material[entry->index].fibre))
             continue;
-        status = find_rule(feb, entry->node, &rule);
-        if (!status && feb->model->material[entry->index].fibre.paired) {
+        status = find_rules(feb, entry->node, &fiber, &turned);
+        const xmlNode *rule = axes ? turned : fiber;
+        if (status) return status;
+        if (!feb->model->material[entry->index].fibre.paired) {
+            status = rule ? lay(feb, rule, entry->index, done) : LAR_OK;
+        } else if (!axes) {
             status = need_directions(feb);
-            if (!status) status = lar_feb_lay_pairs(feb, entry->node, rule, entry->index);
-        } else if (!status && rule) {
-            status = lay(feb, rule, entry->index);
+            if (!status)
+                status = lar_feb_lay_pairs(feb, entry->node, fiber ? fiber : turned, entry->index);
         }
     }
-    const xmlNode *section = lar_feb_child(feb->root, "MeshData");
-    xmlNode *data = section ? lar_feb_first(section) : NULL;
-    for (; data && !status && lar_model_fibrous(feb->model); data = lar_feb_next(data))
-        if (lar_feb_is_direction(feb, data)) status = read_data(feb, data);
+    return status;
+}
+
+/* As in FEBio a direction is one in the axes of the material, and both may be said for a material
+ * or for each of its elements, which counts before. So first directions, then axes, which turn
+ * them; without a direction fibres run along the first axis. */
+lar_status lar_feb_lay_fibres(lar_feb *feb) {
+    feb->model->fibre_remedy = "as <fiber> of its material or in <ElementData> of type fiber";
+    bool *done = lar_calloc((size_t)feb->mesh->element_count, sizeof *done);
+    lar_status status =
+        done ? read_rules(feb, false, done) : lar_feb_no_memory(feb, "the directions of fibres");
+    if (!status) status = read_mesh_data(feb, false, done);
+    if (!status) status = read_mesh_data(feb, true, done);
+    if (!status) status = read_rules(feb, true, done);
+    free(done);
     return status;
 }

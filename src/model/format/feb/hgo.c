@@ -66,28 +66,20 @@ lar_status lar_feb_read_hgo(lar_feb *feb, const xmlNode *node, lar_material *mat
 lar_status lar_feb_lay_pair(lar_feb *feb, const xmlNode *at, int32_t e, const double a[3],
                             const double d[3]) {
     const xmlNode *material = NULL;
-    double e1[3], e2[3], normal[3], gamma = 0;
+    double gamma = 0;
     for (int i = 0; i < feb->material_count && !material; i++)
         if (feb->material[i].index == feb->model->element_material[e])
             material = feb->material[i].node;
     lar_status status = lar_feb_parameter(feb, material, "gamma", true, &gamma);
-    if (status) return status;
-    lar_cross(a, d, normal);
-    lar_cross(normal, a, e2);
-    double first = lar_length(a), second = lar_length(e2);
-    if (!(first > 0) || !(second > 0) || !isfinite(first) || !isfinite(second))
-        return lar_feb_fail(feb, at, LAR_ERROR_MODEL,
-                            "the two vectors of <mat_axis> of element %lld span no plane; give two "
-                            "that are not parallel",
-                            (long long)feb->mesh->element_id[e]);
+    double *const way[2] = {feb->mesh->fibre[e], feb->mesh->second[e]};
     gamma *= 3.14159265358979323846 / 180;
-    for (int i = 0; i < 3; i++) {
-        e1[i] = a[i] / first;
-        e2[i] /= second;
-        feb->mesh->fibre[e][i] = cos(gamma) * e1[i] + sin(gamma) * e2[i];
-        feb->mesh->second[e][i] = cos(gamma) * e1[i] - sin(gamma) * e2[i];
+    for (int k = 0; k < 2 && !status; k++) {
+        way[k][0] = cos(gamma);
+        way[k][1] = k == 0 ? sin(gamma) : -sin(gamma);
+        way[k][2] = 0;
+        status = lar_feb_turn(feb, at, e, a, d, way[k]);
     }
-    return LAR_OK;
+    return status;
 }
 
 /* Corners of an element, counted from 1 as in the deck: a runs from the first to the second, d to

@@ -2,8 +2,8 @@
  *
  * Which types are read, by which parameters, and what becomes of them stands in the rows of the
  * laws (law/law.h). "viscoelastic" and "uncoupled viscoelastic" have a law inside of them, as
- * <elastic>, and the terms of their relaxation; the second one the bulk modulus as well, in place
- * of that of the law. "solid mixture" and "uncoupled solid mixture" are one law and fibres, as
+ * <elastic>, and the terms of their relaxation; the second one a bulk modulus as well, beside that
+ * of the law. "solid mixture" and "uncoupled solid mixture" are one law and fibres, as
  * <solid>; "Holzapfel-Gasser-Ogden" is a law with two families (hgo.c), "trans iso Mooney-Rivlin"
  * and "trans iso Veronda-Westmann" have them built in.
  */
@@ -111,11 +111,57 @@ lar_status lar_feb_parameter(lar_feb *feb, const xmlNode *material, const char *
     return lar_feb_doubles(feb, child, value, 1);
 }
 
-static lar_status read_density(lar_feb *feb, const xmlNode *node, lar_material *material) {
-    material->density = 1.0; /* FEBio's default */
-    if (lar_feb_child(node, "density"))
-        return lar_feb_parameter(feb, node, "density", true, &material->density);
-    return lar_feb_notice(feb, node, "the material has no density; it gets FEBio's default, 1");
+static bool is_mixture(const char *type) {
+    return strcmp(type, "uncoupled solid mixture") == 0 || strcmp(type, "solid mixture") == 0;
+}
+
+static bool is_viscous(const char *type) {
+    return strcmp(type, "uncoupled viscoelastic") == 0 || strcmp(type, "viscoelastic") == 0;
+}
+
+/* Adds the bulk modulus of an uncoupled material, as FEBio puts it together: a viscous one adds
+ * that of its <elastic> to its own, a mixture without one of its own takes those of its parts. */
+static lar_status add_bulk(lar_feb *feb, const xmlNode *node, double *bulk) {
+    const char *type = lar_feb_attribute(feb, node, "type");
+    const xmlNode *elastic = type && is_viscous(type) ? lar_feb_child(node, "elastic") : NULL;
+    double own = 0, inner = 0, parts = 0;
+    lar_status status = lar_feb_parameter(feb, node, "k", false, &own);
+    if (elastic && !status) status = lar_feb_parameter(feb, elastic, "k", false, &inner);
+    if (elastic && !status && inner == 0) status = add_bulk(feb, elastic, &parts);
+    if (!status && parts != 0)
+        return lar_feb_fail(feb, elastic, LAR_ERROR_UNSUPPORTED,
+                            "versions of FEBio differ in whether <k> of the parts of a mixture "
+                            "counts within a viscous material; give the mixture its own");
+    own += inner;
+    const bool sums = own == 0 && type && is_mixture(type);
+    const xmlNode *solid = sums ? lar_feb_first(node) : NULL;
+    for (; solid && !status; solid = lar_feb_next(solid))
+        if (lar_feb_is(solid, "solid")) status = add_bulk(feb, solid, &own);
+    *bulk += own;
+    return status;
+}
+
+/* Adds the density of a material: that of a mixture is the sum of its parts', in FEBio since
+ * version 3. */
+static lar_status add_density(lar_feb *feb, const xmlNode *node, double *density) {
+    const char *type = lar_feb_attribute(feb, node, "type");
+    const bool said = lar_feb_child(node, "density");
+    const bool sums = type && is_mixture(type) &&
+                      strcmp(lar_feb_attribute(feb, feb->root, "version"), "2.5") != 0;
+    double own = 1, parts = 0; /* FEBio's default */
+    lar_status status = lar_feb_parameter(feb, node, "density", false, &own);
+    if (!status && !said && !sums && !feb->weightless)
+        status =
+            lar_feb_notice(feb, node, "the material has no density; it gets FEBio's default, 1");
+    for (const xmlNode *solid = sums ? lar_feb_first(node) : NULL; solid && !status;
+         solid = lar_feb_next(solid))
+        if (lar_feb_is(solid, "solid")) status = add_density(feb, solid, &parts);
+    *density += sums ? parts : own;
+    if (status || !sums || !said || parts == own || feb->weightless) return status;
+    return lar_feb_notice(feb, node,
+                          "the density of the mixture is the sum of its parts', %g, as in FEBio "
+                          "since version 3, and not its own, %g",
+                          parts, own);
 }
 
 /* Lariat has one answer to a change of volume for each law. */
@@ -144,7 +190,7 @@ static lar_status check_value(lar_feb *feb, const xmlNode *node, const lar_law_r
     return LAR_OK;
 }
 
-/* `outer`: the viscous material around it, or NULL. */
+/* `outer`: the uncoupled material around it, which says the bulk modulus, or NULL. */
 static lar_status read_law(lar_feb *feb, const xmlNode *node, const xmlNode *outer, lar_law law,
                            bool trans_iso, lar_material *material) {
     const lar_law_dialect *dialect = lar_law_table[law].febio;
@@ -160,7 +206,12 @@ static lar_status read_law(lar_feb *feb, const xmlNode *node, const xmlNode *out
         bool needed = !lar_law_may_miss(dialect->parameter, i);
         bool outside = outer && strcmp(of->name, "k") == 0;
         length += snprintf(known + length, sizeof known - (size_t)length, " %s", of->name);
-        status = lar_feb_parameter(feb, outside ? outer : node, of->name, needed, &given[i]);
+        status = outside ? add_bulk(feb, outer, &given[i])
+                         : lar_feb_parameter(feb, node, of->name, needed, &given[i]);
+        if (outside && !status && given[i] == 0)
+            status = lar_feb_fail(feb, outer, LAR_ERROR_FORMAT,
+                                  "the material has no parameter <k>, nor has what is within it; "
+                                  "add it");
     }
     for (int i = 0; i < dialect->count && !status; i++)
         status = check_value(feb, node, &lar_law_table[law], &dialect->parameter[i], given[i]);
@@ -218,12 +269,21 @@ static lar_status read_law_part(lar_feb *feb, const xmlNode *node, const xmlNode
     return status || !fibres ? status : lar_feb_read_trans_iso(feb, node, &material->fibre);
 }
 
-static bool is_mixture(const char *type) {
-    return strcmp(type, "uncoupled solid mixture") == 0 || strcmp(type, "solid mixture") == 0;
-}
-
-static bool is_viscous(const char *type) {
-    return strcmp(type, "uncoupled viscoelastic") == 0 || strcmp(type, "viscoelastic") == 0;
+/* FEBio takes only uncoupled materials into an uncoupled one (`outer`). */
+static lar_status refuse_coupled(lar_feb *feb, const xmlNode *node, const xmlNode *outer,
+                                 const char *type) {
+    const lar_law law = find_law(type);
+    bool coupled = !strstr(type, "uncoupled");
+    if (law != LAR_LAW_COUNT)
+        coupled = !lar_law_table[law].febio->volume;
+    else
+        coupled = coupled && (lar_feb_is_fibre(type) || lar_feb_is_active(type) ||
+                              is_mixture(type) || is_viscous(type));
+    if (!outer || !coupled) return LAR_OK;
+    return lar_feb_fail(feb, node, LAR_ERROR_UNSUPPORTED,
+                        "'%s' is no uncoupled material, which FEBio wants within an uncoupled one; "
+                        "take its uncoupled form, or the coupled form of what is around it",
+                        type);
 }
 
 /* Where the bulk modulus of what is within stands: the outermost uncoupled material. */
@@ -272,6 +332,7 @@ static lar_status read_mixture(lar_feb *feb, const xmlNode *node, const xmlNode 
         const char *type;
         if (!lar_feb_is(solid, "solid")) continue;
         status = lar_feb_need_attribute(feb, solid, "type", &type);
+        if (!status) status = refuse_coupled(feb, solid, outer, type);
         if (status) return status;
         if (lar_feb_is_fibre(type)) {
             if (material->fibre.law != LAR_FIBRE_NONE)
@@ -337,6 +398,8 @@ static lar_status read_viscous(lar_feb *feb, const xmlNode *node, const xmlNode 
     if (status) return status;
     const bool active = lar_fibre_active(&material->fibre);
     outer = outermost(node, of, outer);
+    status = refuse_coupled(feb, inner, outer, type);
+    if (status) return status;
     status = is_mixture(type) ? read_mixture(feb, inner, outer, material)
                               : read_law_part(feb, inner, outer, type, material);
     if (!status && lar_fibre_active(&material->fibre) != active)
@@ -356,7 +419,7 @@ static lar_status read_material(lar_feb *feb, lar_feb_material *entry) {
     if (!material) return lar_feb_no_memory(feb, "the materials");
     material->name = lar_strdup(entry->name);
     if (!material->name) return lar_feb_no_memory(feb, "the materials");
-    status = read_density(feb, entry->node, material);
+    status = add_density(feb, entry->node, &material->density);
     if (status) return status;
     const xmlNode *outer = outermost(entry->node, type, NULL);
     if (is_viscous(type))

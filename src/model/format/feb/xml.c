@@ -179,15 +179,35 @@ lar_status lar_feb_notice_others(const lar_feb *feb, const xmlNode *parent, cons
     return status;
 }
 
-/* Of what there is much of the reader needs the id, and misses it. */
-lar_status lar_feb_notice_attributes(const lar_feb *feb, const xmlNode *parent) {
-    static const char known[] = "id name type lc node_set surface elem_set mat bc extend";
-    static const char not_looked_at[] = "Module Globals MeshData Output node n elem e quad4 pt";
+/* Elements of which there is much. */
+static const char many[] = "node n elem e quad4 pt";
+
+lar_status lar_feb_refuse_files(lar_feb *feb, const xmlNode *parent) {
     lar_status status = LAR_OK;
     for (xmlNode *child = lar_feb_first(parent); child && !status; child = lar_feb_next(child)) {
-        if (lar_feb_is_any(child, not_looked_at)) continue;
+        if (lar_feb_is_any(child, many)) continue;
+        if (lar_feb_attribute(feb, child, "from"))
+            return lar_feb_fail(feb, child, LAR_ERROR_UNSUPPORTED,
+                                "<%s> stands in another file (from=\"...\"); put it into this one",
+                                (const char *)child->name);
+        status = lar_feb_refuse_files(feb, child);
+    }
+    return status;
+}
+
+/* Of what there is much of the reader needs the id, and misses it. A curve is looked for where one
+ * can be followed, and refused at parameters. */
+lar_status lar_feb_notice_attributes(const lar_feb *feb, const xmlNode *parent) {
+    static const char known[] = "id name type node_set surface elem_set mat bc extend";
+    static const char with_curve[] = "value scale force traction pressure x y z T0 dtmax";
+    static const char not_looked_at[] = "Module Globals MeshData Output";
+    lar_status status = LAR_OK;
+    for (xmlNode *child = lar_feb_first(parent); child && !status; child = lar_feb_next(child)) {
+        if (lar_feb_is_any(child, not_looked_at) || lar_feb_is_any(child, many)) continue;
+        const bool curve = lar_feb_is_any(child, with_curve);
         for (const xmlAttr *one = child->properties; one && !status; one = one->next)
-            if (!is_among(one->name, known))
+            if (!is_among(one->name, known) &&
+                !(curve && xmlStrEqual(one->name, (const xmlChar *)"lc")))
                 status = lar_feb_notice(feb, child,
                                         "the attribute %s of <%s> is not known and was left out",
                                         (const char *)one->name, (const char *)child->name);
