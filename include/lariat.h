@@ -1389,7 +1389,8 @@ typedef struct lar_snapshot {
     lar_snapshot_tool *tool; /* [tools] */
 } lar_snapshot;
 
-/* Memory for snapshots of this session; lar_snapshot_destroy frees it, NULL is fine. */
+/* Memory for snapshots of this session; those of another one are refused (LAR_ERROR_ARGUMENT).
+ * lar_snapshot_destroy frees it, NULL is fine. */
 LAR_API lar_status lar_snapshot_create(const lar_session *session, lar_snapshot **snapshot,
                                        lar_error *error);
 LAR_API void lar_snapshot_destroy(lar_snapshot *snapshot);

@@ -240,6 +240,25 @@ static void late_snapshots_are_refused(void **unused) {
     close_bench(&b);
 }
 
+/* Another session's may be of fewer nodes, and nothing is written behind them. */
+static void snapshots_of_others_are_refused(void **unused) {
+    (void)unused;
+    static const brick small = {{1, 1, 1}, 0.01, 0, LAR_LAW_neo_hookean, 2e4, 4e5, 1000};
+    bench a = open_bench_of(brick_model(&small), NULL, 0, NULL), b = open_bench(NULL, 0, NULL);
+    lar_snapshot *snapshot = NULL;
+    int32_t fresh = 1;
+    DONE(lar_snapshot_create(a.session, &snapshot, &failure));
+    assert_int_equal(lar_session_snapshot(b.session, snapshot, 1, &failure), LAR_ERROR_ARGUMENT);
+    assert_non_null(strstr(failure.message, "made for it"));
+    assert_int_equal(lar_session_snapshot_poll(b.session, snapshot, &fresh, &failure),
+                     LAR_ERROR_ARGUMENT);
+    assert_int_equal(fresh, 0);
+    DONE(lar_session_snapshot(a.session, snapshot, 1, &failure));
+    lar_snapshot_destroy(snapshot);
+    close_bench(&a);
+    close_bench(&b);
+}
+
 /* Polling never waits: the present state before the start, then one state after the other. */
 static void polled_snapshots_come_by_and_by(void **unused) {
     (void)unused;
@@ -505,6 +524,7 @@ int main(void) {
                                        cmocka_unit_test(slow_motion_is_announced),
                                        cmocka_unit_test(status_is_finite_and_complete),
                                        cmocka_unit_test(snapshots_are_of_one_step),
+                                       cmocka_unit_test(snapshots_of_others_are_refused),
                                        cmocka_unit_test(late_snapshots_are_refused),
                                        cmocka_unit_test(polled_snapshots_come_by_and_by),
                                        cmocka_unit_test(tools_are_felt),
