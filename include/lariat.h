@@ -1042,7 +1042,8 @@ LAR_API lar_status lar_results_open(const char *folder, const lar_simulation *si
  * many times the room; lar_results_open writes it only where the scene's output says so. */
 LAR_API lar_status lar_results_open_surface(const char *folder, const lar_simulation *simulation,
                                             lar_results **results, lar_error *error);
-/* Adds the present state as a frame. LAR_ERROR_UNSTABLE when it is not finite: nothing is added. */
+/* Adds the present state as a frame, of any simulation of that model (else LAR_ERROR_ARGUMENT).
+ * LAR_ERROR_UNSTABLE when it is not finite: nothing is added. */
 LAR_API lar_status lar_results_add(lar_results *results, const lar_simulation *simulation,
                                    lar_error *error);
 /* Completes the series and frees the results, also on failure. NULL is fine. */
