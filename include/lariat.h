@@ -1482,9 +1482,10 @@ typedef struct lar_server_options {
                                  before included; 0: 4e9. One recording under way is ended there */
 } lar_server_options;
 
-/* Serves a session to viewers on a thread of its own. The session must outlive it. `options` may be
- * NULL. LAR_ERROR_IO when it cannot listen there, LAR_ERROR_UNSUPPORTED when this build has no
- * libwebsockets. docs/viewer-protocol.md. */
+/* Serves a session to viewers on a thread of its own. The session must outlive it; `model` is that
+ * of its simulation, no other (LAR_ERROR_ARGUMENT). `options` may be NULL. LAR_ERROR_IO when it
+ * cannot listen there, LAR_ERROR_UNSUPPORTED when this build has no libwebsockets.
+ * docs/viewer-protocol.md. */
 LAR_API lar_status lar_server_open(lar_session *session, const lar_model *model,
                                    const lar_server_options *options, lar_server **server,
                                    lar_error *error);
