@@ -576,7 +576,7 @@ typedef enum lar_isa {
 typedef struct lar_options {
     lar_element_kind element;
     lar_isa isa;
-    double time_step; /* seconds; 0 takes the model's */
+    double time_step; /* seconds, 1e-15 or more; 0 takes the model's */
 
     /* The parallel computer: processors in a grid, each with its part of the model. The state and
      * its hash are the same with all of these (docs/parallel.md). Strings are read by
@@ -1118,8 +1118,8 @@ typedef struct lar_session lar_session;
 
 typedef struct lar_session_options {
     double tick;            /* seconds of simulated time between exchanges; 0: 1 ms. In whole steps,
-                               lar_session_info.tick, for a clock of one's own: lar_options.tick
-                               makes it exact */
+                               10,000 at most, lar_session_info.tick, for a clock of one's own:
+                               lar_options.tick            makes it exact */
     double pace;            /* simulated seconds per second of the clock; 0: as fast as it goes */
     int paused;             /* not 0: starts paused */
     double tool_speed;      /* tools follow their devices no faster than this [m/s]; 0: 1 m/s */

@@ -21,6 +21,10 @@ static lar_status check_number(const char *name, double value, lar_error *error)
                     "lar_session_options.%s is %g; it must be between 0 and 1e6", name, value);
 }
 
+/* Of a tick: nobody is heard within one, closing, pausing and settings wait for its end. Some
+ * tenths of a second for a small body, some seconds for a large one. */
+static const double TICK_STEPS_MAX = 1e4, TICK_MIN = 1e-15;
+
 static lar_status choose(lar_session *session, const lar_session_options *asked, lar_error *error) {
     lar_session_options *o = &session->options;
     *o = *asked;
@@ -39,6 +43,11 @@ static lar_status choose(lar_session *session, const lar_session_options *asked,
     if (o->hash_every == 0) o->hash_every = 100;
     /* A tick of exactly ten steps must not become nine by rounding. */
     double steps = floor(o->tick / session->time_step * (1 + 1e-9));
+    if (steps > TICK_STEPS_MAX || o->tick < TICK_MIN)
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "a session cannot have ticks of %g s, %.3g steps; give %g to %g s, for "
+                        "closing, pausing and settings wait for the end of one",
+                        o->tick, steps, TICK_MIN, TICK_STEPS_MAX * session->time_step);
     session->tick_steps = steps < 1 ? 1 : (uint64_t)steps;
     session->pace.pace = o->pace;
     return LAR_OK;

@@ -228,7 +228,7 @@ static void snapshots_are_of_one_step(void **unused) {
 static void late_snapshots_are_refused(void **unused) {
     (void)unused;
     lar_session_options options = lar_session_options_default();
-    options.tick = 100; /* an endless one */
+    options.tick = 1; /* the longest */
     options.pace = 0;
     bench b = open_bench(NULL, 0, &options);
     lar_snapshot *snapshot = NULL;
@@ -341,6 +341,22 @@ static void tools_are_felt(void **unused) {
         DONE(lar_session_tool_force(b.session, BALL, NULL, &force, &failure));
     }
     assert_true(force.force[2] == 0);
+    close_bench(&b);
+}
+
+/* Whoever closes a session waits for the end of the tick. */
+static void endless_ticks_are_refused(void **unused) {
+    (void)unused;
+    bench b = {.model = hanging_block()};
+    const lar_options how = block_options(NULL, 0);
+    DONE(lar_simulation_create(b.model, &how, &b.simulation, &failure));
+    for (int i = 0; i < 4; i++) {
+        lar_session_options options = lar_session_options_default();
+        options.tick = (double[]){1.0001, 1e5, 1e-317, 1}[i];
+        lar_status status = lar_session_open(b.simulation, &options, &b.session, &failure);
+        assert_int_equal(status, i < 3 ? LAR_ERROR_ARGUMENT : LAR_OK);
+        if (status) assert_non_null(strstr(failure.message, "give 1e-15 to 1 s"));
+    }
     close_bench(&b);
 }
 
@@ -529,6 +545,7 @@ int main(void) {
                                        cmocka_unit_test(polled_snapshots_come_by_and_by),
                                        cmocka_unit_test(tools_are_felt),
                                        cmocka_unit_test(wrong_calls_are_refused),
+                                       cmocka_unit_test(endless_ticks_are_refused),
                                        cmocka_unit_test(goes_back_and_on),
                                        cmocka_unit_test(stops_with_a_message),
                                        cmocka_unit_test(everybody_at_once)};
