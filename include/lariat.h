@@ -678,7 +678,11 @@ LAR_API lar_status lar_simulation_advance(lar_simulation *simulation, uint64_t s
                                           lar_error *error);
 
 /* Called after every step with the number of steps done, by the thread that advances; 0 ends the
- * advance: at once, or, with several processors, some steps later in the same step on all. */
+ * advance: at once, or, with several processors, some steps later in the same step on all. Without
+ * grid and threads it may look at the simulation (state, fields, tools; lar_results_add and
+ * saving, too); with them at lar_simulation_steps, _time and what is constant. What
+ * advances or changes the simulation, or opens a session on it, is refused (LAR_ERROR_ARGUMENT).
+ * Nor may it destroy it. */
 typedef int lar_step_callback(void *context, uint64_t step);
 
 /* The same with a callback. Ask lar_simulation_steps where it ended. */
@@ -1449,7 +1453,8 @@ typedef struct lar_replay_report {
  * `different` says that it is equal. A run that breaks ends it with LAR_ERROR_UNSTABLE, and
  * `broken` says whether the recording ends with that, too. `callback` may be NULL: called with the
  * number of steps at the beginning, after every tick, reset and load, between two advances, so that
- * it may look at the simulation; 0 ends the replay. */
+ * it may look at the simulation, on any grid, and not change it (lar_step_callback); 0 ends the
+ * replay. */
 LAR_SIZED lar_status lar_replay(lar_simulation *simulation, const char *path,
                                 lar_step_callback *callback, void *context,
                                 lar_replay_report *report, lar_error *error);

@@ -131,6 +131,8 @@ lar_status lar_session_open(lar_simulation *simulation, const lar_session_option
     if (!simulation || !out)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "lar_session_open needs a simulation and a place for the session");
+    if (simulation->calling)
+        return lar_simulation_check_idle(simulation, "lar_session_open", error);
     if (__atomic_exchange_n(&simulation->sessions, 1, __ATOMIC_ACQ_REL))
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "a session is open on this simulation already; close it first, or create "
