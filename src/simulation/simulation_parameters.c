@@ -42,7 +42,7 @@ static double faster_with(const lar_domain *domain, int32_t material, const lar_
     double dt = domain->time_step, fastest = domain->fastest[lar_factor_of(material)];
     bool roomy = most <= LITTLE && 0.25 * dt * dt * fastest * most <= ROOM;
     if (most > 1 && roomy) return 1;
-    return most > 0 ? most : 1; /* nothing is made of it */
+    return most != 0 ? most : 1; /* nothing is made of it */
 }
 
 static lar_status check_value(const lar_material *made, int index, double value, lar_error *error) {

@@ -158,10 +158,10 @@ static void what_makes_no_sense_is_refused(void **unused) {
     (void)unused;
     lar_model *model = brick_model(&soft_brick);
     lar_simulation *simulation = start(model);
-    static const double bad[] = {0, -1, 1e12, INFINITY, NAN};
+    static const double bad[] = {0, -1, 1e12, INFINITY, NAN, 1e307, 1e308};
     const lar_tools before = simulation->tools;
     for (int k = 0; k < 2; k++)
-        for (int i = 0; i < 5; i++)
+        for (int i = 0; i < 7; i++)
             assert_int_equal(lar_simulation_set_parameter(simulation, 0, name[k], bad[i], &failure),
                              LAR_ERROR_ARGUMENT);
     assert_int_equal(lar_simulation_set_parameter(simulation, 0, "c1", 1, &failure),
