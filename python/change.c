@@ -123,7 +123,11 @@ static int assign_gravity(PyObject *me, PyObject *value, void *unused) {
     (void)unused;
     const changes *c = changes_of(me);
     double gravity[3];
-    bool given = value && value != Py_None;
+    bool given = value != Py_None;
+    if (!value) {
+        python_refuse_type("gravity: it cannot be deleted; None is the model's again");
+        return -1;
+    }
     if (given && !python_vector(value, "gravity", 3, gravity)) return -1;
     void *it = c->take(me, "gravity");
     if (!it) return -1;
