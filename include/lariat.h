@@ -815,14 +815,15 @@ LAR_API lar_status lar_simulation_set_stiffness(lar_simulation *simulation, int3
 enum { LAR_MATERIALS_SET_MAX = 16 };
 /* A parameter of a material's law: `name` as in scenes ("shear_modulus", "c1"), of its fibres'
  * "fibres.ksi" and so on, in pascal where it has a unit, before the stiffness that was set counts;
- * the material's other parameters stay as they are. NULL: all are the model's again. Density,
- * viscous terms and active stress stay the model's. Steps may be divided as with stiffness, and
- * what would have to be divided more, with the stiffness that is set, is refused: together they
- * make frequencies at rest at most twice as high (LAR_STIFFNESS_MAX of their square).
- * LAR_ERROR_ARGUMENT for that, for what the law does not have, which the message lists, for values
- * that no material can have, and beyond LAR_MATERIALS_SET_MAX. Strained tissue that becomes many
- * times as stiff at once springs back with what that adds, and may break the run: go there in
- * steps. Takes as long as creating the elements of that material. */
+ * the material's other parameters stay as they are (of coupled-neo-hookean "shear_modulus" and
+ * "bulk_modulus", too, from which mu and lambda follow: the other modulus stays). NULL: all are the
+ * model's again. Density, viscous terms and active stress stay the model's. Steps may be divided as
+ * with stiffness, and what would have to be divided more, with the stiffness that is set, is
+ * refused: together they make frequencies at rest at most twice as high (LAR_STIFFNESS_MAX of their
+ * square). LAR_ERROR_ARGUMENT for that, for what the law does not have, which the message lists,
+ * for values that no material can have, and beyond LAR_MATERIALS_SET_MAX. Strained tissue that
+ * becomes many times as stiff at once springs back with what that adds, and may break the run: go
+ * there in steps. Takes as long as creating the elements of that material. */
 LAR_API lar_status lar_simulation_set_parameter(lar_simulation *simulation, int32_t material,
                                                 const char *name, double value, lar_error *error);
 /* How active a material is, from 0 to 1 (it starts at 1): times what its model says at that time by
@@ -862,7 +863,7 @@ LAR_API lar_status lar_simulation_set_support_on(lar_simulation *simulation, con
 LAR_API void lar_simulation_gravity(const lar_simulation *simulation, double gravity[3]);
 LAR_API double lar_simulation_damping(const lar_simulation *simulation);
 LAR_API double lar_simulation_stiffness(const lar_simulation *simulation, int32_t material);
-/* Likewise, without its stiffness; 0 for what there is not. */
+/* Likewise, without its stiffness; not a number for what there is not. */
 LAR_API double lar_simulation_parameter(const lar_simulation *simulation, int32_t material,
                                         const char *name);
 /* What was set, without curve and wave. */
