@@ -341,8 +341,7 @@ lar_status lar_server_open(lar_session *session, const lar_model *model,
     lar_status status = choose_address(server, &asked, error);
     if (!status && server->simulated.model != model)
         status = lar_fail(error, LAR_ERROR_ARGUMENT,
-                          "lar_server_open: the session's simulation is of another model; give the "
-                          "one that it was created with");
+                          "the session's simulation is of another model; give that one");
     if (!status) status = lar_files_read(asked.folder, &server->files, error);
     if (!status) status = lar_scan_read(asked.scan, &server->scan, error);
     if (!status && asked.save_folder) status = lar_folder_make(asked.save_folder, error);

@@ -45,8 +45,8 @@ static lar_status choose(lar_session *session, const lar_session_options *asked,
     double steps = floor(o->tick / session->time_step * (1 + 1e-9));
     if (steps > TICK_STEPS_MAX || o->tick < TICK_MIN)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
-                        "a session cannot have ticks of %g s, %.3g steps; give %g to %g s, for "
-                        "closing, pausing and settings wait for the end of one",
+                        "a session cannot have ticks of %g s, %.3g steps: closing waits for the "
+                        "end of one; give %g to %g s",
                         o->tick, steps, TICK_MIN, TICK_STEPS_MAX * session->time_step);
     session->tick_steps = steps < 1 ? 1 : (uint64_t)steps;
     session->pace.pace = o->pace;

@@ -230,9 +230,7 @@ static lar_status check_snapshot(const lar_session *session, const lar_snapshot 
         snapshot->nodes == session->simulation->domain.model->mesh.node_count)
         return LAR_OK;
     return lar_fail(error, LAR_ERROR_ARGUMENT,
-                    "%s needs a session and a snapshot that lar_snapshot_create made for it; "
-                    "neither may be NULL",
-                    call);
+                    "%s needs a session and a snapshot that was created for it", call);
 }
 
 /* Who has a thread is woken; for one that has none, who asks does what is asked for. */

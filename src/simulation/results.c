@@ -248,8 +248,7 @@ lar_status lar_results_add(lar_results *results, const lar_simulation *simulatio
                         "lar_results_add needs results and a simulation; neither may be NULL");
     if (simulation->domain.model != results->model)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
-                        "lar_results_add: these results are of another model; open some for this "
-                        "simulation");
+                        "these results are of another model; open some for this simulation");
     lar_status status = lar_simulation_check_zero(simulation, "lar_results_add", error);
     if (!status) lar_simulation_state(simulation);
     if (!status) status = check_finite(simulation, error);

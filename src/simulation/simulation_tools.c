@@ -24,9 +24,7 @@ void lar_simulation_reserve_here(const lar_simulation *simulation) {
 
 static lar_status refuse_callback(const char *call, lar_error *error) {
     return lar_fail(error, LAR_ERROR_ARGUMENT,
-                    "%s: a callback of lar_simulation_advance_with or lar_replay may not do this; "
-                    "let it return 0, and do it when that has returned",
-                    call);
+                    "%s: a callback may not do this; let it return 0, and do it afterwards", call);
 }
 
 lar_status lar_simulation_check_zero(const lar_simulation *simulation, const char *call,

@@ -249,7 +249,7 @@ static void snapshots_of_others_are_refused(void **unused) {
     int32_t fresh = 1;
     DONE(lar_snapshot_create(a.session, &snapshot, &failure));
     assert_int_equal(lar_session_snapshot(b.session, snapshot, 1, &failure), LAR_ERROR_ARGUMENT);
-    assert_non_null(strstr(failure.message, "made for it"));
+    assert_non_null(strstr(failure.message, "created for it"));
     assert_int_equal(lar_session_snapshot_poll(b.session, snapshot, &fresh, &failure),
                      LAR_ERROR_ARGUMENT);
     assert_int_equal(fresh, 0);

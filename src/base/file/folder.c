@@ -51,11 +51,9 @@ char *lar_folder_join(const char *folder, const char *name) {
 lar_status lar_file_replaceable(const char *path, lar_error *error) {
     struct stat there;
     if (lstat(path, &there) != 0 || S_ISREG(there.st_mode)) return LAR_OK;
-    return lar_fail(
-        error, LAR_ERROR_IO,
-        "%s: is there and is no plain file but a folder, a link, a pipe or a device; it "
-        "is not replaced, choose another name",
-        path);
+    return lar_fail(error, LAR_ERROR_IO,
+                    "%s: is there and is no plain file (a link or a device?); choose another name",
+                    path);
 }
 
 lar_status lar_file_spare(const char *path, const void *magic, const char *what, lar_error *error) {
