@@ -576,7 +576,7 @@ typedef enum lar_isa {
 typedef struct lar_options {
     lar_element_kind element;
     lar_isa isa;
-    double time_step; /* seconds; 0 takes the model's */
+    double time_step; /* seconds, 1e-15 or more; 0 takes the model's */
 
     /* The parallel computer: processors in a grid, each with its part of the model. The state and
      * its hash are the same with all of these (docs/parallel.md). Strings are read by
@@ -678,7 +678,11 @@ LAR_API lar_status lar_simulation_advance(lar_simulation *simulation, uint64_t s
                                           lar_error *error);
 
 /* Called after every step with the number of steps done, by the thread that advances; 0 ends the
- * advance: at once, or, with several processors, some steps later in the same step on all. */
+ * advance: at once, or, with several processors, some steps later in the same step on all. Without
+ * grid and threads it may look at the simulation (state, fields, tools; lar_results_add and
+ * saving, too); with them at lar_simulation_steps, _time and what is constant. What
+ * advances or changes the simulation, or opens a session on it, is refused (LAR_ERROR_ARGUMENT).
+ * Nor may it destroy it. */
 typedef int lar_step_callback(void *context, uint64_t step);
 
 /* The same with a callback. Ask lar_simulation_steps where it ended. */
@@ -811,14 +815,15 @@ LAR_API lar_status lar_simulation_set_stiffness(lar_simulation *simulation, int3
 enum { LAR_MATERIALS_SET_MAX = 16 };
 /* A parameter of a material's law: `name` as in scenes ("shear_modulus", "c1"), of its fibres'
  * "fibres.ksi" and so on, in pascal where it has a unit, before the stiffness that was set counts;
- * the material's other parameters stay as they are. NULL: all are the model's again. Density,
- * viscous terms and active stress stay the model's. Steps may be divided as with stiffness, and
- * what would have to be divided more, with the stiffness that is set, is refused: together they
- * make frequencies at rest at most twice as high (LAR_STIFFNESS_MAX of their square).
- * LAR_ERROR_ARGUMENT for that, for what the law does not have, which the message lists, for values
- * that no material can have, and beyond LAR_MATERIALS_SET_MAX. Strained tissue that becomes many
- * times as stiff at once springs back with what that adds, and may break the run: go there in
- * steps. Takes as long as creating the elements of that material. */
+ * the material's other parameters stay as they are (of coupled-neo-hookean "shear_modulus" and
+ * "bulk_modulus", too, from which mu and lambda follow: the other modulus stays). NULL: all are the
+ * model's again. Density, viscous terms and active stress stay the model's. Steps may be divided as
+ * with stiffness, and what would have to be divided more, with the stiffness that is set, is
+ * refused: together they make frequencies at rest at most twice as high (LAR_STIFFNESS_MAX of their
+ * square). LAR_ERROR_ARGUMENT for that, for what the law does not have, which the message lists,
+ * for values that no material can have, and beyond LAR_MATERIALS_SET_MAX. Strained tissue that
+ * becomes many times as stiff at once springs back with what that adds, and may break the run: go
+ * there in steps. Takes as long as creating the elements of that material. */
 LAR_API lar_status lar_simulation_set_parameter(lar_simulation *simulation, int32_t material,
                                                 const char *name, double value, lar_error *error);
 /* How active a material is, from 0 to 1 (it starts at 1): times what its model says at that time by
@@ -858,7 +863,7 @@ LAR_API lar_status lar_simulation_set_support_on(lar_simulation *simulation, con
 LAR_API void lar_simulation_gravity(const lar_simulation *simulation, double gravity[3]);
 LAR_API double lar_simulation_damping(const lar_simulation *simulation);
 LAR_API double lar_simulation_stiffness(const lar_simulation *simulation, int32_t material);
-/* Likewise, without its stiffness; 0 for what there is not. */
+/* Likewise, without its stiffness; not a number for what there is not. */
 LAR_API double lar_simulation_parameter(const lar_simulation *simulation, int32_t material,
                                         const char *name);
 /* What was set, without curve and wave. */
@@ -1042,7 +1047,8 @@ LAR_API lar_status lar_results_open(const char *folder, const lar_simulation *si
  * many times the room; lar_results_open writes it only where the scene's output says so. */
 LAR_API lar_status lar_results_open_surface(const char *folder, const lar_simulation *simulation,
                                             lar_results **results, lar_error *error);
-/* Adds the present state as a frame. LAR_ERROR_UNSTABLE when it is not finite: nothing is added. */
+/* Adds the present state as a frame, of any simulation of that model (else LAR_ERROR_ARGUMENT).
+ * LAR_ERROR_UNSTABLE when it is not finite: nothing is added. */
 LAR_API lar_status lar_results_add(lar_results *results, const lar_simulation *simulation,
                                    lar_error *error);
 /* Completes the series and frees the results, also on failure. NULL is fine. */
@@ -1117,8 +1123,8 @@ typedef struct lar_session lar_session;
 
 typedef struct lar_session_options {
     double tick;            /* seconds of simulated time between exchanges; 0: 1 ms. In whole steps,
-                               lar_session_info.tick, for a clock of one's own: lar_options.tick
-                               makes it exact */
+                               10,000 at most, lar_session_info.tick, for a clock of one's own:
+                               lar_options.tick            makes it exact */
     double pace;            /* simulated seconds per second of the clock; 0: as fast as it goes */
     int paused;             /* not 0: starts paused */
     double tool_speed;      /* tools follow their devices no faster than this [m/s]; 0: 1 m/s */
@@ -1389,7 +1395,8 @@ typedef struct lar_snapshot {
     lar_snapshot_tool *tool; /* [tools] */
 } lar_snapshot;
 
-/* Memory for snapshots of this session; lar_snapshot_destroy frees it, NULL is fine. */
+/* Memory for snapshots of this session; those of another one are refused (LAR_ERROR_ARGUMENT).
+ * lar_snapshot_destroy frees it, NULL is fine. */
 LAR_API lar_status lar_snapshot_create(const lar_session *session, lar_snapshot **snapshot,
                                        lar_error *error);
 LAR_API void lar_snapshot_destroy(lar_snapshot *snapshot);
@@ -1447,7 +1454,8 @@ typedef struct lar_replay_report {
  * `different` says that it is equal. A run that breaks ends it with LAR_ERROR_UNSTABLE, and
  * `broken` says whether the recording ends with that, too. `callback` may be NULL: called with the
  * number of steps at the beginning, after every tick, reset and load, between two advances, so that
- * it may look at the simulation; 0 ends the replay. */
+ * it may look at the simulation, on any grid, and not change it (lar_step_callback); 0 ends the
+ * replay. */
 LAR_SIZED lar_status lar_replay(lar_simulation *simulation, const char *path,
                                 lar_step_callback *callback, void *context,
                                 lar_replay_report *report, lar_error *error);
@@ -1480,9 +1488,10 @@ typedef struct lar_server_options {
                                  before included; 0: 4e9. One recording under way is ended there */
 } lar_server_options;
 
-/* Serves a session to viewers on a thread of its own. The session must outlive it. `options` may be
- * NULL. LAR_ERROR_IO when it cannot listen there, LAR_ERROR_UNSUPPORTED when this build has no
- * libwebsockets. docs/viewer-protocol.md. */
+/* Serves a session to viewers on a thread of its own. The session must outlive it; `model` is that
+ * of its simulation, no other (LAR_ERROR_ARGUMENT). `options` may be NULL. LAR_ERROR_IO when it
+ * cannot listen there, LAR_ERROR_UNSUPPORTED when this build has no libwebsockets.
+ * docs/viewer-protocol.md. */
 LAR_API lar_status lar_server_open(lar_session *session, const lar_model *model,
                                    const lar_server_options *options, lar_server **server,
                                    lar_error *error);

@@ -501,8 +501,9 @@ static PyObject *batch_item(PyObject *me, Py_ssize_t index) {
         return NULL;
     }
     if (index < 0 || index >= self->count) {
-        PyErr_Format(PyExc_IndexError, "there is no member %zd; the batch has %d", index,
-                     self->count);
+        /* Python has added the count to a negative one. */
+        PyErr_Format(PyExc_IndexError, "there is no member %zd; the batch has %d",
+                     index < 0 ? index - self->count : index, self->count);
         return NULL;
     }
     PyObject *simulation = (PyObject *)self->member[index].simulation;

@@ -293,8 +293,9 @@ static lar_status move_tool(const move_call *m, python_member *member, size_t at
 static lar_status move_tools(python_member_call *call, python_member *member, int place,
                              bool caller, lar_error *error) {
     const move_call *m = call->context;
-    lar_status status = LAR_OK;
     (void)caller;
+    /* No step: what has broken off says so, as a tool of a simulation does. */
+    lar_status status = lar_simulation_advance(member->taken, 0, error);
     for (int c = 0; c < m->columns && !status; c++)
         status =
             move_tool(m, member, (size_t)place * (size_t)m->columns + (size_t)c, m->tool[c], error);

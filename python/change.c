@@ -123,7 +123,11 @@ static int assign_gravity(PyObject *me, PyObject *value, void *unused) {
     (void)unused;
     const changes *c = changes_of(me);
     double gravity[3];
-    bool given = value && value != Py_None;
+    bool given = value != Py_None;
+    if (!value) {
+        python_refuse_type("gravity: it cannot be deleted; None is the model's again");
+        return -1;
+    }
     if (given && !python_vector(value, "gravity", 3, gravity)) return -1;
     void *it = c->take(me, "gravity");
     if (!it) return -1;
@@ -240,8 +244,11 @@ static PyObject *parameter(PyObject *me, PyObject *args, PyObject *keywords) {
         !(name = python_text(word, "name")) || !one_material(me, material, &index))
         return NULL;
     lar_simulation *simulation = python_simulation_look((python_simulation *)me, "parameter");
-    return simulation ? PyFloat_FromDouble(lar_simulation_parameter(simulation, index, name))
-                      : NULL;
+    if (!simulation) return NULL;
+    double value = lar_simulation_parameter(simulation, index, name);
+    if (!isnan(value)) return PyFloat_FromDouble(value);
+    python_refuse("parameter: the material has no parameter %R", word);
+    return NULL;
 }
 
 /* `call` (material). */
@@ -403,8 +410,8 @@ static PyObject *force(PyObject *me, PyObject *args, PyObject *keywords) {
 PyMethodDef python_change_methods[] = {
     SHARED_METHODS,
     {"parameter", FUNCTION(parameter), METH_VARARGS | METH_KEYWORDS,
-     "parameter($self, material, name)\n--\n\nThat parameter now, without stiffness; 0.0 for what "
-     "the material does not have."},
+     "parameter($self, material, name)\n--\n\nThat parameter now, without stiffness. One that "
+     "the material does not have is refused."},
     {"force", FUNCTION(force), METH_VARARGS | METH_KEYWORDS,
      "force($self, node)\n--\n\nWhat was set on a node and on sets that it is in, together [N], a "
      "tuple."},

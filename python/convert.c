@@ -70,9 +70,14 @@ bool python_number(PyObject *source, const char *name, double *number) {
     return isfinite(*number) || python_refuse("%s: expected a finite number, got %R", name, source);
 }
 
+/* Texts and bytes are sequences, and no vectors. */
+static bool is_list(PyObject *source) {
+    return PySequence_Check(source) && !PyUnicode_Check(source) && !PyBytes_Check(source) &&
+           !PyByteArray_Check(source);
+}
+
 bool python_vector(PyObject *source, const char *name, int count, double *out) {
-    PyObject *list =
-        PySequence_Check(source) && !PyUnicode_Check(source) ? PySequence_Tuple(source) : NULL;
+    PyObject *list = is_list(source) ? PySequence_Tuple(source) : NULL;
     bool ok = list && PyTuple_Size(list) == count;
     for (int i = 0; i < count && ok; i++) {
         out[i] = PyFloat_AsDouble(PyTuple_GetItem(list, i));
@@ -81,7 +86,7 @@ bool python_vector(PyObject *source, const char *name, int count, double *out) {
     Py_XDECREF(list);
     if (ok) return true;
     PyErr_Clear();
-    if (PySequence_Check(source) && !PyUnicode_Check(source))
+    if (is_list(source))
         return python_refuse("%s: expected %d finite numbers, got %R", name, count, source);
     return python_refuse_type("%s: expected a sequence of %d numbers, got %R", name, count,
                               (PyObject *)Py_TYPE(source));

@@ -164,6 +164,9 @@ static int forget_earlier(run *r) {
     const char *path[2] = {report, state};
     for (int i = 0; i < 2; i++) {
         struct stat file, from;
+        lar_error error;
+        if (lar_file_replaceable(path[i], &error))
+            return cli_complain(&cli_run, CLI_FAILED, "%s", error.message);
         if (path[i] == state && !is_checkpoint(state)) continue;
         if (r->settings.resume && stat(r->settings.resume, &from) == 0 &&
             stat(path[i], &file) == 0 && file.st_dev == from.st_dev && file.st_ino == from.st_ino)
@@ -182,12 +185,9 @@ static int forget_earlier(run *r) {
 static int check_save(const run *r) {
     const char *path = r->settings.save;
     char trial[PATH_SIZE];
-    struct stat about;
     lar_error error;
-    if (stat(path, &about) == 0 && !S_ISREG(about.st_mode))
-        return cli_complain(&cli_run, CLI_FAILED,
-                            "%s: is there and is no file; choose another name", path);
-    if ((r->settings.out && lar_folder_make(r->settings.out, &error)) ||
+    if (lar_file_replaceable(path, &error) ||
+        (r->settings.out && lar_folder_make(r->settings.out, &error)) ||
         lar_file_spare(path, MAGIC, "not a checkpoint", &error))
         return cli_complain(&cli_run, CLI_FAILED, "%s", error.message);
     int length = snprintf(trial, sizeof trial, "%s.XXXXXX", path);

@@ -167,7 +167,6 @@ static int open_session(view *v) {
     options.pace = s->pace;
     options.paused = s->paused;
     options.priority = (int)s->priority;
-    options.record = s->record;
     if (s->record && !s->force && access(s->record, F_OK) == 0)
         return cli_complain(&cli_view, CLI_FAILED,
                             "%s is there already; --force replaces it, or take another name",
@@ -178,6 +177,9 @@ static int open_session(view *v) {
     int status = CLI_DONE;
     for (int i = 0; i < s->devices.count && !status; i++) status = attach(v, s->devices.text[i]);
     if (!status) status = open_server(v);
+    /* When all else is sound: one that is refused leaves no recording, and replaces none. */
+    if (!status && s->record && lar_session_record(v->session, s->record, &error))
+        status = fail_by(v, &error);
     if (!status && lar_session_start(v->session, &error)) status = fail_by(v, &error);
     return status;
 }
@@ -458,10 +460,11 @@ static int view_main(int argc, char **argv) {
                  "simulated seconds per second of the clock (1); 0: as fast as it goes", &s.pace, 0,
                  100),
         CLI_FLAG("--paused", "wait for play", &s.paused),
-        CLI_COUNT("--priority", "N",
-                  "the threads that compute go before all ordinary ones of the\nmachine (SCHED_FIFO); "
-                  "needs the right to (ulimit -r)",
-                  &s.priority, 1, 99),
+        CLI_COUNT(
+            "--priority", "N",
+            "the threads that compute go before all ordinary ones of the\nmachine (SCHED_FIFO); "
+            "needs the right to (ulimit -r)",
+            &s.priority, 1, 99),
         CLI_REAL("--seconds", "S", "end after so many seconds of the clock; without: at Ctrl-C",
                  &s.seconds, 1e-3, 1e9),
         CLI_FLAG("--open", "open the address in a browser, where there is a display", &s.open),

@@ -127,6 +127,10 @@ static lar_status check_options(work *w) {
                       "other, set one of them to 0");
     if (o->title && !*o->title)
         return refuse(w, "%s", "the title is empty; leave it NULL or name one");
+    if (o->fibre_region && !o->fibres)
+        return refuse(w, "%s",
+                      "a region is named for fibres, but no fibres are asked for; add a rule for "
+                      "them");
     if (o->apart && o->fuse)
         return refuse(w, "%s",
                       "regions are to be fused and to be bodies of their own, apart; ask for one");

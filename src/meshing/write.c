@@ -38,6 +38,8 @@ static lar_status write_all(const lar_meshing *m, char *const path[FILES], char 
                             lar_error *error) {
     lar_status status = LAR_OK;
     int written = 0;
+    for (int i = 0; !status && i < FILES; i++)
+        if (is_there(m, i)) status = lar_file_replaceable(path[i], error);
     for (; !status && written < FILES; written += !status)
         status = write_file(m, written, fresh[written], error);
     for (int i = 0; !status && i < FILES; i++)

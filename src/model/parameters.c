@@ -27,32 +27,54 @@ lar_material lar_parameters_give(const lar_model *model, const lar_parameter_ent
     return made;
 }
 
+static bool is_of_fibres(int k) {
+    return k >= LAR_LAW_PARAMETERS && k < LAR_PARAMETER_VALUES;
+}
+
 const char *lar_parameter_name(const lar_material *material, int k) {
     const lar_law_row *law = &lar_law_table[material->law];
-    if (k >= LAR_LAW_PARAMETERS)
+    if (is_of_fibres(k))
         return lar_fibre_parameter_name[material->fibre.law][k - LAR_LAW_PARAMETERS];
-    return k < law->count ? law->parameter[k].name : NULL;
+    if (k < LAR_PARAMETER_VALUES) return k < law->count ? law->parameter[k].name : NULL;
+    if (material->law != LAR_LAW_coupled_neo_hookean) return NULL;
+    return k == LAR_PARAMETER_SHEAR ? "shear_modulus" : "bulk_modulus";
 }
 
 int lar_parameter_find(const lar_material *material, const char *name) {
     bool fibres = strncmp(name, FIBRES, strlen(FIBRES)) == 0;
-    int first = fibres ? LAR_LAW_PARAMETERS : 0;
-    int end = fibres ? LAR_PARAMETER_VALUES : LAR_LAW_PARAMETERS;
     if (fibres) name += strlen(FIBRES);
-    for (int k = first; k < end; k++)
-        if (lar_parameter_name(material, k) && strcmp(lar_parameter_name(material, k), name) == 0)
-            return k;
+    for (int k = 0; k < LAR_PARAMETER_NAMES; k++) {
+        const char *one = is_of_fibres(k) == fibres ? lar_parameter_name(material, k) : NULL;
+        if (one && strcmp(one, name) == 0) return k;
+    }
     return -1;
+}
+
+double lar_parameter_get(const lar_model *model, const lar_parameter_entry *entry, int k) {
+    const lar_law_row *law = &lar_law_table[model->material[entry->material].law];
+    if (k < LAR_PARAMETER_VALUES) return entry->value[k];
+    return k == LAR_PARAMETER_SHEAR ? law->shear(entry->value) : law->bulk(entry->value);
+}
+
+void lar_parameter_put(const lar_model *model, lar_parameter_entry *entry, int k, double value) {
+    if (k < LAR_PARAMETER_VALUES) {
+        entry->value[k] = value;
+        return;
+    }
+    double shear =
+        k == LAR_PARAMETER_SHEAR ? value : lar_parameter_get(model, entry, LAR_PARAMETER_SHEAR);
+    double bulk =
+        k == LAR_PARAMETER_BULK ? value : lar_parameter_get(model, entry, LAR_PARAMETER_BULK);
+    lar_law_table[model->material[entry->material].law].from_moduli(shear, bulk, entry->value);
 }
 
 void lar_parameter_names(const lar_material *material, char *out, size_t size) {
     size_t length = 0;
     *out = '\0';
-    for (int k = 0; k < LAR_PARAMETER_VALUES; k++) {
+    for (int k = 0; k < LAR_PARAMETER_NAMES; k++) {
         if (!lar_parameter_name(material, k) || length >= size) continue;
-        length +=
-            (size_t)snprintf(out + length, size - length, "%s%s%s", length ? ", " : "",
-                             k < LAR_LAW_PARAMETERS ? "" : FIBRES, lar_parameter_name(material, k));
+        length += (size_t)snprintf(out + length, size - length, "%s%s%s", length ? ", " : "",
+                                   is_of_fibres(k) ? FIBRES : "", lar_parameter_name(material, k));
     }
 }
 

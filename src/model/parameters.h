@@ -14,8 +14,14 @@
 #include "model/model.h"
 #include "model/settings.h"
 
-/* The law's, then those of fibres. */
-enum { LAR_PARAMETER_VALUES = LAR_LAW_PARAMETERS + LAR_FIBRE_PARAMETERS };
+/* The law's, then those of fibres. Two names more stand for no value of their own: shear_modulus
+ * and bulk_modulus of a law that has Lame's numbers, for scenes may give it these. */
+enum {
+    LAR_PARAMETER_VALUES = LAR_LAW_PARAMETERS + LAR_FIBRE_PARAMETERS,
+    LAR_PARAMETER_SHEAR = LAR_PARAMETER_VALUES,
+    LAR_PARAMETER_BULK,
+    LAR_PARAMETER_NAMES
+};
 
 typedef struct lar_parameter_entry {
     int32_t material, padding;
@@ -42,6 +48,10 @@ lar_material lar_parameters_give(const lar_model *model, const lar_parameter_ent
 int lar_parameter_find(const lar_material *material, const char *name);
 /* The name of a value, without "fibres."; NULL: the material has none there. */
 const char *lar_parameter_name(const lar_material *material, int k);
+/* What a name stands for now, and in its place another value; from one of the two moduli follow
+ * both of Lame's numbers, the other modulus stays. */
+double lar_parameter_get(const lar_model *model, const lar_parameter_entry *entry, int k);
+void lar_parameter_put(const lar_model *model, lar_parameter_entry *entry, int k, double value);
 /* All names, with commas between them. */
 void lar_parameter_names(const lar_material *material, char *out, size_t size);
 

@@ -339,6 +339,9 @@ lar_status lar_server_open(lar_session *session, const lar_model *model,
     server->listener = server->spare = -1;
     server->save_max = asked.save_max > 0 ? asked.save_max : SAVE_MAX;
     lar_status status = choose_address(server, &asked, error);
+    if (!status && server->simulated.model != model)
+        status = lar_fail(error, LAR_ERROR_ARGUMENT,
+                          "the session's simulation is of another model; give that one");
     if (!status) status = lar_files_read(asked.folder, &server->files, error);
     if (!status) status = lar_scan_read(asked.scan, &server->scan, error);
     if (!status && asked.save_folder) status = lar_folder_make(asked.save_folder, error);

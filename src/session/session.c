@@ -21,6 +21,10 @@ static lar_status check_number(const char *name, double value, lar_error *error)
                     "lar_session_options.%s is %g; it must be between 0 and 1e6", name, value);
 }
 
+/* Of a tick: nobody is heard within one, closing, pausing and settings wait for its end. Some
+ * tenths of a second for a small body, some seconds for a large one. */
+static const double TICK_STEPS_MAX = 1e4, TICK_MIN = 1e-15;
+
 static lar_status choose(lar_session *session, const lar_session_options *asked, lar_error *error) {
     lar_session_options *o = &session->options;
     *o = *asked;
@@ -39,6 +43,11 @@ static lar_status choose(lar_session *session, const lar_session_options *asked,
     if (o->hash_every == 0) o->hash_every = 100;
     /* A tick of exactly ten steps must not become nine by rounding. */
     double steps = floor(o->tick / session->time_step * (1 + 1e-9));
+    if (steps > TICK_STEPS_MAX || o->tick < TICK_MIN)
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "a session cannot have ticks of %g s, %.3g steps: closing waits for the "
+                        "end of one; give %g to %g s",
+                        o->tick, steps, TICK_MIN, TICK_STEPS_MAX * session->time_step);
     session->tick_steps = steps < 1 ? 1 : (uint64_t)steps;
     session->pace.pace = o->pace;
     return LAR_OK;
@@ -122,6 +131,8 @@ lar_status lar_session_open(lar_simulation *simulation, const lar_session_option
     if (!simulation || !out)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "lar_session_open needs a simulation and a place for the session");
+    if (simulation->calling)
+        return lar_simulation_check_idle(simulation, "lar_session_open", error);
     if (__atomic_exchange_n(&simulation->sessions, 1, __ATOMIC_ACQ_REL))
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "a session is open on this simulation already; close it first, or create "

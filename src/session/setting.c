@@ -24,10 +24,9 @@ static lar_status set_support(const lar_setting *setting, lar_simulation *simula
 static lar_status set_parameter(const lar_setting *setting, lar_simulation *simulation,
                                 lar_error *error) {
     double index = setting->value[1];
-    bool good = index >= -1 && index < LAR_PARAMETER_VALUES;
-    return lar_simulation_set_parameter_at(simulation, setting->of,
-                                           good ? (int)index : LAR_PARAMETER_VALUES,
-                                           setting->value[0], error);
+    bool good = index >= -1 && index < LAR_PARAMETER_NAMES;
+    return lar_simulation_set_parameter_at(
+        simulation, setting->of, good ? (int)index : LAR_PARAMETER_NAMES, setting->value[0], error);
 }
 
 uint32_t lar_setting_members(const lar_setting *setting, const lar_simulation *simulation) {

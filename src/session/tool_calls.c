@@ -194,6 +194,7 @@ int32_t lar_session_force_history(const lar_session *session, int32_t tool, uint
 /* A snapshot, and what it was asked for. */
 typedef struct own_snapshot {
     lar_snapshot shown;
+    const lar_session *of;
     uint64_t asked; /* by polling; 0: not yet */
     lar_snapshot_tool tool[LAR_TOOLS_MAX];
 } own_snapshot;
@@ -209,6 +210,7 @@ lar_status lar_snapshot_create(const lar_session *session, lar_snapshot **out, l
         free(own);
         return lar_fail_memory(error, (size_t)nodes * sizeof *own->shown.u, "a snapshot");
     }
+    own->of = session;
     own->shown.nodes = nodes;
     own->shown.tool = own->tool;
     *out = &own->shown;
@@ -223,9 +225,12 @@ void lar_snapshot_destroy(lar_snapshot *snapshot) {
 
 static lar_status check_snapshot(const lar_session *session, const lar_snapshot *snapshot,
                                  const char *call, lar_error *error) {
-    if (session && snapshot) return LAR_OK;
+    /* A later session may have the address of one that was closed. */
+    if (session && snapshot && ((const own_snapshot *)snapshot)->of == session &&
+        snapshot->nodes == session->simulation->domain.model->mesh.node_count)
+        return LAR_OK;
     return lar_fail(error, LAR_ERROR_ARGUMENT,
-                    "%s needs a session and a snapshot; neither may be NULL", call);
+                    "%s needs a session and a snapshot that was created for it", call);
 }
 
 /* Who has a thread is woken; for one that has none, who asks does what is asked for. */

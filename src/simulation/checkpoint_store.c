@@ -110,11 +110,7 @@ static lar_status write_file(const char *path, const unsigned char *data, size_t
 }
 
 lar_status lar_checkpoint_store(const char *path, const lar_bytes *bytes, lar_error *error) {
-    /* The new file takes the place of the old one, which may be a device. */
-    struct stat about;
-    if (stat(path, &about) == 0 && !S_ISREG(about.st_mode))
-        return lar_fail(error, LAR_ERROR_IO, "%s: is there and is no file; choose another name",
-                        path);
-    lar_status status = lar_file_spare(path, LAR_CHECKPOINT_MAGIC, "not a checkpoint", error);
+    lar_status status = lar_file_replaceable(path, error);
+    if (!status) status = lar_file_spare(path, LAR_CHECKPOINT_MAGIC, "not a checkpoint", error);
     return status ? status : write_file(path, bytes->data, bytes->size, error);
 }

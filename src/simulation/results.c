@@ -26,6 +26,7 @@ static const struct {
                              {LAR_FIELD_ENERGY, "energy"}};
 
 struct lar_results {
+    const lar_model *model;
     lar_series series;
     lar_surface_results surface;
     double (*displacement)[3], (*velocity)[3]; /* NULL when not asked for */
@@ -111,6 +112,7 @@ static lar_status open_results(const char *folder, const lar_simulation *simulat
                         "results; none may be NULL or empty");
     lar_results *made = lar_calloc(1, sizeof *made);
     if (!made) return lar_fail_memory(error, sizeof *made, "the results");
+    made->model = simulation->domain.model;
     made->probes.descriptor = -1;
     lar_status status = open_folder(made, folder, simulation->domain.model, surface, error);
     if (status)
@@ -244,6 +246,9 @@ lar_status lar_results_add(lar_results *results, const lar_simulation *simulatio
     if (!results || !simulation)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "lar_results_add needs results and a simulation; neither may be NULL");
+    if (simulation->domain.model != results->model)
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "these results are of another model; open some for this simulation");
     lar_status status = lar_simulation_check_zero(simulation, "lar_results_add", error);
     if (!status) lar_simulation_state(simulation);
     if (!status) status = check_finite(simulation, error);

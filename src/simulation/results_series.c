@@ -77,6 +77,8 @@ lar_status lar_series_complete(lar_series *series, lar_error *error) {
 /* ---- earlier runs --------------------------------------------------------------------------- */
 
 static lar_status remove_file(const char *path, lar_error *error) {
+    lar_status status = lar_file_replaceable(path, error);
+    if (status) return status;
     if (unlink(path) == 0 || errno == ENOENT) return LAR_OK;
     return lar_fail(error, LAR_ERROR_IO,
                     "%s: is of an earlier run and cannot be removed: %s; check the folder and its "

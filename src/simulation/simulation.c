@@ -423,9 +423,11 @@ lar_status lar_simulation_advance_with(lar_simulation *simulation, uint64_t step
     if (!simulation)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "lar_simulation_advance needs a simulation, not NULL");
-    lar_status status = lar_simulation_check_zero(simulation, "lar_simulation_advance", error);
+    lar_status status = lar_simulation_check_idle(simulation, "lar_simulation_advance", error);
     if (status) return status;
+    simulation->calling = callback != NULL;
     status = lar_simulation_compute(simulation, steps, callback, context, error);
+    simulation->calling = 0;
     bool may_gather = !status || status == LAR_ERROR_UNSTABLE;
     if (may_gather && simulation->computer && simulation->computer->control) {
         lar_error lost;

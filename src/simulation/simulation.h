@@ -36,6 +36,9 @@ struct lar_simulation {
     double taken;           /* by contacts, as of the last report [J] */
     int32_t sessions;       /* open on it: 0 or 1. Atomic */
     int32_t held;           /* by the thread of a session, which alone may change it. Atomic */
+    int32_t calling;        /* a callback: 1 within an advance, 2 between two; then it may be looked
+                               at, and not be changed (within an advance of several processors or
+                               threads not even that). 0: no callback is under way */
 };
 
 /* The state as it is now: everything that looks at a simulation's state begins with this. */
@@ -72,6 +75,9 @@ void lar_simulation_reserve_here(const lar_simulation *simulation);
 lar_status lar_simulation_check_zero(const lar_simulation *simulation, const char *call,
                                      lar_error *error);
 
+/* The same, and what a callback calls: for what begins anew. */
+lar_status lar_simulation_check_idle(const lar_simulation *simulation, const char *call,
+                                     lar_error *error);
 /* The same, and what has lost a processor: for calls that change something. */
 lar_status lar_simulation_check_change(const lar_simulation *simulation, const char *call,
                                        lar_error *error);

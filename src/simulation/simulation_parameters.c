@@ -42,7 +42,7 @@ static double faster_with(const lar_domain *domain, int32_t material, const lar_
     double dt = domain->time_step, fastest = domain->fastest[lar_factor_of(material)];
     bool roomy = most <= LITTLE && 0.25 * dt * dt * fastest * most <= ROOM;
     if (most > 1 && roomy) return 1;
-    return most > 0 ? most : 1; /* nothing is made of it */
+    return most != 0 ? most : 1; /* nothing is made of it */
 }
 
 static lar_status check_value(const lar_material *made, int index, double value, lar_error *error) {
@@ -59,14 +59,15 @@ static lar_status check_value(const lar_material *made, int index, double value,
 lar_status lar_simulation_set_parameter_at(lar_simulation *simulation, int32_t material, int index,
                                            double value, lar_error *error) {
     const lar_model *model = simulation->domain.model;
-    if (material < 0 || material >= model->material_count || index >= LAR_PARAMETER_VALUES)
+    if (material < 0 || material >= model->material_count || index >= LAR_PARAMETER_NAMES ||
+        (index >= LAR_PARAMETER_VALUES && !lar_parameter_name(&model->material[material], index)))
         return lar_fail(error, LAR_ERROR_ARGUMENT, "there is no parameter %d of material %ld",
                         index, (long)material);
     lar_parameters wanted = simulation->tools.parameters;
     lar_parameter_entry entry = lar_parameters_of_model(model, material);
     if (index >= 0) {
         entry = lar_parameters_at(&wanted, model, material);
-        entry.value[index] = value + 0.0; /* no -0 */
+        lar_parameter_put(model, &entry, index, value + 0.0); /* no -0 */
         const lar_material made = lar_parameters_give(model, &entry);
         lar_status status = check_value(&made, index, value, error);
         if (status) return status;
@@ -105,9 +106,10 @@ lar_status lar_simulation_set_parameter(lar_simulation *simulation, int32_t mate
 double lar_simulation_parameter(const lar_simulation *simulation, int32_t material,
                                 const char *name) {
     int index;
-    if (!simulation || !name ||
-        lar_simulation_parameter_index(simulation->domain.model, material, name, &index, NULL))
-        return 0;
-    return lar_parameters_at(&simulation->tools.parameters, simulation->domain.model, material)
-        .value[index];
+    if (!simulation || !name) return NAN;
+    const lar_model *model = simulation->domain.model;
+    if (lar_simulation_parameter_index(model, material, name, &index, NULL)) return NAN;
+    const lar_parameter_entry entry =
+        lar_parameters_at(&simulation->tools.parameters, model, material);
+    return lar_parameter_get(model, &entry, index);
 }

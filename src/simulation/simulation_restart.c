@@ -52,7 +52,7 @@ static void go_to_start(lar_simulation *simulation) {
 }
 
 lar_status lar_simulation_reset(lar_simulation *simulation, lar_error *error) {
-    lar_status status = lar_simulation_check_zero(simulation, "lar_simulation_reset", error);
+    lar_status status = lar_simulation_check_idle(simulation, "lar_simulation_reset", error);
     if (!status) status = check_whole(simulation, error);
     if (status) return status;
     go_to_start(simulation);
@@ -132,7 +132,7 @@ lar_status lar_simulation_save(const lar_simulation *simulation, const char *pat
 
 lar_status lar_simulation_load(lar_simulation *simulation, const char *path, lar_error *error) {
     lar_bytes bytes = {0};
-    lar_status status = lar_simulation_check_zero(simulation, "lar_simulation_load", error);
+    lar_status status = lar_simulation_check_idle(simulation, "lar_simulation_load", error);
     if (!status) status = check_path(path, "lar_simulation_load", error);
     if (!status) status = lar_checkpoint_read(path, &bytes, error);
     if (!status) status = lar_simulation_unpack(simulation, path, &bytes, error);
@@ -214,7 +214,9 @@ lar_status lar_simulation_save_to(const lar_simulation *simulation, lar_saved *s
 
 lar_status lar_simulation_load_from(lar_simulation *simulation, const lar_saved *saved,
                                     lar_error *error) {
-    lar_status status = check_saved(simulation, saved, "lar_simulation_load_from", error);
+    static const char call[] = "lar_simulation_load_from";
+    lar_status status = lar_simulation_check_idle(simulation, call, error);
+    if (!status) status = check_saved(simulation, saved, call, error);
     if (!status && !saved->full)
         status = lar_fail(error, LAR_ERROR_ARGUMENT,
                           "nothing has been saved there; call lar_simulation_save_to before");

@@ -22,6 +22,11 @@ void lar_simulation_reserve_here(const lar_simulation *simulation) {
     held_here = simulation;
 }
 
+static lar_status refuse_callback(const char *call, lar_error *error) {
+    return lar_fail(error, LAR_ERROR_ARGUMENT,
+                    "%s: a callback may not do this; let it return 0, and do it afterwards", call);
+}
+
 lar_status lar_simulation_check_zero(const lar_simulation *simulation, const char *call,
                                      lar_error *error) {
     if (!simulation)
@@ -29,6 +34,7 @@ lar_status lar_simulation_check_zero(const lar_simulation *simulation, const cha
     if (simulation->computer && simulation->computer->first != 0)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "%s is for processor 0; the others call lar_simulation_serve", call);
+    if (simulation->calling == 1 && simulation->computer) return refuse_callback(call, error);
     if (!__atomic_load_n(&simulation->held, __ATOMIC_ACQUIRE) || held_here == simulation)
         return LAR_OK;
     return lar_fail(
@@ -38,9 +44,15 @@ lar_status lar_simulation_check_zero(const lar_simulation *simulation, const cha
         call);
 }
 
+lar_status lar_simulation_check_idle(const lar_simulation *simulation, const char *call,
+                                     lar_error *error) {
+    lar_status status = lar_simulation_check_zero(simulation, call, error);
+    return !status && simulation->calling ? refuse_callback(call, error) : status;
+}
+
 lar_status lar_simulation_check_change(const lar_simulation *simulation, const char *call,
                                        lar_error *error) {
-    lar_status status = lar_simulation_check_zero(simulation, call, error);
+    lar_status status = lar_simulation_check_idle(simulation, call, error);
     if (!status && simulation->computer && simulation->computer->broken)
         status = lar_computer_refuse(error);
     return status;
@@ -115,7 +127,7 @@ static lar_status check_speed(const lar_tool *tool, const lar_tool_pose *now,
 lar_status lar_simulation_tool_move(lar_simulation *simulation, int32_t index,
                                     const lar_tool_pose *pose, uint64_t steps, lar_error *error) {
     lar_status status = check_tool(simulation, index, pose, error);
-    if (!status) status = lar_simulation_check_zero(simulation, "lar_simulation_tool_move", error);
+    if (!status) status = lar_simulation_check_idle(simulation, "lar_simulation_tool_move", error);
     if (status) return status;
     const lar_tool *tool = &simulation->list.tool[index];
     if (tool->shape == LAR_TOOL_NONE)

@@ -14,13 +14,17 @@
 #include "step/materials.h"
 #include "step/viscous_history.h"
 
+/* Of a step, and of a host's tick [s]. No matter is so fast, and in steps of 1e-320 s nothing
+ * moves. */
+static const double SHORTEST = 1e-15;
+
 /* Steps that fit into ticks of the host's clock: the longest that are not longer. */
 static lar_status fit_tick(lar_domain *domain, double tick, bool may_shorten, lar_error *error) {
     static const double ROUNDING = 1e-9;
     if (tick == 0) return LAR_OK;
-    if (!(tick > 0) || !isfinite(tick))
+    if (!(tick >= SHORTEST) || !isfinite(tick))
         return lar_fail(error, LAR_ERROR_ARGUMENT,
-                        "%s: a tick must be a positive number of seconds, or 0 for none",
+                        "%s: a tick must be 1e-15 s at least, or 0 for none",
                         lar_model_source(domain->model));
     double steps = fmax(1, ceil(tick / domain->time_step * (1 - ROUNDING)));
     if (may_shorten) domain->time_step = tick / steps;
@@ -49,9 +53,9 @@ static lar_status choose_step(lar_domain *domain, const lar_options *options, la
         domain->time_step = lar_auto_step(model, domain->stable_step);
         return fit_tick(domain, options->tick, true, error);
     }
-    if (!(wanted > 0) || !isfinite(wanted))
+    if (!(wanted >= SHORTEST) || !isfinite(wanted))
         return lar_fail(error, LAR_ERROR_ARGUMENT,
-                        "%s: the time step must be a positive number of seconds, or auto",
+                        "%s: the time step must be 1e-15 s at least, or auto",
                         lar_model_source(model));
     if (wanted > domain->stable_step)
         return lar_fail(error, LAR_ERROR_MODEL,

@@ -87,6 +87,20 @@ mkfifo "$SCRATCH/linked/probes.csv"
 expect 1 timeout 20 "$LARIAT" run "$SCRATCH/beam.yaml" --steps 1 --out "$SCRATCH/linked"
 complains 'probes.csv: cannot be opened'
 
+# Results, report and state take the place of no link, and nothing is computed first.
+for name in beam.pvd beam_000000.vtu run.json beam.checkpoint; do
+    rm -rf "$SCRATCH/linked"
+    mkdir "$SCRATCH/linked"
+    : >"$SCRATCH/behind"
+    ln -s "$SCRATCH/behind" "$SCRATCH/linked/$name"
+    expect 1 "$LARIAT" run "$SCRATCH/beam.yaml" --steps 1 --out "$SCRATCH/linked"
+    complains "$name: is there and is no plain file"
+    [ -L "$SCRATCH/linked/$name" ] && [ ! -s "$SCRATCH/behind" ] || fail "$name: not the link it was"
+done
+ln -sf "$SCRATCH/behind" "$SCRATCH/state"
+expect 1 "$LARIAT" run "$SCRATCH/beam.yaml" --steps 1 --save "$SCRATCH/state"
+complains 'state: is there and is no plain file'
+
 # Many frames: the series is not written anew for each, but complete at the end.
 printf 'output: { every: 1.0e-9, fields: [] }\n' | cat "$beam" - >"$SCRATCH/beam.yaml"
 expect 0 "$LARIAT" run "$SCRATCH/beam.yaml" --steps 2500 --out "$SCRATCH/many"

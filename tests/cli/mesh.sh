@@ -182,6 +182,14 @@ if [ -c /dev/full ]; then
     done
 fi
 
+# A link in the place of one of them stays, and so does everything else.
+rm -rf linked
+mkdir linked
+ln -s ../behind linked/liver_surface.vtp
+expect 1 "$LARIAT" mesh two.nrrd --label liver --elements 100 --force --out linked
+complains 'liver_surface.vtp: is there and is no plain file'
+[ "$(ls linked)" = liver_surface.vtp ] && [ ! -e behind ] || fail "beside a link: $(ls linked)"
+
 # The same input, the same bytes; figures as JSON.
 for out in first second; do
     expect 0 "$LARIAT" mesh cut.nrrd --label liver --size 0.004 --out $out --json

@@ -92,4 +92,23 @@ complains 'none.machine'
 expect 1 "$LARIAT" predict demo/uterus.yaml --grid 2x1x1 --svg none/step.svg
 complains 'none/step.svg'
 silent
+# What is there and is no plain file stays what it is.
+mkfifo pipe.svg
+: >real.csv
+ln -s real.csv link.csv
+ln -s nowhere broken.svg
+expect 1 timeout 20 "$LARIAT" predict demo/uterus.yaml --grid 2x1x1 --svg pipe.svg
+complains 'pipe.svg: is there and is no plain file'
+[ -p pipe.svg ] || fail "a pipe was replaced by a picture"
+expect 1 "$LARIAT" predict demo/uterus.yaml --grid 2x1x1 --trace link.csv
+complains 'link.csv: is there and is no plain file'
+[ -L link.csv ] && [ ! -s real.csv ] || fail "a link was replaced or followed"
+expect 1 "$LARIAT" predict demo/uterus.yaml --grid 2x1x1 --svg broken.svg
+[ -L broken.svg ] || fail "a link to nothing was replaced"
+if mknod null.svg c 1 3 2>/dev/null; then
+    expect 1 "$LARIAT" predict demo/uterus.yaml --grid 2x1x1 --svg null.svg
+    complains 'null.svg: is there and is no plain file'
+    [ -c null.svg ] || fail "a device was replaced by a picture"
+fi
+silent
 finish "predict: machines, files, growing bodies, refusals"

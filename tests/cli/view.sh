@@ -199,6 +199,12 @@ expect 0 "$LARIAT" view $scene --port 0 --seconds 0.3 --record way.recording
 expect 1 "$LARIAT" view $scene --port 0 --seconds 0.1 --record way.recording
 complains 'way.recording is there already; --force replaces it'
 expect 0 "$LARIAT" view $scene --port 0 --seconds 0.1 --record way.recording --force
+# A command line that is refused leaves none, and replaces none.
+cp way.recording kept.recording
+expect 2 "$LARIAT" view $scene --port 0 --seconds 0.1 --record no.recording --device typo=script:x.csv
+[ ! -e no.recording ] || fail "a recording of nothing was left"
+expect 2 "$LARIAT" view $scene --port 0 --record way.recording --force --device typo=script:x.csv
+cmp -s way.recording kept.recording || fail "a recording was replaced by nothing"
 # On a disk that fills up recording ends, which is told while the session goes on; only root can
 # make one.
 mkdir small

@@ -293,6 +293,10 @@ static void saving_spares_what_is_there(void **unused) {
     assert_int_equal(lar_simulation_save(simulation, BAD, &error), LAR_ERROR_IO);
     assert_int_equal(lar_simulation_load(simulation, BAD, &error), LAR_ERROR_IO);
     remove(BAD);
+    assert_int_equal(symlink(PATH, BAD), 0); /* also to a checkpoint */
+    assert_int_equal(lar_simulation_save(simulation, BAD, &error), LAR_ERROR_IO);
+    assert_non_null(strstr(error.message, "is no plain file"));
+    remove(BAD);
     save(simulation, PATH);
     save(simulation, PATH); /* a checkpoint is */
     assert_int_equal(count_parts(), 0);

@@ -33,11 +33,11 @@ static void a_step_above_the_bound_is_refused(void **unused) {
     options.time_step = 0.999 * info.stable_step;
     assert_int_equal(lar_simulation_create(model, &options, &simulation, &error), LAR_OK);
     lar_simulation_destroy(simulation);
-    for (int i = 0; i < 2; i++) {
-        options.time_step = i ? -1e-4 : NAN;
+    for (int i = 0; i < 3; i++) {
+        options.time_step = (double[]){NAN, -1e-4, 1e-320}[i];
         assert_int_equal(lar_simulation_create(model, &options, &simulation, &error),
                          LAR_ERROR_ARGUMENT);
-        assert_says(&error, "positive number of seconds");
+        assert_says(&error, "1e-15 s at least");
     }
     lar_model_destroy(model);
 }

@@ -124,6 +124,57 @@ static int stop_at(void *context, uint64_t step) {
     return step < *(const uint64_t *)context;
 }
 
+typedef struct meddler {
+    lar_simulation *simulation;
+    lar_saved *saved;
+    int calls;
+} meddler;
+
+/* An advance that is begun anew in each of its steps would have no end. */
+static int meddle(void *context, uint64_t step) {
+    static const double up[3] = {0, 0, 1};
+    meddler *m = context;
+    lar_session *session = NULL;
+    lar_error error;
+    m->calls++;
+    assert_int_equal(lar_simulation_reset(m->simulation, &error), LAR_ERROR_ARGUMENT);
+    assert_non_null(strstr(error.message, "a callback may not"));
+    const lar_status refused[] = {lar_simulation_advance(m->simulation, 1, &error),
+                                  lar_simulation_load(m->simulation, "none", &error),
+                                  lar_simulation_load_from(m->simulation, m->saved, &error),
+                                  lar_replay(m->simulation, "none", NULL, NULL, NULL, &error),
+                                  lar_session_open(m->simulation, NULL, &session, &error),
+                                  lar_simulation_set_gravity(m->simulation, up, &error),
+                                  lar_simulation_release(m->simulation, 0, 1, &error)};
+    for (size_t i = 0; i < sizeof refused / sizeof refused[0]; i++)
+        assert_int_equal(refused[i], LAR_ERROR_ARGUMENT);
+    lar_status looks = lar_simulation_save_to(m->simulation, m->saved, &error);
+    bool alone =
+        lar_simulation_processors(m->simulation) * lar_simulation_threads(m->simulation) == 1;
+    assert_int_equal(looks, alone ? LAR_OK : LAR_ERROR_ARGUMENT);
+    return step > 0;
+}
+
+static void a_callback_changes_nothing(void **unused) {
+    (void)unused;
+    lar_model *model = everything_model(&small);
+    uint64_t wanted = hash_of(model, lar_options_default(), 40);
+    for (int k = 0; k < 3; k++) {
+        const lar_options how = k ? combination(k == 1, k, 1, 0) : lar_options_default();
+        meddler m = {start_with(model, how), NULL, 0};
+        lar_error error;
+        assert_int_equal(lar_saved_create(m.simulation, &m.saved, &error), LAR_OK);
+        if (lar_simulation_advance_with(m.simulation, 40, meddle, &m, &error))
+            fail_msg("%s", error.message);
+        assert_int_equal(m.calls, 40);
+        assert_int_equal(lar_simulation_hash(m.simulation), wanted);
+        assert_int_equal(lar_simulation_reset(m.simulation, &error), LAR_OK);
+        lar_saved_destroy(m.saved);
+        lar_simulation_destroy(m.simulation);
+    }
+    lar_model_destroy(model);
+}
+
 /* Everyone stops in the same step, soon; going on gives what not stopping would have given. */
 static void an_advance_with_a_callback_ends_in_a_common_step(void **unused) {
     (void)unused;
@@ -298,6 +349,7 @@ int main(int count, char **argument) {
         cmocka_unit_test(the_hash_is_the_same_everywhere),
         cmocka_unit_test(boxes_and_oracles_agree_with_themselves),
         cmocka_unit_test(an_advance_with_a_callback_ends_in_a_common_step),
+        cmocka_unit_test(a_callback_changes_nothing),
         cmocka_unit_test(an_unstable_run_stops_everywhere),
         cmocka_unit_test(energies_do_not_depend_on_the_division),
         cmocka_unit_test(every_element_arrives_at_every_node_once),

@@ -158,10 +158,10 @@ static void what_makes_no_sense_is_refused(void **unused) {
     (void)unused;
     lar_model *model = brick_model(&soft_brick);
     lar_simulation *simulation = start(model);
-    static const double bad[] = {0, -1, 1e12, INFINITY, NAN};
+    static const double bad[] = {0, -1, 1e12, INFINITY, NAN, 1e307, 1e308};
     const lar_tools before = simulation->tools;
     for (int k = 0; k < 2; k++)
-        for (int i = 0; i < 5; i++)
+        for (int i = 0; i < 7; i++)
             assert_int_equal(lar_simulation_set_parameter(simulation, 0, name[k], bad[i], &failure),
                              LAR_ERROR_ARGUMENT);
     assert_int_equal(lar_simulation_set_parameter(simulation, 0, "c1", 1, &failure),
@@ -175,13 +175,42 @@ static void what_makes_no_sense_is_refused(void **unused) {
         assert_non_null(strstr(failure.message, "there is no material"));
     }
     assert_int_equal(lar_simulation_set_parameter(NULL, 0, name[0], 1e3, NULL), LAR_ERROR_ARGUMENT);
-    assert_true(lar_simulation_parameter(simulation, 0, "c1") == 0);
-    assert_true(lar_simulation_parameter(simulation, 1, name[0]) == 0);
-    assert_true(lar_simulation_parameter(NULL, 0, name[0]) == 0);
-    assert_true(lar_simulation_parameter(simulation, 0, NULL) == 0);
+    assert_true(isnan(lar_simulation_parameter(simulation, 0, "c1")));
+    assert_true(isnan(lar_simulation_parameter(simulation, 1, name[0])));
+    assert_true(isnan(lar_simulation_parameter(NULL, 0, name[0])));
+    assert_true(isnan(lar_simulation_parameter(simulation, 0, NULL)));
     set(simulation, 0, name[0], lar_simulation_parameter(simulation, 0, name[0]));
     set(simulation, 0, NULL, 0);
     assert_memory_equal(&before, &simulation->tools, sizeof before);
+    finish(simulation, model);
+}
+
+/* Scenes give Lame's material the two moduli, and so may who sets them: the other one stays, and
+ * both together are what a scene with them has, to the last bit. */
+static void moduli_of_lames_numbers(void **unused) {
+    (void)unused;
+    lar_model *model = everything_model(&soft_brick);
+    int32_t m = 0;
+    lar_material *material = &model->material[m];
+    material->law = LAR_LAW_coupled_neo_hookean;
+    lar_material_from_shear_bulk(material, 3e3, 3e4);
+    material->fibre = (lar_fibre){0};
+    if (lar_model_check(model, &failure)) fail_msg("%s", failure.message);
+    lar_simulation *simulation = start(model);
+    assert_true(lar_simulation_parameter(simulation, m, name[0]) == 3e3);
+    assert_below(fabs(lar_simulation_parameter(simulation, m, name[1]) / 3e4 - 1), 1e-15);
+    set(simulation, m, name[0], 2e3);
+    assert_true(lar_simulation_parameter(simulation, m, "mu") == 2e3);
+    assert_below(fabs(lar_simulation_parameter(simulation, m, name[1]) / 3e4 - 1), 1e-15);
+    set(simulation, m, name[1], 2e4);
+    assert_true(lar_simulation_parameter(simulation, m, name[0]) == 2e3);
+    assert_true(lar_simulation_parameter(simulation, m, "lambda") == 2e4 - 2.0 * 2e3 / 3.0);
+    for (int k = 0; k < 2; k++)
+        assert_int_equal(lar_simulation_set_parameter(simulation, m, name[k], -1, &failure),
+                         LAR_ERROR_ARGUMENT);
+    assert_int_equal(lar_simulation_set_parameter(simulation, m, "c1", 1, &failure),
+                     LAR_ERROR_ARGUMENT);
+    assert_non_null(strstr(failure.message, "mu, lambda, shear_modulus, bulk_modulus"));
     finish(simulation, model);
 }
 
@@ -369,6 +398,7 @@ int main(void) {
         cmocka_unit_test(a_faster_body_stays_stable),
         cmocka_unit_test(shear_of_what_keeps_its_volume_is_free),
         cmocka_unit_test(what_makes_no_sense_is_refused),
+        cmocka_unit_test(moduli_of_lames_numbers),
         cmocka_unit_test(places_are_counted),
         cmocka_unit_test(every_joule_is_accounted_for),
         cmocka_unit_test(the_hash_is_the_same_everywhere),

@@ -491,6 +491,20 @@ static void senseless_calls_are_refused(void **state) {
     assert_null(none);
 }
 
+/* Its arrays might have another length. */
+static void another_model_is_refused(void **state) {
+    fixture *f = *state;
+    void *other = NULL;
+    assert_int_equal(set_up(&other), 0);
+    open_results(f);
+    assert_int_equal(lar_results_add(f->results, ((fixture *)other)->simulation, &f->error),
+                     LAR_ERROR_ARGUMENT);
+    assert_non_null(strstr(f->error.message, "another model"));
+    assert_int_equal(access(FOLDER "/organ_000000.vtu", F_OK), -1);
+    add(f);
+    tear_down(&other);
+}
+
 static void a_file_is_no_folder(void **state) {
     fixture *f = *state;
     FILE *file = fopen(FOLDER, "w");
@@ -559,6 +573,7 @@ int main(void) {
                                        WITH_FIXTURE(checkpoints_do_not_know_of_it),
                                        WITH_FIXTURE(names_follow_the_models_file),
                                        WITH_FIXTURE(senseless_calls_are_refused),
+                                       WITH_FIXTURE(another_model_is_refused),
                                        WITH_FIXTURE(a_file_is_no_folder),
                                        WITH_FIXTURE(a_lost_folder_is_reported_and_may_come_back),
                                        WITH_FIXTURE(a_state_without_numbers_is_not_written),

@@ -87,6 +87,7 @@ class Bits(unittest.TestCase):
         batch = lariat.Batch(sims)
         self.assertIs(batch[1], sims[1])
         self.assertIs(batch[-1], sims[2])
+        self.assertRaisesRegex(IndexError, "no member -4", lambda: batch[-4])
         self.assertEqual((len(batch), list(batch)), (3, sims))
         batch.advance(10, members=[2, 0])
         self.assertEqual(batch.steps(), (10, 0, 10))
@@ -193,6 +194,10 @@ class States(unittest.TestCase):
                                         "put it back with reset first: .*1 more") as caught:
                 keep()
             self.assertEqual(sorted(caught.exception.members), [1, 3])
+        poses = batch.tool_poses()
+        with self.assertRaisesRegex(lariat.UnstableError, "^member 1: .*1 more") as caught:
+            batch.set_tool_poses(poses)
+        self.assertEqual(sorted(caught.exception.members), [1, 3])
         alone.advance(2000)
         for i in (0, 2, 4):
             self.assertEqual(batch[i].hash(), alone.hash())

@@ -241,6 +241,16 @@ class Misuse(unittest.TestCase):
             with self.assertRaises(ValueError, msg=options):
                 env.reset(options=options)
         env.reset(seed=numpy.int64(4))
+        for one in (env, envs.VectorEnv(type(env), 2)):  # the run goes on where it was
+            one.reset(seed=1)
+            for _ in range(3):
+                one.step(numpy.ones(one.action_space.shape))
+            before = one.hash() if one is env else one.hashes()
+            for stiffness in (0, 100, float("nan"), "soft", None.__class__):
+                with self.assertRaisesRegex(ValueError, "stiffness: expected"):
+                    one.reset(seed=5, options={"stiffness": stiffness})
+            self.assertEqual(one.hash() if one is env else one.hashes(), before)
+            one.step(numpy.zeros(one.action_space.shape))
 
     def test_after_close(self):
         env, many = envs.Palpate(), envs.VectorEnv(envs.Palpate, 2)

@@ -204,6 +204,8 @@ class Surfaces(unittest.TestCase):
             lariat.mesh(*surface, elements=200, fibres="axis: [0, 0, 2]", fibres_in="bone")
         with self.assertRaises(ValueError):
             lariat.mesh(*surface, elements=200, fibres="sideways")
+        with self.assertRaisesRegex(ValueError, "no fibres are asked for"):
+            lariat.mesh(*surface, elements=200, fibres_in="muscle")
 
     def test_arrays_outlive_the_meshing(self):
         nodes = lariat.mesh(*ball_surface(), elements=200).nodes

@@ -33,6 +33,15 @@ class Callbacks(unittest.TestCase):
         self.sim.advance(20, callback=more, every=10)
         self.assertEqual(self.sim.step, 22)
 
+    def test_what_is_no_vector_and_what_stays(self):
+        for source in (b"abc", bytearray(b"abc"), "abc"):
+            with self.assertRaisesRegex(TypeError, "sequence of 3 numbers"):
+                self.sim.set_force(3, source)
+        with self.assertRaisesRegex(TypeError, "cannot be deleted"):
+            del self.sim.gravity
+        with self.assertRaisesRegex(lariat.ArgumentError, "no parameter 'c9'"):
+            self.sim.parameter(0, "c9")
+
     def test_options_that_are_none(self):
         model = block()
         for option, words in ({"scheme": "x"}, "no communication scheme x"), ({"pin": 9}, "pin is 9"):

@@ -225,11 +225,11 @@ static void ticks_are_exact(void **unused) {
     assert_true(lar_simulation_time_step(simulation) == options.time_step);
     lar_simulation_destroy(simulation);
     options.time_step = given;
-    for (int i = 0; i < 3; i++) {
-        options.tick = (double[]){-1e-3, NAN, INFINITY}[i];
+    for (int i = 0; i < 4; i++) {
+        options.tick = (double[]){-1e-3, NAN, INFINITY, 1e-317}[i];
         assert_int_equal(lar_simulation_create(model, &options, &simulation, &failure),
                          LAR_ERROR_ARGUMENT);
-        assert_non_null(strstr(failure.message, "a tick must be a positive number"));
+        assert_non_null(strstr(failure.message, "a tick must be 1e-15 s at least"));
     }
     lar_model_destroy(model);
 }

@@ -385,6 +385,10 @@ static void other_files_are_spared(void **unused) {
     lar_replay_report report;
     assert_int_equal(replay(BAD, NULL, 0, &report), LAR_ERROR_IO); /* and does not wait */
     remove(BAD);
+    assert_int_equal(symlink(PATH, BAD), 0); /* stays, also when a recording does not begin */
+    assert_int_equal(lar_session_record(b.session, BAD, &failure), LAR_ERROR_IO);
+    assert_non_null(strstr(failure.message, "is no plain file"));
+    assert_int_equal(remove(BAD), 0);
     assert_int_equal(status_of(&b).recording, 0);
     close_bench(&b);
     assert_int_equal(replay(LAR_TEST_BUILD "/none", NULL, 0, &report), LAR_ERROR_IO);

@@ -85,7 +85,7 @@ static void frames_that_are_none(void **unused) {
     all_is_well();
 }
 
-/* Clients mask (RFC 6455, 5.1): what does not is no browser, and cannot be made one. */
+/* Clients mask (RFC 6455, 5.1). libwebsockets takes what does not, and nobody else sees it. */
 static void unmasked_frames(void **unused) {
     (void)unused;
     client c = open_client(s.port);

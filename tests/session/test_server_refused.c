@@ -274,6 +274,20 @@ static void what_makes_no_sense_is_refused(void **unused) {
     lar_server_close(NULL);
 }
 
+/* Its nodes would be read where there are none. */
+static void another_model_is_refused(void **unused) {
+    (void)unused;
+    bench b = open_bench(NULL, 0, NULL);
+    lar_model *other = hanging_block();
+    lar_server *server = NULL;
+    assert_int_equal(lar_server_open(b.session, other, NULL, &server, &failure),
+                     LAR_ERROR_ARGUMENT);
+    assert_non_null(strstr(failure.message, "another model"));
+    assert_null(server);
+    lar_model_destroy(other);
+    close_bench(&b);
+}
+
 static void there_are_sixty_four_viewers(void **unused) {
     (void)unused;
     enum { MAX = 64 };
@@ -301,6 +315,7 @@ int main(void) {
                                        cmocka_unit_test(who_may_only_watch_does_nothing_else),
                                        cmocka_unit_test(files_and_nothing_else_are_served),
                                        cmocka_unit_test(what_makes_no_sense_is_refused),
+                                       cmocka_unit_test(another_model_is_refused),
                                        cmocka_unit_test(there_are_sixty_four_viewers)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -228,7 +228,7 @@ static void snapshots_are_of_one_step(void **unused) {
 static void late_snapshots_are_refused(void **unused) {
     (void)unused;
     lar_session_options options = lar_session_options_default();
-    options.tick = 100; /* an endless one */
+    options.tick = 1; /* the longest */
     options.pace = 0;
     bench b = open_bench(NULL, 0, &options);
     lar_snapshot *snapshot = NULL;
@@ -237,6 +237,25 @@ static void late_snapshots_are_refused(void **unused) {
     DONE(lar_session_start(b.session, &failure));
     assert_int_equal(lar_session_snapshot(b.session, snapshot, 0, &failure), LAR_ERROR_PEER);
     lar_snapshot_destroy(snapshot);
+    close_bench(&b);
+}
+
+/* Another session's may be of fewer nodes, and nothing is written behind them. */
+static void snapshots_of_others_are_refused(void **unused) {
+    (void)unused;
+    static const brick small = {{1, 1, 1}, 0.01, 0, LAR_LAW_neo_hookean, 2e4, 4e5, 1000};
+    bench a = open_bench_of(brick_model(&small), NULL, 0, NULL), b = open_bench(NULL, 0, NULL);
+    lar_snapshot *snapshot = NULL;
+    int32_t fresh = 1;
+    DONE(lar_snapshot_create(a.session, &snapshot, &failure));
+    assert_int_equal(lar_session_snapshot(b.session, snapshot, 1, &failure), LAR_ERROR_ARGUMENT);
+    assert_non_null(strstr(failure.message, "created for it"));
+    assert_int_equal(lar_session_snapshot_poll(b.session, snapshot, &fresh, &failure),
+                     LAR_ERROR_ARGUMENT);
+    assert_int_equal(fresh, 0);
+    DONE(lar_session_snapshot(a.session, snapshot, 1, &failure));
+    lar_snapshot_destroy(snapshot);
+    close_bench(&a);
     close_bench(&b);
 }
 
@@ -322,6 +341,22 @@ static void tools_are_felt(void **unused) {
         DONE(lar_session_tool_force(b.session, BALL, NULL, &force, &failure));
     }
     assert_true(force.force[2] == 0);
+    close_bench(&b);
+}
+
+/* Whoever closes a session waits for the end of the tick. */
+static void endless_ticks_are_refused(void **unused) {
+    (void)unused;
+    bench b = {.model = hanging_block()};
+    const lar_options how = block_options(NULL, 0);
+    DONE(lar_simulation_create(b.model, &how, &b.simulation, &failure));
+    for (int i = 0; i < 4; i++) {
+        lar_session_options options = lar_session_options_default();
+        options.tick = (double[]){1.0001, 1e5, 1e-317, 1}[i];
+        lar_status status = lar_session_open(b.simulation, &options, &b.session, &failure);
+        assert_int_equal(status, i < 3 ? LAR_ERROR_ARGUMENT : LAR_OK);
+        if (status) assert_non_null(strstr(failure.message, "give 1e-15 to 1 s"));
+    }
     close_bench(&b);
 }
 
@@ -505,10 +540,12 @@ int main(void) {
                                        cmocka_unit_test(slow_motion_is_announced),
                                        cmocka_unit_test(status_is_finite_and_complete),
                                        cmocka_unit_test(snapshots_are_of_one_step),
+                                       cmocka_unit_test(snapshots_of_others_are_refused),
                                        cmocka_unit_test(late_snapshots_are_refused),
                                        cmocka_unit_test(polled_snapshots_come_by_and_by),
                                        cmocka_unit_test(tools_are_felt),
                                        cmocka_unit_test(wrong_calls_are_refused),
+                                       cmocka_unit_test(endless_ticks_are_refused),
                                        cmocka_unit_test(goes_back_and_on),
                                        cmocka_unit_test(stops_with_a_message),
                                        cmocka_unit_test(everybody_at_once)};

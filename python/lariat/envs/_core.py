@@ -128,6 +128,8 @@ class Core:
             if (goal < self.low - size).any() or (goal > self.high + size).any():
                 raise lariat.ArgumentError(f"goal: {goal} m is far from where the tip can go, "
                                            f"{self.low} to {self.high} m")
+        if stiffness is not None:  # refused before any run has begun anew
+            check_stiffness(stiffness)
         self.batch.reset(which, self.start)
         for k, i in enumerate(which):
             if seeds is not None and seeds[k] is not None:
@@ -292,6 +294,16 @@ class Env(Base):
         if self._core is not None:
             self._core.batch.close()
         self._core = None
+
+
+def check_stiffness(stiffness):
+    """As Simulation.set_stiffness has it."""
+    try:
+        good = 0.1 <= float(stiffness) <= 4
+    except (TypeError, ValueError, OverflowError):
+        good = False
+    if not good:
+        raise lariat.ArgumentError(f"stiffness: expected a number from 0.1 to 4, got {stiffness!r}")
 
 
 def check_seed(seed):

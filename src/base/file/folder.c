@@ -48,6 +48,14 @@ char *lar_folder_join(const char *folder, const char *name) {
     return path;
 }
 
+lar_status lar_file_replaceable(const char *path, lar_error *error) {
+    struct stat there;
+    if (lstat(path, &there) != 0 || S_ISREG(there.st_mode)) return LAR_OK;
+    return lar_fail(error, LAR_ERROR_IO,
+                    "%s: is there and is no plain file (a link or a device?); choose another name",
+                    path);
+}
+
 lar_status lar_file_spare(const char *path, const void *magic, const char *what, lar_error *error) {
     char begin[8];
     int file = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);

@@ -11,6 +11,10 @@ lar_status lar_folder_make(const char *folder, lar_error *error);
 /* "folder/name" or NULL when memory is refused. Free with free(). */
 char *lar_folder_join(const char *folder, const char *name);
 
+/* What a new file takes the place of must be a plain file: a device, a pipe or a link would be
+ * lost, and a link's user means the file behind it. Nothing there is fine. Else LAR_ERROR_IO. */
+lar_status lar_file_replaceable(const char *path, lar_error *error);
+
 /* A mesh or a scene that is named by mistake stays as it is: what stands at `path` must be empty or
  * begin with the 8 bytes `magic`, or else "is there and is `what`" (LAR_ERROR_IO). Nothing there is
  * fine. */

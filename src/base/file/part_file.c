@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/file/folder.h"
+
 static lar_status failed(lar_part_file *out, const char *what) {
     return lar_fail(out->error, LAR_ERROR_IO,
                     "%s: cannot be written: %s%s; check the folder, its permissions and the free "
@@ -16,7 +18,10 @@ static lar_status failed(lar_part_file *out, const char *what) {
 lar_status lar_part_open(lar_part_file *out, const char *path, lar_error *error) {
     static const char suffix[] = ".part";
     size_t length = strlen(path);
-    *out = (lar_part_file){.path = path, .error = error, .part = malloc(length + sizeof suffix)};
+    *out = (lar_part_file){.path = path, .error = error};
+    lar_status status = lar_file_replaceable(path, error);
+    if (status) return status;
+    out->part = malloc(length + sizeof suffix);
     if (!out->part) return lar_fail_memory(error, length + sizeof suffix, path);
     memcpy(out->part, path, length);
     memcpy(out->part + length, suffix, sizeof suffix);

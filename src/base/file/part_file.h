@@ -1,5 +1,6 @@
 /* A file that appears whole or not at all: written to PATH.part, which gets its name at the end. No
- * fsync: a power cut may cost what was written last, but not a run's speed.
+ * fsync: a power cut may cost what was written last, but not a run's speed. What is at PATH and is
+ * no plain file (/dev/null, a pipe, a link) stays, and opening fails.
  *
  *     lar_part_file out;
  *     lar_status status = lar_part_open(&out, path, error);

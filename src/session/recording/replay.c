@@ -63,6 +63,12 @@ lar_status lar_recording_check_simulation(const char *path, const lar_recording_
 /* Steps between two looks, also where ticks are long. */
 static const uint64_t PART_MAX = 1000;
 
+static void look(player *p) {
+    p->simulation->calling = 2;
+    p->stopped = p->callback && !p->callback(p->context, lar_simulation_steps(p->simulation));
+    p->simulation->calling = 0;
+}
+
 static lar_status advance_to(player *p, uint64_t step, lar_error *error) {
     lar_status status = LAR_OK;
     uint64_t now = lar_simulation_steps(p->simulation);
@@ -74,7 +80,7 @@ static lar_status advance_to(player *p, uint64_t step, lar_error *error) {
         now = lar_simulation_steps(p->simulation);
         if (status) break;
         p->report->steps += steps;
-        p->stopped = p->callback && !p->callback(p->context, now);
+        look(p);
     }
     return status;
 }
@@ -101,11 +107,6 @@ static lar_status compare(player *p, const lar_record *record, lar_error *error)
                     p->reader.path, record->step, hash, record->hash, before);
 }
 
-/* The simulation is where a state or a reset has put it. */
-static void look_again(player *p) {
-    p->stopped = p->callback && !p->callback(p->context, lar_simulation_steps(p->simulation));
-}
-
 static lar_status take_state(player *p, const lar_record *record, lar_error *error) {
     lar_bytes state = {0};
     lar_status status = lar_recording_state(&p->reader, record, &state, error);
@@ -114,13 +115,13 @@ static lar_status take_state(player *p, const lar_record *record, lar_error *err
     if (!status && lar_simulation_steps(p->simulation) != record->step)
         return lar_recording_refuse(&p->reader, error,
                                     "has a state of another step; it was altered");
-    if (!status) look_again(p);
+    if (!status) look(p);
     return status;
 }
 
 static lar_status reset(player *p, lar_error *error) {
     lar_status status = lar_simulation_reset(p->simulation, error);
-    if (!status) look_again(p);
+    if (!status) look(p);
     return status;
 }
 
@@ -171,7 +172,7 @@ lar_status lar_replay(lar_simulation *simulation, const char *path, lar_step_cal
                 .equal = UINT64_MAX};
     if (!path)
         return lar_fail(error, LAR_ERROR_ARGUMENT, "lar_replay needs the path of a recording");
-    lar_status status = lar_simulation_check_zero(simulation, "lar_replay", error);
+    lar_status status = lar_simulation_check_idle(simulation, "lar_replay", error);
     if (status) return status;
     status = lar_recording_open(path, &p.reader, error);
     if (status) return status;

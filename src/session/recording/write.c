@@ -38,7 +38,8 @@ static int open_empty(const char *path) {
 
 lar_status lar_recording_create(const char *path, const lar_recording_header *header,
                                 lar_recording_writer *writer, lar_error *error) {
-    lar_status status = lar_file_spare(path, LAR_RECORDING_MAGIC, "no recording", error);
+    lar_status status = lar_file_replaceable(path, error);
+    if (!status) status = lar_file_spare(path, LAR_RECORDING_MAGIC, "no recording", error);
     if (status) return status;
     int file = open_empty(path);
     *writer = (lar_recording_writer){.path = path, .file = file < 0 ? NULL : fdopen(file, "wb")};
