@@ -30,9 +30,8 @@ typedef struct survey {
     int32_t count;
     int32_t entry[LAR_GROUP_FACES_MAX]; /* ascending */
     double distance[LAR_GROUP_FACES_MAX];
-    double min;           /* of those within reach; INFINITY: none is */
-    int32_t at;           /* the entry that it belongs to, */
-    lar_face_point point; /* and where */
+    lar_face_point point[LAR_GROUP_FACES_MAX]; /* where they are closest, of those near `min` */
+    double min;                                /* of those within reach; INFINITY: none is */
     double gap;  /* by which those looked at are out of reach, at most 0 when one is not [m] */
     double next; /* travel at which the first of the others may matter [m] */
 } survey;
@@ -49,22 +48,18 @@ static double fade_of(const lar_body_contact *contact, int32_t node, int32_t fac
     return FADE * lar_contact_standoff(surface, &surface->node[node], &surface->face[face]);
 }
 
-/* Looks at face f, entry i. Returns its distance, or at least so much. */
+/* Looks at face f. Returns its distance, or at least so much; *point is that of the closest faces.
+ */
 static double survey_face(lar_body_contact *contact, const lar_state *state, const double x[3],
-                          int32_t f, int32_t i, survey *s) {
+                          int32_t f, survey *s, lar_face_point *point) {
     double corner[4][3], tie = tie_of(contact, f);
     lar_contact_corners(contact, state, f, corner, NULL);
     double distance = lar_face_box_distance(x, (const double(*)[3])corner);
     if (distance <= s->min + s->fade + tie && distance <= s->reach + tie) {
-        lar_face_point point;
         contact->info.tested++;
-        lar_face_closest(x, (const double(*)[3])corner, tie, &point);
-        distance = point.distance;
-        if (distance <= s->reach && distance < s->min) {
-            s->min = distance;
-            s->at = i;
-            s->point = point;
-        }
+        lar_face_closest(x, (const double(*)[3])corner, tie, point);
+        distance = point->distance;
+        if (distance <= s->reach && distance < s->min) s->min = distance;
     }
     if (distance - s->reach < s->gap) s->gap = distance - s->reach;
     return distance;
@@ -95,15 +90,20 @@ static void survey_group(lar_body_contact *contact, const lar_state *state, int3
     s->fade = fade_of(contact, group->node, face[0]);
     s->min = s->gap = s->next = INFINITY;
     s->count = 0;
-    double distance_of_first = survey_face(contact, state, x, face[first], first, s);
+    lar_face_point of_first;
+    double distance_of_first = survey_face(contact, state, x, face[first], s, &of_first);
     for (int32_t i = 0; i < group->count; i++) {
         if (i != first && contact->travel < away[i]) {
             if (away[i] < s->next) s->next = away[i];
             continue;
         }
-        s->entry[s->count] = i;
-        s->distance[s->count++] =
-            i == first ? distance_of_first : survey_face(contact, state, x, face[i], i, s);
+        int32_t k = s->count++;
+        s->entry[k] = i;
+        s->distance[k] = distance_of_first;
+        if (i == first)
+            s->point[k] = of_first;
+        else
+            s->distance[k] = survey_face(contact, state, x, face[i], s, &s->point[k]);
     }
     for (int32_t k = 0; k < s->count; k++) {
         int32_t i = s->entry[k];
@@ -111,22 +111,18 @@ static void survey_group(lar_body_contact *contact, const lar_state *state, int3
     }
 }
 
-/* The closest face of a group, an entry of it. */
-static int32_t choose_face(const lar_body_contact *contact, const lar_state *state, int32_t g,
-                           const double x[3], const survey *s, lar_face_point *point) {
+/* The closest face of a group, an entry of it. All that are as close as the closest one were so
+ * when they were looked at. */
+static int32_t choose_face(const lar_body_contact *contact, int32_t g, const survey *s,
+                           lar_face_point *point) {
     const lar_contact_group *group = &contact->list.group[g];
     int32_t chosen = -1;
     for (int32_t k = 0; k < s->count; k++) {
         int32_t i = s->entry[k], f = contact->list.face[group->first + i];
-        double corner[4][3], tie = tie_of(contact, f);
-        lar_face_point other = s->point;
+        double tie = tie_of(contact, f);
         if (!(s->distance[k] <= s->min + tie) || s->distance[k] > s->reach + tie) continue;
-        if (i != s->at) {
-            lar_contact_corners(contact, state, f, corner, NULL);
-            lar_face_closest(x, (const double(*)[3])corner, tie, &other);
-        }
-        if (chosen >= 0 && !lar_face_point_before(&other, point)) continue;
-        *point = other;
+        if (chosen >= 0 && !lar_face_point_before(&s->point[k], point)) continue;
+        *point = s->point[k];
         chosen = i;
     }
     return chosen;
@@ -355,7 +351,7 @@ static int32_t closest(lar_body_contact *contact, const lar_state *state, int32_
     /* A little earlier, for rounding. */
     contact->due[g] = s->gap > 0 ? fmin(contact->travel + 0.999 * s->gap / APPROACH, s->next) : 0;
     if (!(s->min < INFINITY)) return -1;
-    int32_t chosen = choose_face(contact, state, g, x, s, point);
+    int32_t chosen = choose_face(contact, g, s, point);
     if (chosen < 0) return -1;
     contact->last[g] = chosen;
     return contact->list.face[group->first + chosen];

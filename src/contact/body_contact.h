@@ -32,7 +32,8 @@
  * folded so far that it goes through itself the closest face may turn its back to a node outside,
  * and once that is within reach it would be thrown out from the bottom of a layer that it never
  * sank into. Whether it was in the layer before is seen from where all were a step ago; that it is
- * not pushed is remembered until it touches nothing.
+ * not pushed is remembered until it touches nothing. Points of edges and faces, which have no
+ * offset, are not pushed by other bodies from a quarter of the layer on.
  *
  * Offsets are the one thing that contact remembers: they stand in state->level [m], 0 for who is
  * not inside, and belong to the state like u and v.

@@ -106,9 +106,10 @@ bool lar_offset_pushes(lar_body_contact *contact, const lar_state *state, int32_
     int count = lar_contact_parents(s, node, parent, weight);
     for (int k = 0; k < count; k++)
         if (offset_of(contact, state, parent[k]) == behind) return false;
+    /* Points remember nothing. */
+    if (count > 1) return !(depth > deep_of(contact, node, face));
     if (!comes_from_behind(contact, state, g, face, depth, rate)) return true;
-    if (count == 1 && offset_of(contact, state, node) == 0)
-        set_offset(contact, state, node, behind);
+    if (offset_of(contact, state, node) == 0) set_offset(contact, state, node, behind);
     return false;
 }
 
