@@ -338,7 +338,7 @@ static void other_models_are_refused(void **state) {
                    .bytes = 64,
                    .body = nothing,
                    .odd_identity = 7,
-                   .start_timeout = 5};
+                   .start_timeout = 20};
         fleet_threads(f, texts);
         assert_non_null(strstr(texts[0], "processor 1 has another model or schedule"));
         assert_string_equal(texts[0], texts[1]);

@@ -448,7 +448,7 @@ static void whole_or_not_at_all(void **state) {
     assert_int_equal(mkdir(path, 0777), 0);
     lar_error error = {0};
     assert_int_equal(lar_schedule_write(folder, &set, &error), LAR_ERROR_IO);
-    assert_non_null(strstr(error.message, "processor-0001.schedule: cannot be written"));
+    assert_non_null(strstr(error.message, "processor-0001.schedule: is there and is no plain"));
     assert_int_not_equal(access(part, F_OK), 0);
     rmdir(path);
     free(path);

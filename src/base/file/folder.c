@@ -52,7 +52,7 @@ lar_status lar_file_replaceable(const char *path, lar_error *error) {
     struct stat there;
     if (lstat(path, &there) != 0 || S_ISREG(there.st_mode)) return LAR_OK;
     return lar_fail(error, LAR_ERROR_IO,
-                    "%s: is there and is no plain file (a link or a device?); choose another name",
+                    "%s: is there and is no plain file (a folder, link or device?); choose another name",
                     path);
 }
 
