@@ -378,12 +378,12 @@ static void test_sections(void **state) {
     enum { LINE = BC_LINE - 1 };
     lar_model *model = read_deck(BASE4 "<Contact/><Rigid></Rigid><Output><plotfile/></Output>"
                                        "<Globals/><MeshData><NodeData/></MeshData>\n"
-                                       "<Wishes><wish/></Wishes><Hopes>1</Hopes><Step><step>"
+                                       "<Extras><one/></Extras><Hopes>1</Hopes><Step><step>"
                                        "<Dreams>1</Dreams></step></Step>" TAIL);
     assert_int_equal(notices_with(model, "deck.feb:22: the section <Hopes>"), 1);
     assert_int_equal(notices_with(model, "deck.feb:22: the section <Dreams>"), 1);
     assert_int_equal(notices_with(model, "deck.feb:21: <MeshData>"), 1);
-    assert_int_equal(notices_with(model, "deck.feb:22: the section <Wishes>"), 1);
+    assert_int_equal(notices_with(model, "deck.feb:22: the section <Extras>"), 1);
     lar_model_destroy(model);
     model =
         read_deck(HEAD4 "<Control><analysis>DYNAMIC</analysis><time_steps>1</time_steps>"
