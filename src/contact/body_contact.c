@@ -25,11 +25,13 @@ typedef struct touching {
 
 /* What is known of a group's faces: distances of those that may matter, at least so much. */
 typedef struct survey {
+    double x[3];  /* the node [m] */
     double reach; /* of the faces for the node [m] */
     double fade;  /* by how much others than the closest may be farther away and still count [m] */
     int32_t count;
     int32_t entry[LAR_GROUP_FACES_MAX]; /* ascending */
     double distance[LAR_GROUP_FACES_MAX];
+    double corner[LAR_GROUP_FACES_MAX][4][3];  /* [m] */
     lar_face_point point[LAR_GROUP_FACES_MAX]; /* where they are closest, of those near `min` */
     double min;                                /* of those within reach; INFINITY: none is */
     double gap;  /* by which those looked at are out of reach, at most 0 when one is not [m] */
@@ -50,14 +52,14 @@ static double fade_of(const lar_body_contact *contact, int32_t node, int32_t fac
 
 /* Looks at face f. Returns its distance, or at least so much; *point is that of the closest faces.
  */
-static double survey_face(lar_body_contact *contact, const lar_state *state, const double x[3],
-                          int32_t f, survey *s, lar_face_point *point) {
-    double corner[4][3], tie = tie_of(contact, f);
+static double survey_face(lar_body_contact *contact, const lar_state *state, int32_t f, survey *s,
+                          double corner[4][3], lar_face_point *point) {
+    double tie = tie_of(contact, f);
     lar_contact_corners(contact, state, f, corner, NULL);
-    double distance = lar_face_box_distance(x, (const double(*)[3])corner);
+    double distance = lar_face_box_distance(s->x, (const double(*)[3])corner);
     if (distance <= s->min + s->fade + tie && distance <= s->reach + tie) {
         contact->info.tested++;
-        lar_face_closest(x, (const double(*)[3])corner, tie, point);
+        lar_face_closest(s->x, (const double(*)[3])corner, tie, point);
         distance = point->distance;
         if (distance <= s->reach && distance < s->min) s->min = distance;
     }
@@ -79,8 +81,7 @@ static double away_until(double travel, double distance, double tie, const surve
 }
 
 /* The one that was closest the last time goes first: most others then need no more than a look. */
-static void survey_group(lar_body_contact *contact, const lar_state *state, int32_t g,
-                         const double x[3], survey *s) {
+static void survey_group(lar_body_contact *contact, const lar_state *state, int32_t g, survey *s) {
     const lar_contact_group *group = &contact->list.group[g];
     const int32_t *face = contact->list.face + group->first;
     double *away = contact->away + group->first;
@@ -91,7 +92,10 @@ static void survey_group(lar_body_contact *contact, const lar_state *state, int3
     s->min = s->gap = s->next = INFINITY;
     s->count = 0;
     lar_face_point of_first;
-    double distance_of_first = survey_face(contact, state, x, face[first], s, &of_first);
+    double corner_of_first[4][3];
+    lar_contact_place(contact, state, group->node, s->x, NULL);
+    double distance_of_first =
+        survey_face(contact, state, face[first], s, corner_of_first, &of_first);
     for (int32_t i = 0; i < group->count; i++) {
         if (i != first && contact->travel < away[i]) {
             if (away[i] < s->next) s->next = away[i];
@@ -100,10 +104,12 @@ static void survey_group(lar_body_contact *contact, const lar_state *state, int3
         int32_t k = s->count++;
         s->entry[k] = i;
         s->distance[k] = distance_of_first;
-        if (i == first)
-            s->point[k] = of_first;
-        else
-            s->distance[k] = survey_face(contact, state, x, face[i], s, &s->point[k]);
+        if (i != first) {
+            s->distance[k] = survey_face(contact, state, face[i], s, s->corner[k], &s->point[k]);
+            continue;
+        }
+        s->point[k] = of_first;
+        memcpy(s->corner[k], corner_of_first, sizeof corner_of_first);
     }
     for (int32_t k = 0; k < s->count; k++) {
         int32_t i = s->entry[k];
@@ -170,8 +176,8 @@ static void point_of(const lar_body_contact *contact, const lar_state *state, co
 
 /* Above a hollow the closest point jumps from face to face, and so would the direction of the
  * force: there the faces that are about as close as the closest one push together. */
-static void blend(const lar_body_contact *contact, const lar_state *state, int32_t g,
-                  const double x[3], const lar_face_point *closest, const survey *s, touching *t) {
+static void blend(const lar_body_contact *contact, int32_t g, const lar_face_point *closest,
+                  const survey *s, touching *t) {
     const lar_contact_group *group = &contact->list.group[g];
     const lar_contact_surface *surface = contact->surface;
     /* Beside a convex edge the closest point is on the edge, not straight below, and goes its way
@@ -181,12 +187,12 @@ static void blend(const lar_body_contact *contact, const lar_state *state, int32
     touching blended = {.fading = -1};
     for (int32_t k = 0; k < s->count && fade > 0; k++) {
         int32_t f = contact->list.face[group->first + s->entry[k]];
-        double corner[4][3], sum[4] = {0}, far = 0;
+        double sum[4] = {0}, far = 0;
         if (!(s->distance[k] < s->min + fade) ||
             !lar_contact_active(&surface->node[group->node], &surface->face[f]))
             continue;
-        lar_contact_corners(contact, state, f, corner, NULL);
-        double counts = lar_face_blend(x, (const double(*)[3])corner, s->min, fade, sum, &far);
+        double counts =
+            lar_face_blend(s->x, (const double(*)[3])s->corner[k], s->min, fade, sum, &far);
         if (!(counts > 0) || blended.count == LAR_CONTACT_FACES) continue;
         all += counts;
         blended.far += far;
@@ -298,8 +304,7 @@ static bool push(lar_body_contact *contact, const lar_state *state, int32_t g, i
     *t = (touching){.count = 1, .face = {face}, .fading = -1};
     memcpy(t->weight[0], closest->weight, sizeof closest->weight);
     bool before = !(closest->height < 0);
-    if (before && lar_contact_active(&surface->node[node], f))
-        blend(contact, state, g, x, closest, s, t);
+    if (before && lar_contact_active(&surface->node[node], f)) blend(contact, g, closest, s, t);
     point_of(contact, state, t, &known, &point);
     double depth = outward(x, &point, before ? -1 : 1, LAR_FACE_TIE * f->size,
                            (const double(*)[3])known.x, way);
@@ -345,9 +350,7 @@ static bool push(lar_body_contact *contact, const lar_state *state, int32_t g, i
 static int32_t closest(lar_body_contact *contact, const lar_state *state, int32_t g, survey *s,
                        lar_face_point *point) {
     const lar_contact_group *group = &contact->list.group[g];
-    double x[3];
-    lar_contact_place(contact, state, group->node, x, NULL);
-    survey_group(contact, state, g, x, s);
+    survey_group(contact, state, g, s);
     /* A little earlier, for rounding. */
     contact->due[g] = s->gap > 0 ? fmin(contact->travel + 0.999 * s->gap / APPROACH, s->next) : 0;
     if (!(s->min < INFINITY)) return -1;
@@ -370,22 +373,19 @@ static bool touches(const lar_body_contact *contact, int32_t node, int32_t face,
  * it surely stays before every face that may be the closest one then. Before the closest one alone
  * is not enough: a body that is crushed has faces whose back is as near. Of its own body a node
  * does not see all faces, and may come behind one from the side. */
-static double clear_of(const lar_body_contact *contact, const lar_state *state, int32_t g,
-                       const survey *s, const lar_face_point *point) {
+static double clear_of(const lar_body_contact *contact, int32_t g, const survey *s,
+                       const lar_face_point *point) {
     const lar_contact_surface *surface = contact->surface;
     const lar_contact_group *group = &contact->list.group[g];
     const int32_t *face = contact->list.face + group->first;
-    double x[3], corner[4][3];
     double standoff =
         lar_contact_standoff(surface, &surface->node[group->node], &surface->face[face[0]]);
     double clear = 0.5 * (point->distance - standoff);
-    lar_contact_place(contact, state, group->node, x, NULL);
     for (int32_t k = 0; k < s->count && clear > 0; k++) {
         int32_t f = face[s->entry[k]];
         double farther = farther_by(s->distance[k], tie_of(contact, f), s);
         if (farther >= clear) continue;
-        lar_contact_corners(contact, state, f, corner, NULL);
-        double before = lar_face_before(x, (const double(*)[3])corner);
+        double before = lar_face_before(s->x, (const double(*)[3])s->corner[k]);
         clear = fmin(clear, fmax(farther, before));
     }
     return clear;
@@ -405,7 +405,7 @@ static bool in_contact(lar_body_contact *contact, const lar_state *state, int32_
     }
     lar_offset_out(contact, state, g);
     if (face >= 0) {
-        double clear = 0.999 * clear_of(contact, state, g, &s, &point) / APPROACH;
+        double clear = 0.999 * clear_of(contact, g, &s, &point) / APPROACH;
         contact->due[g] = fmax(contact->due[g], fmin(contact->travel + clear, s.next));
     }
     return false;

@@ -4,6 +4,8 @@
 #include <stddef.h>
 #include <string.h>
 
+#include "mechanics/face_parts.h"
+
 static double dot(const double a[3], const double b[3]) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
@@ -114,44 +116,66 @@ static void middle_of(const double corner[4][3], double middle[3]) {
     lar_face_mean(corner, even, middle);
 }
 
-double lar_face_distance(const double x[3], const double corner[4][3]) {
-    double middle[3], weight[4], min = INFINITY;
-    middle_of(corner, middle);
+void lar_face_parts_one_by_one(const double x[3], const double corner[4][3], const double middle[3],
+                               lar_face_parts *parts) {
     for (int t = 0; t < 4; t++) {
-        closest_of_part(x, corner, middle, t, weight);
-        min = fmin(min, distance_to(x, corner, weight));
+        closest_of_part(x, corner, middle, t, parts->weight[t]);
+        parts->distance[t] = distance_to(x, corner, parts->weight[t]);
+        parts->height[t] = height_over(x, corner, middle, t, parts->weight[t]);
     }
+}
+
+static inline void closest_of_parts(const double x[3], const double corner[4][3],
+                                    const double middle[3], lar_face_parts *parts) {
+#if defined(LAR_HAVE_FACE_LANES)
+    if (lar_face_lanes()) {
+        lar_face_parts_in_lanes(x, corner, middle, parts);
+        return;
+    }
+#endif
+    lar_face_parts_one_by_one(x, corner, middle, parts);
+}
+
+double lar_face_distance(const double x[3], const double corner[4][3]) {
+    double middle[3], min = INFINITY;
+    lar_face_parts parts;
+    middle_of(corner, middle);
+    closest_of_parts(x, corner, middle, &parts);
+    for (int t = 0; t < 4; t++) min = fmin(min, parts.distance[t]);
     return min;
 }
 
 void lar_face_closest(const double x[3], const double corner[4][3], double tie,
                       lar_face_point *point) {
     double middle[3], min = INFINITY;
-    lar_face_point part[4];
+    lar_face_parts parts;
     middle_of(corner, middle);
+    closest_of_parts(x, corner, middle, &parts);
+    for (int t = 0; t < 4; t++) min = fmin(min, parts.distance[t]);
+    int chosen = -1; /* stays so where there are no numbers */
+    lar_face_point part, best = {.height = NAN, .toward = NAN};
     for (int t = 0; t < 4; t++) {
-        closest_of_part(x, corner, middle, t, part[t].weight);
-        part[t].distance = distance_to(x, corner, part[t].weight);
-        part[t].height = part[t].toward = NAN;
-        part[t].triangle = t;
-        min = fmin(min, part[t].distance);
+        if (!(parts.distance[t] <= min + tie)) continue;
+        part.height = parts.height[t];
+        part.toward = toward_of(x, corner, middle, t, parts.weight[t], tie);
+        if (chosen >= 0 && !lar_face_point_before(&part, &best)) continue;
+        best.height = part.height;
+        best.toward = part.toward;
+        chosen = t;
     }
-    const lar_face_point *chosen = NULL; /* stays so where there are no numbers */
-    for (int t = 0; t < 4; t++) {
-        if (!(part[t].distance <= min + tie)) continue;
-        part[t].height = height_over(x, corner, middle, t, part[t].weight);
-        part[t].toward = toward_of(x, corner, middle, t, part[t].weight, tie);
-        if (!chosen || lar_face_point_before(&part[t], chosen)) chosen = &part[t];
-    }
-    *point = chosen ? *chosen : part[0];
+    point->triangle = chosen >= 0 ? chosen : 0;
+    point->distance = parts.distance[point->triangle];
+    point->height = best.height;
+    point->toward = best.toward;
+    memcpy(point->weight, parts.weight[point->triangle], sizeof point->weight);
 }
 
 /* Six times the volume of x over a triangle is a determinant of three ways. When each of them
  * changes by at most e it changes by at most (l1 + e)(l2 + e)(l3 + e) - l1 l2 l3 (Hadamard); the e
  * at which that is all of it is at least what one step from an upper bound gives. */
-double lar_face_before(const double x[3], const double corner[4][3]) {
-    double middle[3], min = INFINITY;
-    middle_of(corner, middle);
+double lar_face_before_one_by_one(const double x[3], const double corner[4][3],
+                                  const double middle[3]) {
+    double min = INFINITY;
     for (int t = 0; t < 4; t++) {
         double a[3], b[3], c[3], volume = 0;
         between(corner[t], corner[(t + 1) % 4], a);
@@ -167,6 +191,15 @@ double lar_face_before(const double x[3], const double corner[4][3]) {
         min = fmin(min, volume / (areas + most * (la + lb + lc + most)));
     }
     return min;
+}
+
+double lar_face_before(const double x[3], const double corner[4][3]) {
+    double middle[3];
+    middle_of(corner, middle);
+#if defined(LAR_HAVE_FACE_LANES)
+    if (lar_face_lanes()) return lar_face_before_in_lanes(x, corner, middle);
+#endif
+    return lar_face_before_one_by_one(x, corner, middle);
 }
 
 /* ---- segments ------------------------------------------------------------------------------- */
@@ -246,15 +279,15 @@ static void offer_crossing(const lar_segment *segment, const double corner[4][3]
 
 void lar_face_segment_closest(const lar_segment *segment, const double corner[4][3],
                               lar_face_segment *closest) {
-    double middle[3], weight[4];
+    double middle[3];
+    lar_face_parts parts[2];
     bool is_point = memcmp(segment->end[0], segment->end[1], sizeof segment->end[0]) == 0;
+    int ends = is_point ? 1 : 2;
     *closest = (lar_face_segment){.distance = INFINITY};
     middle_of(corner, middle);
+    for (int e = 0; e < ends; e++) closest_of_parts(segment->end[e], corner, middle, &parts[e]);
     for (int t = 0; t < 4; t++) {
-        for (int e = 0; e < (is_point ? 1 : 2); e++) {
-            closest_of_part(segment->end[e], corner, middle, t, weight);
-            offer(segment, corner, e, weight, closest);
-        }
+        for (int e = 0; e < ends; e++) offer(segment, corner, e, parts[e].weight[t], closest);
         if (is_point) continue;
         offer_edges(segment, corner, middle, t, closest);
         offer_crossing(segment, corner, middle, t, closest);
@@ -300,11 +333,13 @@ static double within(const double x[3], const double corner[4][3], const double 
 
 double lar_face_blend(const double x[3], const double corner[4][3], double min, double fade,
                       double sum[4], double *far) {
-    double middle[3], weight[4], all = 0;
+    double middle[3], all = 0;
+    lar_face_parts parts;
     middle_of(corner, middle);
+    closest_of_parts(x, corner, middle, &parts);
     for (int t = 0; t < 4; t++) {
-        closest_of_part(x, corner, middle, t, weight);
-        double distance = distance_to(x, corner, weight);
+        const double *weight = parts.weight[t];
+        double distance = parts.distance[t];
         double count = 1 - (distance - min) / fade;
         if (!(count > 0)) continue;
         count *= within(x, corner, middle, t, weight, distance, distance <= min);

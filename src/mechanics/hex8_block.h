@@ -288,7 +288,7 @@ typedef struct lar_hex8_motion {
     double parting[LAR_BLOCK];
 } lar_hex8_motion;
 
-/* Of those lanes that have a bit; nodes move with `v` [3][stride]. */
+/* Of those lanes that have a bit; nodes move with `v` [3][stride]; NULL: the areas alone. */
 typedef void (*lar_hex8_motion_of)(const lar_hex8_group *group, unsigned lanes,
                                    const lar_hex8_places *places, const double *v,
                                    lar_hex8_motion *motion);

@@ -165,6 +165,7 @@ static void motion(const lar_hex8_group *group, unsigned lanes, const lar_hex8_p
         gather_corners(group, lane, places->rest, places->stride, rest);
         displace(group, lane, places, rest, x);
         lar_lane_store(&out->areas[lane], areas_of((const lar_lane(*)[3])x));
+        if (!v) continue;
         gather_corners(group, lane, v, places->stride, x);
         lar_lane_store(&out->parting[lane], parting_of((const lar_lane(*)[3])x));
     }

@@ -270,23 +270,32 @@ double lar_hex8_area_limit(const lar_hex8 *element) {
     return low + 2 / sqrt(low);
 }
 
-double lar_hex8_growth(const lar_material *material, const float strain[LAR_STRAIN_NUMBERS],
-                       double area) {
+void lar_hex8_stiff_of(const lar_material *material, const float strain[LAR_STRAIN_NUMBERS],
+                       lar_hex8_stiff *stiff) {
     double J = strain[LAR_STRAIN_VOLUME];
-    if (!(J > 0)) return INFINITY;
+    stiff->square = 0;
+    if (!(J > 0)) return;
     lar_law_strained now = lar_law_table[material->law].strained(
         material->parameter, J, strain[LAR_STRAIN_LENGTH], strain[LAR_STRAIN_AREA]);
-    double stretch = sqrt(strain[LAR_STRAIN_LENGTH] / 3.0);
-    double volume = fmax(now.slope, 0) * area + fabs(now.pressure) * stretch;
-    double shear = now.shear * fmax(1, area / (J * J)) + now.further;
-    double whole =
+    stiff->square = J * J;
+    stiff->slope = fmax(now.slope, 0);
+    stiff->pressed = fabs(now.pressure) * sqrt(strain[LAR_STRAIN_LENGTH] / 3.0);
+    stiff->shear = now.shear;
+    stiff->further = now.further;
+    stiff->of_volume = lar_viscosity_volume_instant(&material->viscosity);
+    stiff->of_shear = lar_viscosity_instant(&material->viscosity);
+    stiff->whole =
         lar_material_instant_bulk(material) + 4 * lar_material_instant_shear(material) / 3;
-    double growth = (lar_viscosity_volume_instant(&material->viscosity) * volume +
-                     lar_viscosity_instant(&material->viscosity) * shear) /
-                    whole;
-    if (material->fibre.law == LAR_FIBRE_NONE) return growth;
+    stiff->fibrous = material->fibre.law != LAR_FIBRE_NONE;
+    if (stiff->fibrous) stiff->fibres = stiff->of_shear * fibre_growth(&material->fibre, strain);
+}
+
+double lar_hex8_growth(const lar_hex8_stiff *stiff, double area) {
+    if (!(stiff->square > 0)) return INFINITY;
+    double volume = stiff->slope * area + stiff->pressed;
+    double shear = stiff->shear * fmax(1, area / stiff->square) + stiff->further;
+    double growth = (stiff->of_volume * volume + stiff->of_shear * shear) / stiff->whole;
+    if (!stiff->fibrous) return growth;
     /* Along any direction the element is as stiff as `whole`, and fibres at rest count beside. */
-    double fibres =
-        lar_viscosity_instant(&material->viscosity) * fibre_growth(&material->fibre, strain);
-    return fmax(growth, 1) + fibres / whole;
+    return fmax(growth, 1) + stiff->fibres / stiff->whole;
 }

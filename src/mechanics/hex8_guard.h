@@ -26,6 +26,8 @@
 #ifndef LAR_MECHANICS_HEX8_GUARD_H
 #define LAR_MECHANICS_HEX8_GUARD_H
 
+#include <stdbool.h>
+
 #include "mechanics/hex8.h"
 #include "mechanics/hex8_block.h"
 
@@ -73,13 +75,26 @@ double lar_hex8_largest_corner(const double rest[8][3]);
  * a flat one. */
 double lar_hex8_area_limit(const lar_hex8 *element);
 
-/* How the square of an element's highest frequency has grown with its strain, barrier apart: the
- * volume term goes with the squares of its areas and the law's own slope, shear with |F^-1|^2.
- * `strain`: what a monitor says (hex8_block.h), of the mean gradient. `area`: what lar_hex8_areas
- * has become, in parts of that at rest; |cof F|^2 / 3 for one that is as long as wide. Infinite
- * where the gradient is turned over. */
-double lar_hex8_growth(const lar_material *material, const float strain[LAR_STRAIN_NUMBERS],
-                       double area);
+/* What the stiffness of a strained element is made of [Pa]. */
+typedef struct lar_hex8_stiff {
+    double square;              /* (det F)^2; 0 where the gradient is turned over */
+    double slope, pressed;      /* of the volume term: what goes with its areas, and what does not */
+    double shear, further;      /* of shear likewise */
+    double of_volume, of_shear; /* how much stiffer both are at once, in parts */
+    double fibres;              /* what they have become stiffer */
+    double whole;               /* all of it at rest */
+    bool fibrous;
+} lar_hex8_stiff;
+
+/* `strain`: what a monitor says (hex8_block.h), of the mean gradient. */
+void lar_hex8_stiff_of(const lar_material *material, const float strain[LAR_STRAIN_NUMBERS],
+                       lar_hex8_stiff *stiff);
+
+/* How the square of such an element's highest frequency has grown with its strain, barrier apart:
+ * the volume term goes with the squares of its areas and the law's own slope, shear with |F^-1|^2.
+ * `area`: what lar_hex8_areas has become, in parts of that at rest; |cof F|^2 / 3 for one that is
+ * as long as wide. Infinite where the gradient is turned over. */
+double lar_hex8_growth(const lar_hex8_stiff *stiff, double area);
 
 /* How stiff a family of an element's fibres may be before it is listed [Pa]. */
 double lar_fibre_limit(const lar_material *material);

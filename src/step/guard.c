@@ -156,10 +156,9 @@ static double barriers_ahead(const lar_domain *domain, const lar_state *state, l
 /* How the square of a flat element's frequency has grown, with what its neighbours leave of it: its
  * areas as they are, not as those of a cube would be with such a strain. 0 for others. */
 static double growth_of_flat(const lar_domain *domain, lar_gid e, size_t place, double areas,
-                             const float strain[LAR_STRAIN_NUMBERS]) {
+                             const lar_hex8_stiff *stiff) {
     if (!domain->area_limit || !(domain->area_limit[place] < LAR_STRAINED_AREA)) return 0;
-    return domain->rate[e].share * lar_hex8_growth(lar_domain_material(domain, e), strain,
-                                                   areas / domain->base[place].areas);
+    return domain->rate[e].share * lar_hex8_growth(stiff, areas / domain->base[place].areas);
 }
 
 /* In whole units, which sum to nothing. */
@@ -420,10 +419,11 @@ static void measure(const lar_domain *domain, lar_gid e, size_t place, double st
                     double areas, const float strain[LAR_STRAIN_NUMBERS], lar_state *state) {
     double faster = domain->faster[lar_factor_of(domain->model->element_material[e])];
     double rate = faster * domain->rate[e].square;
-    double square = rate * lar_hex8_growth(lar_domain_material(domain, e), strain,
-                                           strain[LAR_STRAIN_AREA] / 3.0);
+    lar_hex8_stiff stiff;
+    lar_hex8_stiff_of(lar_domain_material(domain, e), strain, &stiff);
+    double square = rate * lar_hex8_growth(&stiff, strain[LAR_STRAIN_AREA] / 3.0);
     square += (1 + 2 * LEAD) * stiffness / domain->rate[e].mass;
-    double flat = rate * growth_of_flat(domain, e, place, areas, strain);
+    double flat = rate * growth_of_flat(domain, e, place, areas, &stiff);
     if (flat > square) square = flat;
     double need = 0.25 * domain->time_step * domain->time_step * square;
     if (!(need >= 0)) need = INFINITY; /* a corner that is a point has no number */
@@ -449,7 +449,8 @@ static void measure_group(const lar_domain *domain, const lar_hex8_monitor *moni
     unsigned coming = 0;
     fill_up(lanes);
     if (group->moves)
-        domain->kernels->motion(&lanes->hex8, group->moves, &places, state->v, &motion);
+        domain->kernels->motion(&lanes->hex8, group->moves, &places,
+                                group->may_fold ? state->v : NULL, &motion);
     for (int k = 0; k < lanes->count; k++) {
         double volume = domain->base[first + (size_t)lanes->lane[k]].volume;
         if (group->near >> k & 1)
@@ -472,13 +473,14 @@ static double parting_max(const lar_state *state) {
                                                      : INFINITY;
 }
 
-/* Measures all that are listed: most by their strain alone. */
+/* Measures all that are listed: most by their strain alone. Those near a barrier are looked at
+ * beside each other, and so are the others, of which less is asked. */
 static void measure_list(const lar_domain *domain, const lar_hex8_monitor *monitor, int32_t r,
                          lar_state *state) {
     const lar_strained *strained = state->strained;
     size_t first = LAR_BLOCK * (size_t)domain->run_first[r];
     double parting = parting_max(state);
-    measured_group group = {.lanes = {.count = 0}};
+    measured_group groups[2] = {{.lanes = {.count = 0}}, {.lanes = {.count = 0}}};
     int32_t met = 0; /* of strained->near */
     for (int32_t i = 0; i < monitor->count; i++) {
         int32_t lane = monitor->lane[i] & ~LAR_LANE_FLAT;
@@ -492,15 +494,17 @@ static void measure_list(const lar_domain *domain, const lar_hex8_monitor *monit
             measure(domain, element_of(domain, r, lane), place, 0, 0, monitor->strain[i], state);
             continue;
         }
-        int k = group.lanes.count;
-        group.stiffness[k] = near ? strained->stiffness[first + (size_t)met++] : 0;
-        group.near |= (unsigned)near << k;
-        group.may_fold |= (unsigned)may_fold << k;
-        group.moves |= (unsigned)(may_fold || flat) << k;
-        add_lane(domain, r, lane, i, &group.lanes);
-        if (group.lanes.count == LAR_BLOCK) measure_group(domain, monitor, r, &group, state);
+        measured_group *group = &groups[near];
+        int k = group->lanes.count;
+        group->stiffness[k] = near ? strained->stiffness[first + (size_t)met++] : 0;
+        group->near |= (unsigned)near << k;
+        group->may_fold |= (unsigned)may_fold << k;
+        group->moves |= (unsigned)(may_fold || flat) << k;
+        add_lane(domain, r, lane, i, &group->lanes);
+        if (group->lanes.count == LAR_BLOCK) measure_group(domain, monitor, r, group, state);
     }
-    if (group.lanes.count > 0) measure_group(domain, monitor, r, &group, state);
+    for (int k = 0; k < 2; k++)
+        if (groups[k].lanes.count > 0) measure_group(domain, monitor, r, &groups[k], state);
 }
 
 void lar_guard_select_and_apply(const lar_domain *domain, int32_t r,

@@ -1,0 +1,39 @@
+/* The four triangles of a face (face_contact.h) seen from a point, all of them.
+ *
+ * One after the other, or beside each other in four lanes where the processor has them (AVX2): the
+ * same operations in the same order, and so the same bits.
+ */
+#ifndef LAR_MECHANICS_FACE_PARTS_H
+#define LAR_MECHANICS_FACE_PARTS_H
+
+#include <stdbool.h>
+
+/* Of triangle t, with corners t, t + 1 and the middle: */
+typedef struct lar_face_parts {
+    double weight[4][4]; /* [t]: of the face's corners in its closest point */
+    double distance[4];  /* of that point [m] */
+    double height[4];    /* over its plane there [m]; 0 where it has no area */
+} lar_face_parts;
+
+/* `x`: the point [m]; `middle`: the mean of the corners. */
+void lar_face_parts_one_by_one(const double x[3], const double corner[4][3], const double middle[3],
+                               lar_face_parts *parts);
+
+/* How much x and the corners may move against each other: lar_face_before. */
+double lar_face_before_one_by_one(const double x[3], const double corner[4][3],
+                                  const double middle[3]);
+
+/* Both in lanes, of builds that have them. */
+void lar_face_parts_in_lanes(const double x[3], const double corner[4][3], const double middle[3],
+                             lar_face_parts *parts);
+double lar_face_before_in_lanes(const double x[3], const double corner[4][3],
+                                const double middle[3]);
+
+#if defined(LAR_HAVE_FACE_LANES)
+/* Whether this processor has them. */
+static inline bool lar_face_lanes(void) {
+    return __builtin_cpu_supports("avx2");
+}
+#endif
+
+#endif
