@@ -101,15 +101,17 @@ static int nodes_beyond(planner *plan, lar_gid e, lar_gid from, lar_gid to, lar_
     return count;
 }
 
-/* Numbers a line of run[from..from+length) and what lies beyond its ends. The row's own beginning
- * gets an even number. */
+/* Numbers a line of run[from..from+length) and what lies beyond its ends, but for the run's other
+ * lines: around the core of a disc one line goes on in another. The row's own beginning gets an even
+ * number. */
 static bool number_line(planner *plan, int from, int length, int line) {
     corners corner = (corners)plan->run_corner + from;
     const int32_t *run = plan->run + from;
     lar_gid *before = plan->beyond[0], *behind = plan->beyond[1];
     begin_check(plan);
     for (int k = 0; k <= length; k++)
-        plan->stamp[line_node(corner, length, line, k)] = plan->stamp_now;
+        for (int any = 0; any < 4; any++)
+            plan->stamp[line_node(corner, length, any, k)] = plan->stamp_now;
     int ahead = nodes_beyond(plan, run[length - 1], corner[length - 1][lar_line_left[line]],
                              corner[length - 1][lar_line_right[line]], behind);
     int back = nodes_beyond(plan, run[0], corner[0][lar_line_right[line]],

@@ -313,4 +313,47 @@ TEST_UNUSED static lar_model *loop(void) {
     return model;
 }
 
+/* A node of ring k around a core of width x width elements, counter-clockwise from its corner; ring
+ * 0 is the core's outline. */
+static int32_t disc_node(int width, int k, int along) {
+    int side = width + 1, p = along % (4 * width), q = p % width;
+    const int at[4][2] = {{q, 0}, {width, q}, {width - q, width}, {0, width - q}};
+    if (k > 0) return side * side + 4 * width * (k - 1) + p;
+    return at[p / width][0] + side * at[p / width][1];
+}
+
+/* A disc of several layers: a square core, and rings around it that four blocks make. Lines of
+ * nodes turn around the core, and one that leaves it may come back beside itself. */
+TEST_UNUSED static lar_model *disc(int width, int rings, int layers) {
+    int side = width + 1, section = side * side + 4 * width * rings;
+    lar_model *model = boxes((width * width + 4 * width * rings) * layers, 1, 1, 0);
+    lar_mesh *mesh = &model->mesh;
+    mesh->node_count = section * (layers + 1);
+    for (int l = 0; l <= layers; l++) {
+        double(*at)[3] = mesh->position + section * l;
+        for (int n = 0; n < side * side; n++)
+            memcpy(at[n], (double[]){n % side - 0.5 * width, n / side - 0.5 * width, l}, 24);
+        for (int n = 0; n < 4 * width * rings; n++) {
+            const double *inner = at[disc_node(width, 0, n)];
+            double out = 1 + 0.5 * (n / (4 * width) + 1), turn = hypot(inner[0], inner[1]) / width;
+            memcpy(at[side * side + n], (double[]){out * inner[0] / turn, out * inner[1] / turn, l},
+                   24);
+        }
+    }
+    int32_t e = 0;
+    for (int l = 0; l < layers; l++)
+        for (int n = 0; n < width * width + 4 * width * rings; n++, e++) {
+            int i = n % width, j = n / width, p = n - width * width, k = p / (4 * width);
+            const int32_t core[4] = {i + side * j, i + 1 + side * j, i + 1 + side * (j + 1),
+                                     i + side * (j + 1)};
+            const int32_t around[4] = {disc_node(width, k + 1, p % (4 * width)),
+                                       disc_node(width, k + 1, p % (4 * width) + 1),
+                                       disc_node(width, k, p % (4 * width) + 1),
+                                       disc_node(width, k, p % (4 * width))};
+            for (int a = 0; a < 8; a++)
+                mesh->element[e][a] = (p < 0 ? core : around)[a % 4] + section * (l + a / 4);
+        }
+    return model;
+}
+
 #endif

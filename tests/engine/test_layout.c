@@ -145,6 +145,17 @@ static void two_bodies(void **unused) {
     }
 }
 
+static void discs(void **unused) {
+    (void)unused;
+    for (int width = 1; width < 6; width++)
+        for (int rings = 1; rings < 7; rings += test_every(2)) {
+            check_model(disc(width, rings, 1 + (width + rings) % 3));
+            lar_model *model = disc(width, rings, 2);
+            turn_elements(&model->mesh);
+            check_model(model);
+        }
+}
+
 static void rings(void **unused) {
     (void)unused;
     for (int around = 3; around < 24; around += around < 10 ? 1 : 3)
@@ -232,6 +243,7 @@ int main(void) {
         cmocka_unit_test(holes_and_corners),
         cmocka_unit_test(two_bodies),
         cmocka_unit_test(rings),
+        cmocka_unit_test(discs),
         cmocka_unit_test(a_row_that_crosses_itself),
         cmocka_unit_test(a_fold_ends_a_row),
         cmocka_unit_test(the_organ_is_nearly_all_rows),

@@ -162,6 +162,26 @@ static void parts_of_rings(void **unused) {
     }
 }
 
+/* Around a core, where the line that goes on beyond the end of a row may be another of the row. */
+static void parts_of_discs(void **unused) {
+    (void)unused;
+    chance_state = 13;
+    for (int n = 0; n < 40; n++) {
+        lar_model *model = disc(1 + n % 5, 1 + chance(6), 1 + chance(4));
+        if (n % 4 == 3) turn_elements(&model->mesh);
+        lar_layout whole;
+        assert_int_equal(lar_layout_create(model, &whole, NULL), LAR_OK);
+        for (int i = 0; i < 6; i++) {
+            slice s = new_slice(&model->mesh, 1 + i / 2);
+            if (i % 2) fill_at_random(&model->mesh, &s);
+            cost_of_part(model, &whole, &s.part);
+            free_slice(&s);
+        }
+        lar_layout_destroy(&whole);
+        lar_model_destroy(model);
+    }
+}
+
 /* A row of eight needs its lines in one hand. */
 static void owners_end_rows(void **unused) {
     (void)unused;
@@ -351,6 +371,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(parts_of_bricks),
         cmocka_unit_test(parts_of_rings),
+        cmocka_unit_test(parts_of_discs),
         cmocka_unit_test(owners_end_rows),
         cmocka_unit_test(batches_and_rows),
         cmocka_unit_test(one_element_and_idle_threads),
