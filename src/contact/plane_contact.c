@@ -97,9 +97,8 @@ LAR_SETUP lar_status lar_plane_contact_create(const lar_planes *planes,
     *plane_contact = (lar_plane_contact){.planes = planes};
     if (planes->count == 0) return LAR_OK;
     plane_contact->near = lar_calloc((size_t)planes->count, sizeof *plane_contact->near);
-    if (planes->rough)
-        plane_contact->last = lar_calloc((size_t)planes->count, sizeof *plane_contact->last);
-    if (plane_contact->near && (plane_contact->last || !planes->rough)) return LAR_OK;
+    plane_contact->last = lar_calloc((size_t)planes->count, sizeof *plane_contact->last);
+    if (plane_contact->near && plane_contact->last) return LAR_OK;
     lar_plane_contact_destroy(plane_contact);
     return lar_fail_memory(error, (size_t)planes->count * sizeof *plane_contact->near,
                            "the nodes before planes");
@@ -143,7 +142,8 @@ static void search(lar_plane_contact *plane_contact, const lar_condition_context
     enum { AHEAD = 64 };
     double dt = context->time_step, travel = step_travel(context, state);
     /* Friction must not depend on when nodes were looked at, not even after a checkpoint. */
-    if (plane_contact->last) travel = larger(travel, travel_of_all(plane_contact, context, state));
+    if (plane_contact->planes->rough)
+        travel = larger(travel, travel_of_all(plane_contact, context, state));
     plane_contact->reach = AHEAD * travel + 50000 * dt * dt;
     plane_contact->travel = 0;
     plane_contact->near_count = 0;
@@ -162,6 +162,25 @@ static void search(lar_plane_contact *plane_contact, const lar_condition_context
     plane_contact->known = true;
     seen->searches++;
     seen->boxed += (uint64_t)plane_contact->near_count;
+}
+
+/* A search within a step: who was near has its velocity before the step from `last`; the others
+ * have none. */
+static void search_again(lar_plane_contact *plane_contact, const lar_condition_context *context,
+                         const lar_state *state, lar_contact_info *seen) {
+    int32_t count = plane_contact->near_count, k = 0;
+    lar_plane_near *last = plane_contact->near;
+    plane_contact->near = plane_contact->last;
+    plane_contact->last = last;
+    search(plane_contact, context, state, seen);
+    for (int32_t i = 0; i < plane_contact->near_count; i++) {
+        lar_plane_near *near = &plane_contact->near[i];
+        while (k < count && last[k].node.node < near->node.node) k++;
+        if (k < count && last[k].node.node == near->node.node)
+            memcpy(near->before, last[k].before, sizeof near->before);
+        else
+            near->before[0] = NAN;
+    }
 }
 
 void lar_plane_contact_observe(lar_plane_contact *plane_contact,
@@ -204,11 +223,12 @@ static inline bool stop_node(const lar_plane_near *near, const lar_plane_way *wa
     double change = min_velocity(height - dt * speed, rate) - speed;
     if (change > 0) {
         double mean[3], free[3];
+        bool known = !isnan(near->before[0]);
         for (int i = 0; i < 3; i++) {
             sum->stopped = larger(sum->stopped, fabs(v[i]));
-            double now = v[i] + way->slide[i] * change;
-            free[i] = near->before[i] + v[i];
-            mean[i] = near->before[i] + now;
+            double now = v[i] + way->slide[i] * change, before = known ? near->before[i] : v[i];
+            free[i] = before + v[i];
+            mean[i] = before + now;
             u[i] += dt * (way->slide[i] * change);
             v[i] = now;
         }
@@ -225,25 +245,6 @@ static inline bool stop_node(const lar_plane_near *near, const lar_plane_way *wa
 }
 
 /* ---- friction ------------------------------------------------------------------------------ */
-
-/* A search within a step, with friction: who was near has its velocity before the step from `last`;
- * the others have none. */
-static void search_again(lar_plane_contact *plane_contact, const lar_condition_context *context,
-                         const lar_state *state, lar_contact_info *seen) {
-    int32_t count = plane_contact->near_count, k = 0;
-    lar_plane_near *last = plane_contact->near;
-    plane_contact->near = plane_contact->last;
-    plane_contact->last = last;
-    search(plane_contact, context, state, seen);
-    for (int32_t i = 0; i < plane_contact->near_count; i++) {
-        lar_plane_near *near = &plane_contact->near[i];
-        while (k < count && last[k].node.node < near->node.node) k++;
-        if (k < count && last[k].node.node == near->node.node)
-            memcpy(near->before, last[k].before, sizeof near->before);
-        else
-            near->before[0] = NAN;
-    }
-}
 
 /* Whether a node comes from so far that its velocity before the step does not count: from more than
  * twice the way that it went in one. Who was not near at the beginning of the step has; so that who
@@ -373,7 +374,7 @@ void lar_plane_contact_stop(lar_plane_contact *plane_contact, const lar_conditio
     /* Faster within one step than the search allowed for: somebody else may be there now. (What
      * they had before is lost, which costs the energy account a little and the motion nothing.) */
     if (!(plane_contact->travel < plane_contact->reach) && !always)
-        (plane_contact->last ? search_again : search)(plane_contact, context, state, seen);
+        search_again(plane_contact, context, state, seen);
     double dt = context->time_step, rate = 1 / dt, moved = step_travel(context, state);
     stops sum = {0};
     const lar_plane_way *way = plane_contact->planes->way;

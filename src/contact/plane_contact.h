@@ -66,7 +66,7 @@ typedef struct lar_plane_contact {
     const lar_planes *planes;
     int32_t near_count;
     lar_plane_near *near; /* [near_count] in the order of planes->node */
-    lar_plane_near *last; /* [planes->count] scratch of searches; NULL: without friction */
+    lar_plane_near *last; /* [planes->count] scratch of searches */
     double travel;        /* at most this far has any node gone since the search [m] */
     double reach;         /* how far `near` looks [m] */
     bool known;           /* `near` belongs to the state */

@@ -71,6 +71,34 @@ static void every_joule_of_a_plane_is_accounted_for(void **unused) {
     drop(&tissue, 0.3, true, 0.3, 20);
 }
 
+/* Pressed flat and held so, in divided steps: nodes on the plane rest, and take nothing. A plane's
+ * search within a step must leave them the velocity that they had before it. */
+static void a_plane_takes_nothing_from_what_rests(void **unused) {
+    (void)unused;
+    double contact[3];
+    for (int way = 0; way < 3; way++) {
+        static const char *const grid[] = {NULL, "1x1x1", "2x2x1"};
+        brick b = {{6, 4, 2}, 0.005, 0, LAR_LAW_neo_hookean, 3e3, 6e4, 1050};
+        lar_model *model = brick_model(&b);
+        add_plane(model, (double[]){0, 0, -1e-6}, (double[]){0, 0, 1});
+        move_nodes(model, brick_side(&b, 2, -1), LAR_AXIS_Z, -0.0045, add_ramp(model, 0.1));
+        lar_options options = lar_options_default();
+        options.grid = grid[way];
+        lar_simulation *simulation = start_with(model, options);
+        lar_energy e;
+        while (lar_simulation_time(simulation) < 0.5) advance(simulation, 10);
+        double stored = body_energy(simulation, &e);
+        assert_true(lar_simulation_divided_steps(simulation, NULL) > 0);
+        assert_below(fabs(stored + e.contact - e.external), 0.002 * e.external);
+        contact[way] = e.contact;
+        print_message("%s: a plane took %.3g of %.3g J\n", grid[way] ? grid[way] : "no grid",
+                      e.contact, e.external);
+        finish(simulation, model);
+    }
+    for (int way = 1; way < 3; way++)
+        assert_below(fabs(contact[way] - contact[0]), 1e-12 + 1e-6 * fabs(contact[0]));
+}
+
 /* A body lies on a plane: it comes to rest, and does not sink in. */
 static void a_body_comes_to_rest_on_a_plane(void **unused) {
     (void)unused;
@@ -383,6 +411,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_dropped_body_gains_no_energy),
         cmocka_unit_test(every_joule_of_a_plane_is_accounted_for),
+        cmocka_unit_test(a_plane_takes_nothing_from_what_rests),
         cmocka_unit_test(a_body_comes_to_rest_on_a_plane),
         cmocka_unit_test(what_tools_feel_is_what_the_body_feels),
         cmocka_unit_test(every_joule_of_a_tool_is_accounted_for),
