@@ -5,8 +5,8 @@
  *       |---walk 2: sections, supports, loads, contact (they name sets, materials and amplitudes)
  *       '---finish: materials of elements, supports and loads gathered node by node
  *
- * One table says of every keyword in which walk it is read, that it is harmless (output, solver
- * settings), or that it is left out with a notice; every other one is refused by name and line,
+ * One table says of every keyword in which walk it is read, that it is harmless (solver settings),
+ * or that it is left out with a notice (requests for results: one for all); every other one is refused by name and line,
  * because leaving it out would change the answer. The same holds for parameters.
  *
  * In a deck what comes later overrides: a step's displacement takes the place of a support that
