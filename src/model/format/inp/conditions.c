@@ -176,10 +176,11 @@ static lar_status read_curve(inp_deck *deck, const inp_card *card, int *curve) {
         lar_curve_value(&deck->model->curve[*curve], 0.0) == 0.0)
         return status;
     deck->step.at_once = true;
-    return inp_notice(deck, deck->reader.line,
-                      "this displacement is there at once, as in Abaqus without AMPLITUDE in a "
-                      "*DYNAMIC or *VISCO step: the body starts with these nodes displaced, and shakes; to "
-                      "ramp it, name an *AMPLITUDE that rises from 0 (AMPLITUDE=)");
+    return inp_notice(
+        deck, deck->reader.line,
+        "this displacement is there at once, as in Abaqus without AMPLITUDE in a "
+        "*DYNAMIC or *VISCO step: the body starts with these nodes displaced, and shakes; to "
+        "ramp it, name an *AMPLITUDE that rises from 0 (AMPLITUDE=)");
 }
 
 static lar_status read_support(inp_deck *deck, const inp_card *card, lar_span line) {

@@ -31,8 +31,9 @@ static lar_status check_step(const inp_deck *deck, const inp_card *card) {
                         "a second *STEP; Lariat does not change conditions between steps, keep "
                         "one");
     if (inp_parameter(card, "PERTURBATION", &value))
-        return inp_fail(deck, card->line, LAR_ERROR_UNSUPPORTED,
-                        "a *STEP with PERTURBATION is not read; Lariat does *STATIC, *VISCO and *DYNAMIC");
+        return inp_fail(
+            deck, card->line, LAR_ERROR_UNSUPPORTED,
+            "a *STEP with PERTURBATION is not read; Lariat does *STATIC, *VISCO and *DYNAMIC");
     return inp_only(deck, card, known);
 }
 
@@ -60,8 +61,9 @@ static lar_status end_step(inp_deck *deck, const inp_card *card) {
 
 /* First increment, period: on one line, which may be left out. */
 static lar_status read_procedure(inp_deck *deck, const inp_card *card, inp_procedure procedure) {
-    static const char known[] = "LONG TERM,SOLVER,DIRECT,STABILIZE,ALLSDTOL,FACTOR,CONTINUE,EXPLICIT,ALPHA,"
-                                "TIMERESET,TOTALTIMEAT,HAFTOL,NOHAF,INITIAL,CETOL,CREEP";
+    static const char known[] =
+        "LONG TERM,SOLVER,DIRECT,STABILIZE,ALLSDTOL,FACTOR,CONTINUE,EXPLICIT,ALPHA,"
+        "TIMERESET,TOTALTIMEAT,HAFTOL,NOHAF,INITIAL,CETOL,CREEP";
     const size_t others = procedure == INP_STATIC ? 0 : strlen("LONG TERM,");
     lar_span line, field[8], ignored;
     int count = 0;

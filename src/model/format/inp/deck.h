@@ -6,8 +6,9 @@
  *       '---finish: materials of elements, supports and loads gathered node by node
  *
  * One table says of every keyword in which walk it is read, that it is harmless (solver settings),
- * or that it is left out with a notice (requests for results: one for all); every other one is refused by name and line,
- * because leaving it out would change the answer. The same holds for parameters.
+ * or that it is left out with a notice (requests for results: one for all); every other one is
+ * refused by name and line, because leaving it out would change the answer. The same holds for
+ * parameters.
  *
  * In a deck what comes later overrides: a step's displacement takes the place of a support that
  * stands above. So supports are kept per node and axis while the deck is read, and made into lists
@@ -24,8 +25,8 @@ typedef struct inp_material {
     char *name;
     int line;
     bool has_law, has_density;
-    bool linear;        /* from *ELASTIC */
-    double damping;     /* ALPHA of *DAMPING [1/s] */
+    bool linear;    /* from *ELASTIC */
+    double damping; /* ALPHA of *DAMPING [1/s] */
     int damping_line;
     lar_material value; /* its viscosity without what `instant` says */
     bool instant;       /* its moduli are those at once: MODULI=INSTANTANEOUS */
@@ -86,17 +87,16 @@ enum { INP_GRAVITIES = 8 };
 
 typedef enum inp_procedure { INP_NO_PROCEDURE, INP_STATIC, INP_VISCO, INP_DYNAMIC } inp_procedure;
 
-
 typedef struct inp_step {
     int line;  /* of *STEP, 0: none so far */
     bool open; /* between *STEP and *END STEP */
     inp_procedure procedure;
     bool long_term; /* of *STATIC: what is viscous has relaxed */
     double period;  /* [s] */
-    int amplitude; /* AMPLITUDE of *STEP: 0 not given, 1 STEP, 2 RAMP */
-    bool large;    /* NLGEOM */
-    bool supports; /* a *BOUNDARY has been read in it */
-    bool at_once;  /* a notice says that displacements are there at once */
+    int amplitude;  /* AMPLITUDE of *STEP: 0 not given, 1 STEP, 2 RAMP */
+    bool large;     /* NLGEOM */
+    bool supports;  /* a *BOUNDARY has been read in it */
+    bool at_once;   /* a notice says that displacements are there at once */
 } inp_step;
 
 typedef struct inp_deck {

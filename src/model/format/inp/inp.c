@@ -45,7 +45,7 @@ lar_status inp_expected(inp_reader *reader, int line, const char *what, lar_span
                     text);
 }
 
-/* A part ends with *END PART, an instance likewise, and both before the *ASSEMBLY or a step's end. */
+/* A part and an instance end with an *END of their own; nothing of them is behind any other one. */
 static void enter_scope(inp_reader *reader, const inp_card *card) {
     lar_span word = card->keyword, ignored;
     if (lar_span_equal_nocase(word, "PART") || lar_span_equal_nocase(word, "INSTANCE"))
@@ -371,7 +371,7 @@ static const keyword_row keywords[] = {
     {"ELEMENT", WALK_MESH, read_elements},
     {"NSET", WALK_SETS, inp_read_nset},
     {"ELSET", WALK_SETS, inp_read_elset},
-    {"SURFACE", WALK_SETS, inp_name_surface},
+    {"SURFACE", WALK_SETS, inp_name_surface}, /* so that all names are known before any is built */
     {"SURFACE", WALK_SURFACES, inp_read_surface},
     {"INCLUDE", WALK_MESH, refuse_include},
     {"PART", WALK_MESH, read_part},

@@ -38,10 +38,10 @@ typedef struct inp_entry {
 } inp_entry;
 
 typedef struct inp_set {
-    char *name, *built;  /* the latter in the mesh, where it is another one; NULL: the name */
-    lar_set_kind kind; /* of surfaces only the name is here */
-    bool in_part;      /* its scope */
-    int32_t tag; /* element sets on *ELEMENT lines: 1, 2, ... ; 0 for others */
+    char *name, *built; /* the latter in the mesh, where it is another one; NULL: the name */
+    lar_set_kind kind;  /* of surfaces only the name is here */
+    bool in_part;       /* its scope */
+    int32_t tag;        /* element sets on *ELEMENT lines: 1, 2, ... ; 0 for others */
     size_t count, capacity;
     inp_entry *entry;
 } inp_set;

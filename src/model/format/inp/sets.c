@@ -216,8 +216,8 @@ static lar_status add_list(inp_reader *reader, inp_set *set, lar_span line, int 
             if (!other) return fail_set_name(reader, at, field, set->kind == LAR_SET_NODES);
             /* A set may name itself: it gets the entries it has now once more. */
             for (size_t i = 0, count = other->count; i < count && !status; i++)
-                status = inp_add_entry(reader, set,
-                                       (inp_entry){other->entry[i].id, at, other->entry[i].corners});
+                status = inp_add_entry(
+                    reader, set, (inp_entry){other->entry[i].id, at, other->entry[i].corners});
         }
         if (status) return status;
     }

@@ -102,11 +102,12 @@ lar_status inp_read_viscoelastic(inp_deck *deck, const inp_card *card) {
 static lar_status freeze(inp_deck *deck, const inp_material *from, lar_material *material) {
     const bool at_once = !deck->step.long_term;
     lar_material_freeze(material, at_once);
-    return inp_notice(deck, material->viscosity.line,
-                      "material '%.60s': *STATIC takes its moduli %s; *STATIC%s takes those %s, and "
-                      "*VISCO follows what relaxes",
-                      from->name, at_once ? "at once" : "in the end",
-                      at_once ? ", LONG TERM" : "", at_once ? "in the end" : "at once");
+    return inp_notice(
+        deck, material->viscosity.line,
+        "material '%.60s': *STATIC takes its moduli %s; *STATIC%s takes those %s, and "
+        "*VISCO follows what relaxes",
+        from->name, at_once ? "at once" : "in the end", at_once ? ", LONG TERM" : "",
+        at_once ? "in the end" : "at once");
 }
 
 lar_status inp_finish_viscosity(inp_deck *deck, const inp_material *from, lar_material *material) {
