@@ -408,17 +408,28 @@ static void test_ranges(void **state) {
 
 static void test_steps(void **state) {
     (void)state;
-    lar_model *model = read_deck("*HEADING\nA bar of\ntwo cubes\n" MESH SOFT
-                                 "*RESTART, WRITE\n*STEP\nwords\n*DYNAMIC, DIRECT\n*NODE PRINT, "
-                                 "NSET=ALL\nU\n*EL FILE\nS\n*BULK VISCOSITY\n0.06\n" END);
+    lar_model *model =
+        read_deck("*HEADING\nA bar of\ntwo cubes\n" MESH SOFT
+                  "*RESTART, WRITE\n*STEP\nwords\n*DYNAMIC, DIRECT\n*NODE PRINT, "
+                  "NSET=ALL\nU, V\n*EL FILE\nS\n*NODE PRINT, NSET=wall, TOTALS=ONLY\nRF,"
+                  "\nU, rf\n*NODE PRINT\nU\n*NODE PRINT, NSET=nobody\nU\n"
+                  "*BULK VISCOSITY\n0.06\n" END);
     assert_string_equal(model->title, "A bar of");
     assert_true(model->duration == 1);
     assert_int_equal(notices_with(model, "deck.inp:39: the step has no NLGEOM"), 1);
     assert_int_equal(notices_with(model, "*BULK VISCOSITY was left out"), 1);
-    assert_int_equal(notices_with(model, "deck.inp:42: *NODE PRINT and other requests for results "
-                                         "were left out; lariat run --out"),
-                     1);
-    assert_int_equal(notices_with(model, "*EL FILE"), 0);
+    assert_int_equal(notices_with(model, "deck.inp:42: requests for results, *NODE PRINT here"), 1);
+    assert_int_equal(notices_with(model, "requests for results"), 1);
+    /* U and RF of a set are probes */
+    const lar_output *output = &model->output;
+    assert_int_equal(output->probe_count, 3);
+    assert_string_equal(output->probe[0].name, "ALL");
+    assert_int_equal(output->probe[0].nodes.count, 12);
+    assert_int_equal(output->probe[0].what, LAR_PROBE_DISPLACEMENT);
+    assert_string_equal(output->probe[1].name, "Wall reaction");
+    assert_int_equal(output->probe[1].what, LAR_PROBE_REACTION);
+    assert_int_equal(output->probe[1].nodes.node[3], 7);
+    assert_string_equal(output->probe[2].name, "Wall");
     lar_model_destroy(model);
     const int line = AFTER_SOFT;
     refused(MESH SOFT STATIC END STATIC END, LAR_ERROR_UNSUPPORTED, line + 4, "a second *STEP");

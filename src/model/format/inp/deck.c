@@ -170,7 +170,7 @@ static const keyword_row keywords[] = {
     {"ELEMENT OUTPUT", NULL, NULL, HARMLESS},
     {"CONTACT OUTPUT", NULL, NULL, HARMLESS},
     {"ENERGY OUTPUT", NULL, NULL, HARMLESS},
-    {"NODE PRINT", NULL, NULL, RESULTS},
+    {"NODE PRINT", NULL, inp_read_node_print, RESULTS},
     {"NODE FILE", NULL, NULL, RESULTS},
     {"EL PRINT", NULL, NULL, RESULTS},
     {"EL FILE", NULL, NULL, RESULTS},
@@ -226,17 +226,6 @@ static lar_status refuse_keyword(const inp_deck *deck, const inp_card *card) {
                     inp_shown(card->keyword), card->keyword.at);
 }
 
-/* Once for all of them. */
-static lar_status notice_results(inp_deck *deck, const inp_card *card) {
-    if (deck->results) return LAR_OK;
-    deck->results = true;
-    return inp_notice(deck, card->line,
-                      "*%.*s and other requests for results were left out; lariat run --out FOLDER "
-                      "writes results, and a scene (output: probes:) or Python gives values of "
-                      "nodes",
-                      inp_shown(card->keyword), card->keyword.at);
-}
-
 static lar_status read_card(inp_deck *deck, const inp_card *card, bool second) {
     const keyword_row *row = find_keyword(card->keyword);
     if (!row) return refuse_keyword(deck, card);
@@ -244,7 +233,7 @@ static lar_status read_card(inp_deck *deck, const inp_card *card, bool second) {
     if (row->kind == LEFT_OUT && !second)
         return inp_notice(deck, card->line, "*%.*s was left out", inp_shown(card->keyword),
                           card->keyword.at);
-    if (row->kind == RESULTS && !second) return notice_results(deck, card);
+    if (row->kind == RESULTS && !second) return inp_notice_results(deck, card);
     card_reader *read = second ? row->second : row->first;
     return read ? read(deck, card) : LAR_OK;
 }

@@ -6,8 +6,8 @@
  *       '---finish: materials of elements, supports and loads gathered node by node
  *
  * One table says of every keyword in which walk it is read, that it is harmless (solver settings),
- * or that it is left out with a notice (requests for results: one for all); every other one is
- * refused by name and line, because leaving it out would change the answer. The same holds for
+ * or that it is left out with a notice (requests for results: one for all of them); every other one
+ * is refused by name and line, because leaving it out would change the answer. The same holds for
  * parameters.
  *
  * In a deck what comes later overrides: a step's displacement takes the place of a support that
@@ -246,6 +246,12 @@ lar_status inp_read_cload(inp_deck *deck, const inp_card *card);
 lar_status inp_read_dload(inp_deck *deck, const inp_card *card);
 lar_status inp_read_dsload(inp_deck *deck, const inp_card *card);
 lar_status inp_finish_loads(inp_deck *deck);
+
+/* ---- results.c --------------------------------------------------------------------------- */
+
+/* Once for all such cards. */
+lar_status inp_notice_results(inp_deck *deck, const inp_card *card);
+lar_status inp_read_node_print(inp_deck *deck, const inp_card *card);
 
 /* ---- contact.c --------------------------------------------------------------------------- */
 
