@@ -139,7 +139,7 @@ lar_status lar_comm_job_meet(lar_comm_job *job, lar_comm_options *options, lar_e
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "this processor was not started together with others; start with mpirun or "
                         "srun");
-    bool one;
+    bool one = true;
     int listener = -1;
     lar_status status = on_one_network(world, options->start_timeout, &one, error);
     if (status) return status;

@@ -81,8 +81,9 @@ static void lar_mooney_rivlin_read_abaqus(const double *given, double *p) {
     p[1] = given[1];
     p[2] = 2.0 / given[2];
 }
-static const lar_law_dialect lar_mooney_rivlin_abaqus = LAR_LAW_DIALECT(
-    "MOONEY-RIVLIN", lar_mooney_rivlin_constant, lar_mooney_rivlin_read_abaqus, "K/2 (ln J)^2");
+static const lar_law_dialect lar_mooney_rivlin_abaqus =
+    LAR_LAW_SERIES("MOONEY-RIVLIN", lar_mooney_rivlin_constant, lar_mooney_rivlin_read_abaqus,
+                   "K/2 (ln J)^2", "POLYNOMIAL", 2);
 
 static double lar_mooney_rivlin_shear(const double *p) {
     return 2.0 * (p[0] + p[1]);

@@ -1,6 +1,7 @@
 #include "model/material.h"
 
 #include <math.h>
+#include <string.h>
 
 const char *const lar_fibre_law_name[LAR_FIBRE_LAWS] = {"", "exp-pow", "exp-linear", "pow-linear",
                                                         "hgo"};
@@ -30,6 +31,20 @@ double lar_material_instant_bulk(const lar_material *material) {
     double bulk = lar_law_table[material->law].bulk(material->parameter);
     return material->viscosity.terms ? lar_viscosity_volume_instant(&material->viscosity) * bulk
                                      : bulk;
+}
+
+/* The bulk modulus of a law with an isochoric part is a parameter of its own. */
+void lar_material_freeze(lar_material *material, bool at_once) {
+    const lar_viscosity *v = &material->viscosity;
+    const lar_law_row *law = &lar_law_table[material->law];
+    const double factor = at_once ? lar_viscosity_instant(v) : lar_viscosity_rest(v);
+    for (int k = 0; k < law->count; k++)
+        if (lar_law_scales(material->law, k) &&
+            !(v->isochoric && strcmp(law->parameter[k].name, "bulk_modulus") == 0))
+            material->parameter[k] *= factor;
+    for (int k = 0; k < LAR_FIBRE_PARAMETERS; k++)
+        if (lar_fibre_scales(material->fibre.law, k)) material->fibre.parameter[k] *= factor;
+    material->viscosity.terms = 0;
 }
 
 /* A constant that moduli at rest do not know has been given in another unit when it dwarfs them:

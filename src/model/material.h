@@ -31,6 +31,9 @@ double lar_material_bulk(const lar_material *material);
 double lar_material_instant_shear(const lar_material *material);
 double lar_material_instant_bulk(const lar_material *material);
 
+/* Makes a viscous material elastic: as it is at once, or in the end. */
+void lar_material_freeze(lar_material *material, bool at_once);
+
 /* Refuses: density not positive and finite, shear or bulk modulus not positive, Poisson ratio
  * 0.5 or more, not finite. `where` begins the message (file:line:column). */
 lar_status lar_material_check(const lar_material *material, const char *where, lar_error *error);

@@ -1,6 +1,7 @@
 #include "model/rest.h"
 
 #include <math.h>
+#include <stdio.h>
 
 static const double PI = 3.14159265358979;
 
@@ -31,6 +32,35 @@ void lar_model_slow_to(lar_model *model, double period) {
     double share = period / lar_model_slow_period(model), factor = share * share;
     for (int i = 0; i < model->material_count; i++) model->material[i].density *= factor;
     for (int axis = 0; axis < 3; axis++) model->gravity[axis] /= factor;
+}
+
+lar_rest_words lar_model_follow_static(lar_model *model, const char *what) {
+    static const double FEW = 2, MANY = 20, VISCOUS = 100, VISCOUS_DAMPING = 0.1;
+    const double end = model->duration;
+    double period = end / VISCOUS;
+    lar_rest_words words;
+    model->by_material_time = end > 0 && lar_model_viscous(model);
+    model->until_rest = !model->by_material_time;
+    if (model->until_rest) period = fmin(fmax(lar_model_slow_period(model), end / MANY), end / FEW);
+    if (end > 0) lar_model_slow_to(model, period);
+    model->damping = lar_model_rest_damping(model);
+    for (int i = 0; end > 0 && i < model->curve_count; i++)
+        lar_curve_hold_from(&model->curve[i], end);
+    if (model->until_rest) {
+        snprintf(
+            words.text, sizeof words.text,
+            "the %s is static: Lariat follows it in time, with a damping of %.3g 1/s, until it "
+            "is at rest",
+            what, model->damping);
+        return words;
+    }
+    model->damping *= VISCOUS_DAMPING;
+    snprintf(words.text, sizeof words.text,
+             "the %s is static and a material viscous: Lariat follows it in the material's time to "
+             "the deck's end, %g s, with little mass and a damping of %.3g 1/s; only a slender "
+             "body that bends may lag behind its loads",
+             what, end, model->damping);
+    return words;
 }
 
 double lar_model_loads_end(const lar_model *model) {

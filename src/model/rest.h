@@ -2,7 +2,8 @@
  *
  * An explicit engine follows everything in time, so a static answer is the state of rest that a
  * damped body reaches under loads that no longer change. Here are the two figures that this needs
- * from the model alone: the damping, and the time on which the body answers.
+ * from the model alone: the damping, and the time on which the body answers; and what readers of
+ * decks make of them.
  */
 #ifndef LAR_MODEL_REST_H
 #define LAR_MODEL_REST_H
@@ -21,6 +22,23 @@ double lar_model_slow_period(const lar_model *model);
 /* Gives the body so much more or less mass that this period becomes `period` [s], and gravity so
  * much less or more: forces and what they come to at rest stay as they are. */
 void lar_model_slow_to(lar_model *model, double period);
+
+/* What a static analysis that ends at the model's duration (0: it has no end) becomes, in a
+ * sentence about the `what` that is static.
+ *
+ * Its answer does not depend on mass, so that is such that the body would swing two to twenty times
+ * while the loads come, whatever units and durations the deck has: less, and loads would be blows;
+ * more, and they would be followed wave by wave. The analysis ends with the deck's last step, and
+ * so do its loads, whatever their curves would do behind it.
+ *
+ * With a viscous material the deck's time is the material's, and its end the answer. There mass
+ * must not be felt on the way: the body answers in a hundredth of the deck, and with a tenth of
+ * that damping lags behind its loads by 0.1/pi of that (2 zeta/omega); what swings at first is less
+ * by exp(-2 pi 10) in the end. */
+typedef struct lar_rest_words {
+    char text[300];
+} lar_rest_words;
+lar_rest_words lar_model_follow_static(lar_model *model, const char *what);
 
 /* Time after which no load, no prescribed value and no activation changes [s], at least 0; of waves
  * that come again and again it knows nothing. */

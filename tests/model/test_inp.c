@@ -135,6 +135,88 @@ static void reads_part(void **state) {
     free(whole);
 }
 
+/* Cubes over each other, as Abaqus/CAE writes them: it calls the first set Set-1 in the part and in
+ * the assembly. */
+#define PART                                                                                       \
+    "*Heading\n*Part, name=P\n*Node\n1, 0, 0, 0\n2, 1, 0, 0\n3, 1, 1, 0\n4, 0, 1, 0\n"             \
+    "5, 0, 0, 1\n6, 1, 0, 1\n7, 1, 1, 1\n8, 0, 1, 1\n9, 0, 0, 2\n10, 1, 0, 2\n11, 1, 1, 2\n"       \
+    "12, 0, 1, 2\n*Element, type=C3D8\n1, 1, 2, 3, 4, 5, 6, 7, 8\n"                                \
+    "2, 5, 6, 7, 8, 9, 10, 11, 12\n*Nset, nset=Set-1, generate\n1, 12, 1\n"                        \
+    "*Elset, elset=Set-1, generate\n1, 2, 1\n*Elset, elset=Top\n2\n"                               \
+    "*Surface, type=ELEMENT, name=Skin\n1, S1\n*End Part\n*Assembly, name=A\n"
+#define INSTANCE "*Instance, name=P-1, part=P\n0., 0, 0.0\n*End Instance\n"
+
+static lar_mesh parse_whole(const char *text) {
+    return parse_good(lar_inp_parse, "cae.inp", text, strlen(text));
+}
+
+static void parts_and_assemblies_have_sets_of_their_own(void **state) {
+    (void)state;
+    lar_mesh mesh = parse_whole(
+        PART INSTANCE "*Nset, nset=SET-1, instance=P-1, generate\n1, 4, 1\n"
+                      "*Elset, elset=_Skin_S2, instance=P-1\n1\n"
+                      "*Surface, type=ELEMENT, name=Skin\n_Skin_S2, S2\n"
+                      "*Elset, elset=both, instance=P-1\nSet-1\n*Nset, nset=all\nP-1.Set-1\n"
+                      "*Nset, nset=mine\nSet-1, 12\n*Nset, nset=up, elset=P-1.Top\n"
+                      "*End Assembly\n");
+    ASSERT_SET(&mesh, "SET-1", LAR_SET_NODES, 0, 1, 2, 3);
+    ASSERT_SET(&mesh, "P-1.Set-1", LAR_SET_NODES, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11);
+    ASSERT_SET(&mesh, "Set-1", LAR_SET_ELEMENTS, 0, 1); /* the assembly has none of that name */
+    ASSERT_SET(&mesh, "Skin", LAR_SET_FACES, 5);
+    ASSERT_SET(&mesh, "P-1.Skin", LAR_SET_FACES, 4);
+    ASSERT_SET(&mesh, "both", LAR_SET_ELEMENTS, 0, 1);
+    ASSERT_SET(&mesh, "all", LAR_SET_NODES, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11);
+    ASSERT_SET(&mesh, "mine", LAR_SET_NODES, 0, 1, 2, 3, 11);
+    ASSERT_SET(&mesh, "up", LAR_SET_NODES, 4, 5, 6, 7, 8, 9, 10, 11);
+    lar_mesh_clear(&mesh);
+}
+
+/* Reference points are nodes of the assembly, numbered from 1 like those of the part. */
+static void reference_points_are_left_out(void **state) {
+    (void)state;
+    lar_mesh mesh = parse_whole(
+        PART INSTANCE "*Node, nset=Points\n1, 5, 5, 5\n2, 6, 6, 6\n*Nset, nset=RP\n1\n"
+                      "*Nset, nset=RPs, generate\n1, 2, 1\n*Nset, nset=base, instance=P-1\n1, 2\n"
+                      "*Nset, nset=some\n2, 3\n*End Assembly\n");
+    assert_int_equal(mesh.node_count, 12);
+    assert_int_equal(lar_mesh_find_set(&mesh, "Points", LAR_SET_NODES)->count, 0);
+    assert_int_equal(lar_mesh_find_set(&mesh, "RP", LAR_SET_NODES)->count, 0);
+    assert_int_equal(lar_mesh_find_set(&mesh, "RPs", LAR_SET_NODES)->count, 0);
+    ASSERT_SET(&mesh, "base", LAR_SET_NODES, 0, 1);
+    ASSERT_SET(&mesh, "some", LAR_SET_NODES, 2);
+    lar_mesh_clear(&mesh);
+}
+
+static void nodes_of_elements(void **state) {
+    (void)state;
+    char *good = with(flat, "END, SPOS", "20, SPOS");
+    char *more = with(good, "*NSET, NSET=wall\n",
+                      "*NSET, NSET=far, ELSET=FAR\n12\n"
+                      "*NSET, NSET=farther\nfar, 1\n"
+                      "*NSET, NSET=face, ELSET=End\n"
+                      "*NSET, NSET=wall\n");
+    lar_mesh mesh = parse_whole(more);
+    ASSERT_SET(&mesh, "far", LAR_SET_NODES, 1, 2, 5, 6, 8, 9, 10, 11);
+    ASSERT_SET(&mesh, "farther", LAR_SET_NODES, 0, 1, 2, 5, 6, 8, 9, 10, 11);
+    ASSERT_SET(&mesh, "face", LAR_SET_NODES, 8, 9, 10, 11);
+    lar_mesh_clear(&mesh);
+    free(good);
+    free(more);
+}
+
+/* A byte order mark, and line ends of other systems. */
+static void beginnings_and_ends(void **state) {
+    (void)state;
+    lar_mesh mesh = parse_whole("\xef\xbb\xbf" PART INSTANCE "*End Assembly\n");
+    assert_int_equal(mesh.element_count, 2);
+    lar_mesh_clear(&mesh);
+    char text[] = PART INSTANCE "*End Assembly\n";
+    for (char *c = text; *c; c++)
+        if (*c == '\n') *c = '\r';
+    ASSERT_TEXT_REFUSED(lar_inp_parse, "bad.inp", text, LAR_ERROR_FORMAT,
+                        "bad.inp: its lines end with CR alone");
+}
+
 /* ---- what is refused ---------------------------------------------------------------------- */
 
 #define REFUSED(text, status, ...)                                                                 \
@@ -185,8 +267,9 @@ static void refuses_damage(void **state) {
     refused_with("*NSET, NSET=wall", "*NSET", format, "bad.inp:32: the set has no name");
     refused_with("TYPE=C3D8R, ", "", format, "bad.inp:19: *ELEMENT has no TYPE");
     refused_with("7, 1, 2, 3,", "7, 1, 2, 2,", LAR_ERROR_MODEL,
-                 "bad.inp: element 7 has node 2 twice");
-    refused_with("7, 1, 2, 3,", "7, 2, 1, 3,", LAR_ERROR_MODEL, "bad.inp: element 7 is inverted");
+                 "bad.inp:20: element 7 has node 2 twice");
+    refused_with("7, 1, 2, 3,", "7, 2, 1, 3,", LAR_ERROR_MODEL,
+                 "bad.inp:20: element 7 is inverted");
 }
 
 static void refuses_unsupported(void **state) {
@@ -212,7 +295,10 @@ static void refuses_unsupported(void **state) {
     refused_with("*STEP\n", "*INSTANCE, NAME=A\n1, 0, 0\n", unsupported, "move the nodes");
     refused_with("NAME=sides, TYPE=ELEMENT", "NAME=sides, TYPE=CYLINDER", unsupported,
                  "bad.inp:44: only surfaces with TYPE=ELEMENT or TYPE=NODE");
-    refused_with("NSET=wall\n", "NSET=wall, ELSET=Near\n", unsupported, "list the nodes");
+    refused_with("*STEP\n", "*INSTANCE, NAME=A\n0, 0, 0\n0, 0, 0, 0, 0, 1, 90\n", unsupported,
+                 "move the nodes");
+    refused_with("NSET=wall\n", "NSET=wall, ELSET=no\n", LAR_ERROR_FORMAT,
+                 "bad.inp:32: 'no' is neither a number nor an element set defined above");
 }
 
 /* Sets that double with every line: fifty lines would ask for 2^50 entries. */
@@ -272,11 +358,20 @@ static void shared_letter(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(reads_everything),    cmocka_unit_test(faces_are_those_of_abaqus),
-        cmocka_unit_test(reads_part),          cmocka_unit_test(refuses_damage),
-        cmocka_unit_test(refuses_unsupported), cmocka_unit_test(refuses_explosion),
-        cmocka_unit_test(range_of_billions),   cmocka_unit_test(long_keyword_line),
-        cmocka_unit_test(every_prefix),        cmocka_unit_test(shared_letter),
+        cmocka_unit_test(reads_everything),
+        cmocka_unit_test(faces_are_those_of_abaqus),
+        cmocka_unit_test(reads_part),
+        cmocka_unit_test(refuses_damage),
+        cmocka_unit_test(refuses_unsupported),
+        cmocka_unit_test(refuses_explosion),
+        cmocka_unit_test(range_of_billions),
+        cmocka_unit_test(long_keyword_line),
+        cmocka_unit_test(every_prefix),
+        cmocka_unit_test(shared_letter),
+        cmocka_unit_test(parts_and_assemblies_have_sets_of_their_own),
+        cmocka_unit_test(reference_points_are_left_out),
+        cmocka_unit_test(nodes_of_elements),
+        cmocka_unit_test(beginnings_and_ends),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -152,11 +152,24 @@ static void test_loads(void **state) {
 
     model = read_deck(MESH SOFT STATIC "*DLOAD\n, GRAV, 2, 0.6, 0, 0.8\nLEFT, GRAV, 2, 0.6, 0, "
                                        "0.8\n" END);
-    assert_int_equal(notices_with(model, "not twice as much"), 1);
+    assert_int_equal(notices_with(model, "acts once, not twice"), 1);
+    lar_model_destroy(model);
+    /* different ones add up; each axis may have an amplitude of its own */
+    model = read_deck(MESH SOFT "*AMPLITUDE, NAME=up\n0, 0, 1, 4\n"
+                                "*STEP, NLGEOM, AMPLITUDE=RAMP\n*DYNAMIC\n0.1, 2\n"
+                                "*DLOAD\nLEFT, GRAV, 2, 0, 0, -1\n, GRAV, 3, 0, 1, 0\nRIGHT, "
+                                "GRAV, 2, 0, 0, -1\n, GRAV, 1, 0, 0.6, -0.8\n"
+                                "*DLOAD, AMPLITUDE=up\nBOTH, GRAV, 5, 1, 0, 0\n" END);
+    near(model->gravity[0], 5);
+    near(model->gravity[1], 3.6);
+    near(model->gravity[2], -2.8);
+    near(at(model, model->gravity_curve[2], 1), 0.5);
+    near(at(model, model->gravity_curve[0], 1), 4);
+    assert_int_equal(notices_with(model, "GRAV"), 0);
     lar_model_destroy(model);
     model = read_deck(MESH SOFT STATIC "*DLOAD\n, GRAV, 2, 0.6, 0, 0.8\n" END);
-    near(model->gravity[0], 1.2);
-    near(at(model, model->gravity_curve[0], 1), 0.5); /* grows, in a static step */
+    near(model->gravity[0] * model->material[0].density, 1200); /* its weight */
+    near(at(model, model->gravity_curve[0], 1), 0.5);           /* grows, in a static step */
     lar_model_destroy(model);
     model = read_deck(MESH SOFT "*STEP, NLGEOM, AMPLITUDE=STEP\n*STATIC\n*CLOAD\n9, 1, 1\n" END);
     near(at(model, model->load[0].curve, 0), 1);
@@ -221,8 +234,15 @@ static void test_bad_loads(void **state) {
             in + 1, "GRAV leaves out element 2");
     refused(MESH SOFT STATIC "*DLOAD\nBOTH, GRAV, 9.81, 0, 0, -2\n" END, LAR_ERROR_FORMAT, in + 1,
             "length 2");
-    refused(MESH SOFT STATIC "*DLOAD\n, GRAV, 1, 0, 0, 1\n, GRAV, 2, 0, 0, 1\n" END,
-            LAR_ERROR_UNSUPPORTED, in + 2, "another GRAV than in line 39");
+    refused(MESH SOFT STATIC "*DLOAD\n, GRAV, 1, 0, 0, 1\nRIGHT, GRAV, 2, 0, 0, 1\n" END,
+            LAR_ERROR_UNSUPPORTED, in + 2, "GRAV leaves out element 1");
+    refused(MESH SOFT "*AMPLITUDE, NAME=a\n0, 0, 1, 1\n" STATIC "*DLOAD\n, GRAV, 1, 0, 0, 1\n"
+                      "*DLOAD, AMPLITUDE=a\n, GRAV, 2, 0, 0, 1\n" END,
+            LAR_ERROR_UNSUPPORTED, in + 5, "another GRAV along z has another amplitude");
+    refused(MESH SOFT STATIC "*DLOAD\n, GRAV, 1, 1\n, GRAV, 2, 1\n, GRAV, 3, 1\n, GRAV, 4, 1\n"
+                             ", GRAV, 5, 1\n, GRAV, 6, 1\n, GRAV, 7, 1\n, GRAV, 8, 1\n"
+                             ", GRAV, 9, 1\n" END,
+            LAR_ERROR_UNSUPPORTED, in + 9, "more than 8 different GRAV");
     refused(MESH SOFT STATIC "*DSLOAD\nInside, P, 1\n" END, LAR_ERROR_UNSUPPORTED, in + 1,
             "is one of nodes");
     refused(MESH SOFT STATIC "*DSLOAD\nEnd, HP, 1\n" END, LAR_ERROR_UNSUPPORTED, in + 1,
@@ -238,6 +258,18 @@ static void test_bad_loads(void **state) {
             AFTER_SOFT, "TABULAR and SMOOTH STEP");
 }
 
+/* What a support bears at once moves nothing. */
+static void test_forces_on_supports(void **state) {
+    (void)state;
+    lar_model *model =
+        read_deck(MESH SOFT "*BOUNDARY\nWALL, 1, 3\n" STATIC "*BOUNDARY\n9, 1, 1, 0.1\n"
+                            "*CLOAD\nALL, 1, 1\n10, 2, 1\n" END);
+    assert_int_equal(notices_with(model, "deck.inp:42: forces on 5 nodes act along axes that "
+                                         "*BOUNDARY holds: they move nothing"),
+                     1);
+    lar_model_destroy(model);
+}
+
 static void test_initial_velocity(void **state) {
     (void)state;
     lar_model *model = read_deck(MESH SOFT "*INITIAL CONDITIONS, TYPE=VELOCITY\nALL, 1, 2\nTip, 1, "
@@ -251,6 +283,16 @@ static void test_initial_velocity(void **state) {
         near(initial->velocity[0], initial->nodes.count == 8 ? 2 : 3);
     }
     assert_int_equal(nodes, 12);
+    lar_model_destroy(model);
+    /* a static step knows neither velocity nor damping */
+    model = read_deck(MESH "*MATERIAL, NAME=a\n*ELASTIC\n1, 0.3\n*DAMPING, ALPHA=7\n*MATERIAL, "
+                           "NAME=b\n*ELASTIC\n1, 0.3\n*SOLID SECTION, ELSET=LEFT, MATERIAL=a\n"
+                           "*SOLID SECTION, ELSET=RIGHT, MATERIAL=b\n*INITIAL CONDITIONS, "
+                           "TYPE=VELOCITY\nALL, 1, 2\n" STATIC END);
+    assert_int_equal(model->initial_count, 0);
+    assert_int_equal(notices_with(model, "deck.inp:38: initial velocities were left out"), 1);
+    assert_int_equal(notices_with(model, "deck.inp:32: *DAMPING was left out: it does not count"),
+                     1);
     lar_model_destroy(model);
     refused(MESH SOFT "*INITIAL CONDITIONS, TYPE=STRESS\nBOTH, 1\n", LAR_ERROR_UNSUPPORTED,
             AFTER_SOFT, "type 'STRESS' is not read and would change the answer");
@@ -366,13 +408,28 @@ static void test_ranges(void **state) {
 
 static void test_steps(void **state) {
     (void)state;
-    lar_model *model = read_deck("*HEADING\nA bar of\ntwo cubes\n" MESH SOFT
-                                 "*RESTART, WRITE\n*STEP\nwords\n*DYNAMIC, DIRECT\n*NODE PRINT, "
-                                 "NSET=ALL\nU\n*EL FILE\nS\n*BULK VISCOSITY\n0.06\n" END);
+    lar_model *model =
+        read_deck("*HEADING\nA bar of\ntwo cubes\n" MESH SOFT
+                  "*RESTART, WRITE\n*STEP\nwords\n*DYNAMIC, DIRECT\n*NODE PRINT, "
+                  "NSET=ALL\nU, V\n*EL FILE\nS\n*NODE PRINT, NSET=wall, TOTALS=ONLY\nRF,"
+                  "\nU, rf\n*NODE PRINT\nU\n*NODE PRINT, NSET=nobody\nU\n"
+                  "*BULK VISCOSITY\n0.06\n" END);
     assert_string_equal(model->title, "A bar of");
     assert_true(model->duration == 1);
     assert_int_equal(notices_with(model, "deck.inp:39: the step has no NLGEOM"), 1);
     assert_int_equal(notices_with(model, "*BULK VISCOSITY was left out"), 1);
+    assert_int_equal(notices_with(model, "deck.inp:42: requests for results, *NODE PRINT here"), 1);
+    assert_int_equal(notices_with(model, "requests for results"), 1);
+    /* U and RF of a set are probes */
+    const lar_output *output = &model->output;
+    assert_int_equal(output->probe_count, 3);
+    assert_string_equal(output->probe[0].name, "ALL");
+    assert_int_equal(output->probe[0].nodes.count, 12);
+    assert_int_equal(output->probe[0].what, LAR_PROBE_DISPLACEMENT);
+    assert_string_equal(output->probe[1].name, "Wall reaction");
+    assert_int_equal(output->probe[1].what, LAR_PROBE_REACTION);
+    assert_int_equal(output->probe[1].nodes.node[3], 7);
+    assert_string_equal(output->probe[2].name, "Wall");
     lar_model_destroy(model);
     const int line = AFTER_SOFT;
     refused(MESH SOFT STATIC END STATIC END, LAR_ERROR_UNSUPPORTED, line + 4, "a second *STEP");
@@ -403,8 +460,65 @@ static void test_parts(void **state) {
         "1.\n*Cload\nSet-1, 2, 3.\nP-1.12, 1, 1.\n*Output, field, variable=PRESELECT\n*End Step\n");
     assert_int_equal(fixed(model, 8), LAR_AXIS_ALL);
     assert_int_equal(model->load_count, 2);
-    assert_int_equal(model->notice_count, 1);
+    assert_int_equal(model->notice_count, 2); /* static, results */
     lar_model_destroy(model);
+}
+
+#define CAE(part, assembly, step)                                                                  \
+    "*Part, name=P\n" MESH "*Nset, nset=Set-1, generate\n1, 12, 1\n*Elset, elset=Set-1\n1, 2\n"    \
+    "*Surface, type=ELEMENT, name=Surf-1\n1, S1\n*Solid Section, elset=Set-1, "                    \
+    "material=Soft\n,\n" part                                                                      \
+    "*End Part\n*Assembly, name=A\n*Instance, name=P-1, part=P\n*End Instance\n" assembly          \
+    "*End Assembly\n*Material, name=Soft\n*Density\n1000.,\n*Hyperelastic, neo hooke\n"            \
+    "500., 0.0001\n*Step, nlgeom=YES\n*Dynamic\n0.1, 1.\n" step "*End Step\n"
+#define SETS                                                                                       \
+    "*Nset, nset=Set-1, instance=P-1\n1, 4, 5, 8\n*Elset, elset=Set-1, instance=P-1\n2,\n"         \
+    "*Elset, elset=_S, internal, instance=P-1\n2,\n*Surface, type=ELEMENT, name=Surf-1\n_S, S4\n"
+
+/* Abaqus/CAE calls the first set of the part and the first of the assembly Set-1. */
+static void test_same_name_in_part_and_assembly(void **state) {
+    (void)state;
+    lar_model *model =
+        read_deck(CAE("", SETS,
+                      "*Boundary\nSET-1, ENCASTRE\n*Dload\nSet-1, P4, 3\n*Dload\n"
+                      "P-1.Set-1, P1, 5\n*Dsload\nSurf-1, P, 7\np-1.surf-1, P, 9\n"));
+    assert_int_equal(fixed(model, 1), LAR_AXIS_ALL);
+    assert_int_equal(fixed(model, 9), 0);
+    assert_int_equal(model->element_material[0], 0); /* the section means the part's */
+    assert_int_equal(model->pressure_count, 4);
+    for (int i = 0; i < 4; i++) {
+        const lar_pressure_load *load = &model->pressure[i];
+        assert_int_equal(load->count, load->pressure == 5 ? 2 : 1);
+        if (load->pressure == 3 || load->pressure == 7) assert_int_equal(load->face[0], 6 + 1);
+        if (load->pressure == 9) assert_int_equal(load->face[0], 4);
+    }
+    lar_model_destroy(model);
+    model = read_deck(CAE("", SETS, "*Boundary\nP-1.Set-1, 1\n"));
+    assert_int_equal(fixed(model, 9), LAR_AXIS_X);
+    lar_model_destroy(model);
+    /* what only the part has needs no prefix */
+    model = read_deck(CAE("", SETS, "*Boundary\nWall, 1\nP-1.Tip, 2\n"));
+    assert_int_equal(fixed(model, 1), LAR_AXIS_X);
+    assert_int_equal(fixed(model, 9), LAR_AXIS_Y);
+    lar_model_destroy(model);
+    refused(CAE("", "*Node\n1, 7, 7, 7\n*Nset, nset=RP\n1\n", "*Boundary\n1, 1\n"),
+            LAR_ERROR_FORMAT, 56, "there is no node 1 that belongs to a hexahedron");
+    refused(CAE("", "*Node\n1, 7, 7, 7\n*Nset, nset=RP\n1\n", "*Boundary\nRP, 1\n"),
+            LAR_ERROR_FORMAT, 56, "the set 'RP' has nothing of the hexahedra");
+}
+
+/* A section of what is no hexahedron is refused where that stands, also among hexahedra. */
+static void test_sections_of_hexahedra(void **state) {
+    (void)state;
+    refused(MESH "*ELEMENT, TYPE=T3D2, ELSET=LEFT\n7, 1, 2\n" SOFT, LAR_ERROR_UNSUPPORTED, 30,
+            "element 7 is of type T3D2, and a *SOLID SECTION gives it a material; Lariat computes "
+            "with eight-node hexahedra, take it out of the set 'BOTH'");
+    lar_model *model = read_deck(MESH "*ELEMENT, TYPE=T3D2, ELSET=BAR\n7, 1, 2\n" SOFT);
+    assert_int_equal(model->mesh.element_count, 2);
+    lar_model_destroy(model);
+    refused(MESH "*MATERIAL, NAME=a\n*ELASTIC\n1, 0.3\n*DENSITY\n1\n"
+                 "*SOLID SECTION, ELSET=LEFT, MATERIAL=a\n",
+            LAR_ERROR_MODEL, 18, "element 2 has no material");
 }
 
 static bool is_deck(const char *text) {
@@ -461,6 +575,9 @@ int main(void) {
         cmocka_unit_test(test_friction),
         cmocka_unit_test(test_steps),
         cmocka_unit_test(test_parts),
+        cmocka_unit_test(test_forces_on_supports),
+        cmocka_unit_test(test_same_name_in_part_and_assembly),
+        cmocka_unit_test(test_sections_of_hexahedra),
         cmocka_unit_test(test_is_deck),
         cmocka_unit_test(test_damage),
     };

@@ -135,6 +135,16 @@ static void test_series(void **state) {
     assert_memory_equal(model->material[0].parameter, ((double[]){500, -60, 7, 2e4}), 32);
     assert_int_equal(model->material[1].law, LAR_LAW_neo_hookean);
     lar_model_destroy(model);
+    /* without a kind it is a polynomial of one term: Mooney-Rivlin's */
+    model = of_two("N=1\n300, 100, 1e-4", "POLYNOMIAL, N=1\n300, 0, 1e-4");
+    assert_int_equal(model->material[0].law, LAR_LAW_mooney_rivlin);
+    assert_memory_equal(model->material[0].parameter, ((double[]){300, 100, 2e4}), 24);
+    assert_int_equal(model->material[1].law, LAR_LAW_neo_hookean);
+    lar_model_destroy(model);
+    model = read_deck(MESH "*MATERIAL, NAME=a\n*HYPERELASTIC\n300, 100, 1e-4\n*DENSITY\n1\n"
+                           "*SOLID SECTION, ELSET=BOTH, MATERIAL=a\n");
+    assert_int_equal(model->material[0].law, LAR_LAW_mooney_rivlin);
+    lar_model_destroy(model);
     model = of_two("ARRUDA-BOYCE\n500, 2, 1e-4", "NEO HOOKE\n500, 1e-4");
     assert_int_equal(model->material[0].law, LAR_LAW_arruda_boyce);
     assert_memory_equal(model->material[0].parameter, ((double[]){500, 4, 2e4}), 24);
@@ -144,7 +154,6 @@ static void test_series(void **state) {
     lar_model_destroy(model);
 }
 
-/* Without gravity the density of a static deck does not matter. */
 /* Moduli in the end, which is Abaqus's default, or at once. */
 static void test_viscosity(void **state) {
     (void)state;
@@ -197,6 +206,84 @@ static void test_viscosity(void **state) {
             AFTER_MESH + 1, "FREQUENCY");
 }
 
+/* A static step takes moduli at once, or with LONG TERM those in the end; *VISCO relaxes. */
+static void test_viscosity_in_steps(void **state) {
+    (void)state;
+#define IN_STEP(moduli, terms, step) VISCOUS(moduli, terms) "*STEP, NLGEOM\n" step "\n0.1, 2\n" END
+    static const struct {
+        const char *deck;
+        double shear, bulk;
+    } steps[] = {
+        {IN_STEP("", "0.6, 0, 3\n", "*STATIC"), 2500, 2e4},
+        {IN_STEP("", "0.6, 0.6, 3\n", "*STATIC"), 2500, 5e4},
+        {IN_STEP("", "0.6, 0, 3\n", "*STATIC, LONG TERM"), 1000, 2e4},
+        {IN_STEP(", MODULI=INSTANTANEOUS", "0.6, 0, 3\n", "*STATIC"), 1000, 2e4},
+        {IN_STEP(", MODULI=INSTANTANEOUS", "0.6, 0, 3\n", "*STATIC, LONG TERM"), 400, 2e4},
+    };
+    for (size_t i = 0; i < sizeof steps / sizeof *steps; i++) {
+        lar_model *model = read_deck(steps[i].deck);
+        const lar_material *material = &model->material[0];
+        assert_int_equal(material->viscosity.terms, 0);
+        near(lar_material_shear(material), steps[i].shear);
+        near(lar_material_bulk(material), steps[i].bulk);
+        assert_int_equal(lar_model_until_rest(model), 1);
+        assert_int_equal(notices_with(model, strstr(steps[i].deck, "LONG")
+                                                 ? "*STATIC takes its moduli in the end"
+                                                 : "deck.inp:34: material 'a': *STATIC takes its "
+                                                   "moduli at once; *STATIC, LONG TERM takes"),
+                         1);
+        lar_model_destroy(model);
+    }
+    lar_model *model = read_deck(
+        IN_STEP("", "0.6, 0, 3\n", "*VISCO, CETOL=0.01") "*AMPLITUDE, NAME=a\n0, 0, 9, 9\n");
+    assert_int_equal(model->material[0].viscosity.terms, 1);
+    assert_true(model->by_material_time && !model->until_rest && model->duration == 2);
+    assert_int_equal(notices_with(model, "deck.inp:37: the step is static and a material viscous"),
+                     1);
+    near(at(model, 0, 9), 2); /* it ends with the step */
+    lar_model_destroy(model);
+    /* a hundred periods of the slowest motion in the step */
+    model = read_deck(MESH "*MATERIAL, NAME=a\n*ELASTIC\n3000, 0.25\n*VISCOELASTIC, TIME=PRONY\n"
+                           "0.5, 0.5, 1\n*SOLID SECTION, ELSET=BOTH, MATERIAL=a\n*STEP, NLGEOM\n"
+                           "*VISCO\n0.1, 2\n*CLOAD\n9, 1, 1\n" END);
+    near(8 * sqrt(model->material[0].density / lar_material_shear(&model->material[0])), 0.02);
+    near(at(model, model->load[0].curve, 0), 1); /* Abaqus's default: at once */
+    lar_model_destroy(model);
+    /* without a viscous material it is a static step */
+    model = read_deck(MESH SOFT "*STEP, NLGEOM\n*VISCO\n0.1, 2\n*BOUNDARY\n9, 1, 1, 0.1\n" END);
+    assert_true(model->until_rest && !model->by_material_time);
+    assert_int_equal(notices_with(model, "this displacement is there at once"), 1);
+    lar_model_destroy(model);
+    refused(MESH SOFT "*STEP\n*DYNAMIC, LONG TERM\n0.1, 2\n" END, LAR_ERROR_UNSUPPORTED,
+            AFTER_SOFT + 1, "the parameter LONG TERM of *DYNAMIC");
+#undef IN_STEP
+}
+
+/* The mass of a static deck is such that loads come in 2 to 20 periods; what weighs keeps its
+ * weight. */
+static void test_static_mass(void **state) {
+    (void)state;
+    /* a period of 8 sqrt(density / G): 20 of them, as it is (0.25 s), 2 of them */
+    static const struct {
+        double density, period;
+    } cases[] = {{1e-6, 0.1}, {1000.0 / 1024, 0.25}, {1000, 1}};
+    for (int i = 0; i < 3; i++) {
+        char text[2000];
+        snprintf(text, sizeof text,
+                 MESH "*MATERIAL, NAME=a\n*HYPERELASTIC, NEO HOOKE\n500, 1e-4\n*DENSITY\n%.17g\n"
+                      "*SOLID SECTION, ELSET=BOTH, MATERIAL=a\n" STATIC
+                      "*DLOAD\n, GRAV, 9.81, 0, 0, -1\n" END,
+                 cases[i].density);
+        lar_model *model = read_deck(text);
+        const lar_material *material = &model->material[0];
+        double period = 8 * sqrt(material->density / lar_material_shear(material));
+        near(period, cases[i].period);
+        near(model->gravity[2] * material->density, -9.81 * cases[i].density);
+        lar_model_destroy(model);
+    }
+}
+
+/* Without gravity the density of a static deck does not matter. */
 static void test_static_without_density(void **state) {
     (void)state;
     static const char *const deck =
@@ -267,8 +354,12 @@ static void test_bad_materials(void **state) {
             "*PLASTIC is not read and would "
             "change the answer; remove it");
     refused(OF("*HYPERELASTIC, MARLOW\n1,2,3\n"), LAR_ERROR_UNSUPPORTED, two,
-            "Lariat has NEO HOOKE, MOONEY-RIVLIN, YEOH, REDUCED POLYNOMIAL, ARRUDA-BOYCE and "
-            "OGDEN, with constants");
+            "Lariat has NEO HOOKE, MOONEY-RIVLIN, POLYNOMIAL, YEOH, REDUCED POLYNOMIAL, "
+            "ARRUDA-BOYCE and OGDEN, with constants");
+    refused(OF("*HYPERELASTIC, POLYNOMIAL, N=2\n1,2,3\n"), LAR_ERROR_UNSUPPORTED, two,
+            "N=2 of *HYPERELASTIC; Lariat's Mooney-Rivlin law has 1 term at most");
+    refused(OF("*HYPERELASTIC, TEST DATA INPUT\n"), LAR_ERROR_UNSUPPORTED, two,
+            "this kind of *HYPERELASTIC is not read");
     refused(OF("*HYPERELASTIC, OGDEN, N=4\n1,2,3\n"), LAR_ERROR_UNSUPPORTED, two,
             "N=4 of *HYPERELASTIC; Lariat's Ogden law has 3 terms at most");
     refused(OF("*HYPERELASTIC, REDUCED POLYNOMIAL, N=0\n1,2\n"), LAR_ERROR_FORMAT, two,
@@ -346,6 +437,7 @@ int main(void) {
         cmocka_unit_test(test_series),        cmocka_unit_test(test_static_without_density),
         cmocka_unit_test(test_bad_materials), cmocka_unit_test(test_viscosity),
         cmocka_unit_test(test_two_families),  cmocka_unit_test(test_bad_families),
+        cmocka_unit_test(test_static_mass),   cmocka_unit_test(test_viscosity_in_steps),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

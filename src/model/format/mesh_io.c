@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
@@ -152,6 +153,8 @@ static lar_status read_unchecked(const char *path, double scale, lar_mesh *mesh,
 }
 
 static lar_status take(lar_mesh *read, lar_status status, lar_mesh *mesh) {
+    free(read->element_line);
+    read->element_line = NULL;
     if (status)
         lar_mesh_clear(read);
     else

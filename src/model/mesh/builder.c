@@ -21,12 +21,13 @@ typedef struct built_element {
     int line;
 } built_element;
 
-/* One entry of a set; `face` is used in face sets. */
+/* One entry of a set; `face` is used in face sets, and in sets of nodes for all of an element. */
 typedef struct built_entry {
     int64_t id;
     int line;
     int face;
 } built_entry;
+enum { CORNERS = -1 };
 
 typedef struct built_quad {
     int64_t node_ids[4];
@@ -40,6 +41,7 @@ typedef struct built_set {
     built_entry *entry;
     size_t quad_count, quad_capacity;
     built_quad *quad;
+    size_t corners; /* nodes of the elements in a set of nodes */
 } built_set;
 
 struct lar_mesh_builder {
@@ -195,7 +197,7 @@ static lar_status add_entry(lar_mesh_builder *builder, built_entry entry, lar_er
     if (!set)
         return lar_fail(error, LAR_ERROR_ARGUMENT, "%s: an entry stands outside of any set",
                         place_of(builder, entry.line).text);
-    if (set->entry_count + set->quad_count >= INT32_MAX)
+    if (set->entry_count + set->quad_count + set->corners >= INT32_MAX - 8)
         return lar_fail(error, LAR_ERROR_UNSUPPORTED, "%s: set '%s' has more than %d entries",
                         place_of(builder, entry.line).text, set->name, INT32_MAX);
     if (!LAR_GROW(set->entry, set->entry_capacity, set->entry_count))
@@ -207,6 +209,14 @@ static lar_status add_entry(lar_mesh_builder *builder, built_entry entry, lar_er
 lar_status lar_mesh_builder_set_id(lar_mesh_builder *builder, int64_t id, int line,
                                    lar_error *error) {
     return add_entry(builder, (built_entry){.id = id, .line = line}, error);
+}
+
+lar_status lar_mesh_builder_set_corners(lar_mesh_builder *builder, int64_t element_id, int line,
+                                        lar_error *error) {
+    built_entry entry = {.id = element_id, .line = line, .face = CORNERS};
+    lar_status status = add_entry(builder, entry, error);
+    if (!status) builder->open->corners += 8;
+    return status;
 }
 
 lar_status lar_mesh_builder_set_face(lar_mesh_builder *builder, int64_t element_id, int face,
@@ -277,6 +287,8 @@ static lar_status move_elements(const lar_mesh_builder *builder, resolver *ids, 
     ids->kept = malloc((builder->node_count + 1) * sizeof *ids->kept);
     if (!ids->kept) return lar_fail_memory(error, builder->node_count * 4, "node numbers");
     for (size_t n = 0; n < builder->node_count; n++) ids->kept[n] = -1;
+    mesh->element_line = lar_calloc(builder->element_count, sizeof *mesh->element_line);
+    if (!mesh->element_line) return lar_fail_memory(error, builder->element_count * 4, "lines");
 
     for (size_t e = 0; e < builder->element_count; e++) {
         const built_element *element = &builder->element[e];
@@ -292,6 +304,7 @@ static lar_status move_elements(const lar_mesh_builder *builder, resolver *ids, 
             mesh->element[e][a] = n;
         }
         mesh->element_id[e] = element->id;
+        mesh->element_line[e] = element->line;
         mesh->element_tag[e] = element->tag;
     }
     mesh->element_count = (int32_t)builder->element_count;
@@ -322,16 +335,18 @@ static lar_status fail_unknown(const lar_mesh_builder *builder, const built_set 
 }
 
 static lar_status resolve_entries(const lar_mesh_builder *builder, const built_set *set,
-                                  const resolver *ids, int32_t *index, int32_t *count,
-                                  lar_error *error) {
-    bool of_nodes = set->kind == LAR_SET_NODES;
+                                  const resolver *ids, const lar_mesh *mesh, int32_t *index,
+                                  int32_t *count, lar_error *error) {
     for (size_t i = 0; i < set->entry_count; i++) {
         const built_entry *entry = &set->entry[i];
+        bool of_nodes = set->kind == LAR_SET_NODES && entry->face != CORNERS;
         int32_t found = lar_id_map_find(of_nodes ? &ids->nodes : &ids->elements, entry->id);
         if (found < 0)
             return fail_unknown(builder, set, of_nodes ? "node" : "element", entry->id, entry->line,
                                 error);
-        if (of_nodes && ids->kept[found] < 0) continue;
+        for (int a = 0; a < 8 && entry->face == CORNERS; a++)
+            index[(*count)++] = mesh->element[found][a];
+        if (entry->face == CORNERS || (of_nodes && ids->kept[found] < 0)) continue;
         index[(*count)++] = of_nodes                     ? ids->kept[found]
                             : set->kind == LAR_SET_FACES ? found * 6 + entry->face
                                                          : found;
@@ -374,9 +389,9 @@ static lar_status resolve_quads(const lar_mesh_builder *builder, const built_set
 static lar_status move_set(const lar_mesh_builder *builder, const built_set *set, resolver *ids,
                            lar_mesh *mesh, lar_error *error) {
     int32_t count = 0;
-    int32_t *index = lar_calloc(set->entry_count + set->quad_count, sizeof *index);
+    int32_t *index = lar_calloc(set->entry_count + set->quad_count + set->corners, sizeof *index);
     if (!index) return lar_fail_memory(error, set->entry_count * sizeof *index, "a set");
-    lar_status status = resolve_entries(builder, set, ids, index, &count, error);
+    lar_status status = resolve_entries(builder, set, ids, mesh, index, &count, error);
     if (!status) status = resolve_quads(builder, set, ids, mesh, index, &count, error);
     if (status) {
         free(index);

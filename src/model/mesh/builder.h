@@ -36,6 +36,9 @@ lar_status lar_mesh_builder_set(lar_mesh_builder *builder, const char *name, lar
 /* Adds to the open set: a node or element by id, */
 lar_status lar_mesh_builder_set_id(lar_mesh_builder *builder, int64_t id, int line,
                                    lar_error *error);
+/* all nodes of an element, in a set of nodes, */
+lar_status lar_mesh_builder_set_corners(lar_mesh_builder *builder, int64_t element_id, int line,
+                                        lar_error *error);
 /* a face by element id and local face 0..5, */
 lar_status lar_mesh_builder_set_face(lar_mesh_builder *builder, int64_t element_id, int face,
                                      int line, lar_error *error);

@@ -93,6 +93,19 @@ static const char *source_of(const lar_mesh *mesh) {
     return mesh->source ? mesh->source : "mesh";
 }
 
+/* "file" or "file:line" of an element. */
+typedef struct place {
+    char text[400];
+} place;
+
+static place place_of(const lar_mesh *mesh, int32_t e) {
+    place where;
+    const int line = mesh->element_line ? mesh->element_line[e] : 0;
+    int length = snprintf(where.text, sizeof where.text, "%.380s", source_of(mesh));
+    if (line > 0) snprintf(where.text + length, sizeof where.text - (size_t)length, ":%d", line);
+    return where;
+}
+
 static lar_status check_positions(const lar_mesh *mesh, lar_error *error) {
     for (int32_t n = 0; n < mesh->node_count; n++)
         for (int i = 0; i < 3; i++)
@@ -121,7 +134,7 @@ static lar_status check_connectivity(const lar_mesh *mesh, lar_error *error) {
                                     "%s: element %lld has node %lld twice; a hexahedron needs "
                                     "eight different nodes, so mesh this place again without "
                                     "collapsed elements",
-                                    source_of(mesh), id, (long long)mesh->node_id[node[a]]);
+                                    place_of(mesh, e).text, id, (long long)mesh->node_id[node[a]]);
         }
     }
     return LAR_OK;
@@ -168,7 +181,7 @@ static lar_status check_repeats(const lar_mesh *mesh, lar_error *error) {
                               "%s: elements %lld and %lld have the same eight nodes; remove one of "
                               "them (a Gmsh file of version 2 may hold an element once per "
                               "physical group: save it as version 4.1)",
-                              source_of(mesh), (long long)mesh->element_id[first],
+                              place_of(mesh, second).text, (long long)mesh->element_id[first],
                               (long long)mesh->element_id[second]);
     }
     free(print);
@@ -230,13 +243,13 @@ static lar_status check_shapes(const lar_mesh *mesh, lar_error *error) {
         return lar_fail(error, LAR_ERROR_MODEL,
                         "%s: element %lld has no volume: its nodes lie in one plane or in one "
                         "place; remove it or move its nodes apart",
-                        source_of(mesh), id);
+                        place_of(mesh, bad).text, id);
     return lar_fail(error, LAR_ERROR_MODEL,
                     "%s: element %lld is %s, with a Jacobian that is not positive at every "
                     "corner: its node order may be wrong (expected: 1-4 around the bottom, 5-8 "
                     "above them, counter-clockwise seen from above) or its nodes are tangled; "
                     "correct the order or mesh this place again",
-                    source_of(mesh), id,
+                    place_of(mesh, bad).text, id,
                     shape_of_bad == SHAPE_LEFT_HANDED ? "inside out" : "inverted or too distorted");
 }
 

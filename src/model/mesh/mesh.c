@@ -46,6 +46,7 @@ void lar_mesh_clear(lar_mesh *mesh) {
     free(mesh->node_id);
     free(mesh->element);
     free(mesh->element_id);
+    free(mesh->element_line);
     free(mesh->element_tag);
     free(mesh->fibre);
     free(mesh->second);

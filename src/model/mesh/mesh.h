@@ -43,6 +43,7 @@ typedef struct lar_mesh {
     int32_t element_count;
     int32_t (*element)[8]; /* node indices */
     int64_t *element_id;   /* the file's ids */
+    int *element_line;     /* where they stand, 0: nowhere; NULL: nobody knows (any more) */
     int32_t *element_tag;  /* the file's integer cell tag (physical group, label), 0 when none */
     double (*fibre)[3];  /* [element_count] along the fibres, of any length until the model has been
                             checked, then one; 0 where there are none. NULL: nobody said */

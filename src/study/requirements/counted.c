@@ -123,6 +123,7 @@ LAR_INLINE lar_lane lar_ilane_to_lane(int64_t a) {
 #define lar_material_bulk            counted_material_bulk
 #define lar_material_instant_shear   counted_material_instant_shear
 #define lar_material_instant_bulk    counted_material_instant_bulk
+#define lar_material_freeze          counted_material_freeze
 #define lar_material_check           counted_material_check
 #define lar_material_from_young      counted_material_from_young
 #define lar_material_from_shear_bulk counted_material_from_shear_bulk

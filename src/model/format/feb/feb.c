@@ -57,41 +57,11 @@ static lar_status read_analysis(lar_feb *feb, const xmlNode *control) {
                         (int)(word.length < 40 ? word.length : 40), word.at);
 }
 
-/* What an analysis without time becomes: see model/rest.h. Its answer does not depend on mass, so
- * that is such that the body would swing two to twenty times while the loads come, whatever units
- * and durations the deck has: less, and loads would be blows; more, and they would be followed wave
- * by wave. The analysis ends with the deck's last step, and so do its loads, whatever their curves
- * would do behind it.
- *
- * With a viscous material the deck's time is the material's, and its end the answer. There mass
- * must not be felt on the way: the body answers in a hundredth of the deck, and with a tenth of
- * that damping lags behind its loads by 0.1/pi of that (2 zeta/omega); what swings at first is
- * less by exp(-2 pi 10) in the end. */
+/* What an analysis without time becomes: see model/rest.h. */
 static lar_status finish_static(lar_feb *feb, const xmlNode *control) {
-    static const double FEW = 2, MANY = 20, VISCOUS = 100, VISCOUS_DAMPING = 0.1;
-    lar_model *model = feb->model;
-    const xmlNode *at = control ? control : feb->root;
-    const double end = model->duration;
-    double period = end / VISCOUS;
     if (!feb->is_static) return LAR_OK;
-    model->by_material_time = end > 0 && lar_model_viscous(model);
-    model->until_rest = !model->by_material_time;
-    if (model->until_rest) period = fmin(fmax(lar_model_slow_period(model), end / MANY), end / FEW);
-    if (end > 0) lar_model_slow_to(model, period);
-    model->damping = lar_model_rest_damping(model);
-    for (int i = 0; end > 0 && i < model->curve_count; i++)
-        lar_curve_hold_from(&model->curve[i], end);
-    if (model->until_rest)
-        return lar_feb_notice(feb, at,
-                              "the analysis is static: Lariat follows it in time, with a damping "
-                              "of %.3g 1/s, until it is at rest",
-                              model->damping);
-    model->damping *= VISCOUS_DAMPING;
-    return lar_feb_notice(feb, at,
-                          "the analysis is static and a material viscous: Lariat follows it in the "
-                          "material's time to the deck's end, %g s, with little mass and a damping "
-                          "of %.3g 1/s; only a slender body that bends may lag behind its loads",
-                          end, model->damping);
+    lar_rest_words words = lar_model_follow_static(feb->model, "analysis");
+    return lar_feb_notice(feb, control ? control : feb->root, "%s", words.text);
 }
 
 /* Of the solver's settings one is physics: the explicit solver can damp by a factor per step. */

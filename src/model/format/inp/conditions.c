@@ -168,18 +168,19 @@ static lar_status hold_of(inp_deck *deck, double value, int curve, int32_t *hold
     return LAR_OK;
 }
 
-/* The curve of a displacement. In a dynamic step Abaqus's own is a jump, which few mean. */
+/* The curve of a displacement. In all but static steps Abaqus's own is a jump, which few mean. */
 static lar_status read_curve(inp_deck *deck, const inp_card *card, int *curve) {
     lar_status status = inp_in_step(deck, card);
     if (!status) status = inp_curve_of(deck, card, curve);
-    if (status || deck->step.at_once || deck->step.procedure != INP_DYNAMIC ||
+    if (status || deck->step.at_once || deck->step.procedure == INP_STATIC ||
         lar_curve_value(&deck->model->curve[*curve], 0.0) == 0.0)
         return status;
     deck->step.at_once = true;
-    return inp_notice(deck, deck->reader.line,
-                      "this displacement is there at once, as in Abaqus without AMPLITUDE in a "
-                      "*DYNAMIC step: the body starts with these nodes displaced, and shakes; to "
-                      "ramp it, name an *AMPLITUDE that rises from 0 (AMPLITUDE=)");
+    return inp_notice(
+        deck, deck->reader.line,
+        "this displacement is there at once, as in Abaqus without AMPLITUDE in a "
+        "*DYNAMIC or *VISCO step: the body starts with these nodes displaced, and shakes; to "
+        "ramp it, name an *AMPLITUDE that rises from 0 (AMPLITUDE=)");
 }
 
 static lar_status read_support(inp_deck *deck, const inp_card *card, lar_span line) {
@@ -296,6 +297,9 @@ static lar_status finish_moved(inp_deck *deck, int axis, int32_t *entry) {
 static lar_status finish_velocities(inp_deck *deck) {
     inp_vector *vector = NULL;
     int32_t count = 0;
+    if (deck->velocity && inp_is_static(deck))
+        return inp_notice(deck, deck->velocity_line,
+                          "initial velocities were left out: they do not count in a static step");
     lar_status status =
         deck->velocity ? inp_sort_vectors(deck, (const double(*)[3])deck->velocity, &vector, &count)
                        : LAR_OK;
@@ -375,6 +379,7 @@ lar_status inp_read_initial(inp_deck *deck, const inp_card *card) {
     if (!deck->velocity)
         deck->velocity = lar_calloc((size_t)deck->mesh->node_count, sizeof *deck->velocity);
     if (!deck->velocity) return inp_no_memory(deck, "the initial velocities");
+    deck->velocity_line = card->line;
     while (!status && inp_data_line(&deck->reader, &line)) {
         const int32_t *index;
         int32_t own, nodes = 0;

@@ -31,8 +31,9 @@ static lar_status check_step(const inp_deck *deck, const inp_card *card) {
                         "a second *STEP; Lariat does not change conditions between steps, keep "
                         "one");
     if (inp_parameter(card, "PERTURBATION", &value))
-        return inp_fail(deck, card->line, LAR_ERROR_UNSUPPORTED,
-                        "a *STEP with PERTURBATION is not read; Lariat does *STATIC and *DYNAMIC");
+        return inp_fail(
+            deck, card->line, LAR_ERROR_UNSUPPORTED,
+            "a *STEP with PERTURBATION is not read; Lariat does *STATIC, *VISCO and *DYNAMIC");
     return inp_only(deck, card, known);
 }
 
@@ -60,17 +61,20 @@ static lar_status end_step(inp_deck *deck, const inp_card *card) {
 
 /* First increment, period: on one line, which may be left out. */
 static lar_status read_procedure(inp_deck *deck, const inp_card *card, inp_procedure procedure) {
-    static const char known[] = "SOLVER,DIRECT,STABILIZE,ALLSDTOL,FACTOR,CONTINUE,EXPLICIT,ALPHA,"
-                                "TIMERESET,TOTALTIMEAT,HAFTOL,NOHAF,INITIAL";
-    lar_span line, field[8];
+    static const char known[] =
+        "LONG TERM,SOLVER,DIRECT,STABILIZE,ALLSDTOL,FACTOR,CONTINUE,EXPLICIT,ALPHA,"
+        "TIMERESET,TOTALTIMEAT,HAFTOL,NOHAF,INITIAL,CETOL,CREEP";
+    const size_t others = procedure == INP_STATIC ? 0 : strlen("LONG TERM,");
+    lar_span line, field[8], ignored;
     int count = 0;
-    lar_status status = inp_only(deck, card, known);
+    lar_status status = inp_only(deck, card, known + others);
     if (!status) status = inp_in_step(deck, card);
     if (status) return status;
     if (deck->step.procedure != INP_NO_PROCEDURE)
         return inp_fail(deck, card->line, LAR_ERROR_FORMAT,
                         "a second procedure in the step of line %d; keep one", deck->step.line);
     deck->step.procedure = procedure;
+    deck->step.long_term = inp_parameter(card, "LONG TERM", &ignored);
     if (inp_data_line(&deck->reader, &line)) status = inp_fields(deck, line, field, 8, &count);
     if (!status)
         status = inp_optional(deck, field, count, 1, "the period of the step, a number in seconds",
@@ -82,6 +86,10 @@ static lar_status read_procedure(inp_deck *deck, const inp_card *card, inp_proce
 
 static lar_status read_static(inp_deck *deck, const inp_card *card) {
     return read_procedure(deck, card, INP_STATIC);
+}
+
+static lar_status read_visco(inp_deck *deck, const inp_card *card) {
+    return read_procedure(deck, card, INP_VISCO);
 }
 
 static lar_status read_dynamic(inp_deck *deck, const inp_card *card) {
@@ -112,7 +120,8 @@ typedef struct keyword_row {
         OF_DECK,     /* says something about the model */
         OF_MATERIAL, /* the same, and belongs to the *MATERIAL above it */
         OF_MESH,     /* lar_inp_parse reads it */
-        HARMLESS,    /* output, structure, solver */
+        HARMLESS,    /* structure, solver */
+        RESULTS,     /* asks for results; a notice says how to get some */
         LEFT_OUT     /* changes little; a notice names it */
     } kind;
 } keyword_row;
@@ -130,6 +139,7 @@ static const keyword_row keywords[] = {
     {"ORIENTATION", inp_read_orientation, NULL, OF_DECK},
     {"STEP", read_step, enter_step, OF_DECK},
     {"STATIC", read_static, NULL, OF_DECK},
+    {"VISCO", read_visco, NULL, OF_DECK},
     {"DYNAMIC", read_dynamic, NULL, OF_DECK},
     {"END STEP", end_step, leave_step, OF_DECK},
     {"SOLID SECTION", NULL, inp_read_section, HARMLESS}, /* lar_inp_is_deck says why */
@@ -155,20 +165,20 @@ static const keyword_row keywords[] = {
     {"END INSTANCE", NULL, NULL, OF_MESH},
     {"PREPRINT", NULL, NULL, HARMLESS},
     {"RESTART", NULL, NULL, HARMLESS},
-    {"OUTPUT", NULL, NULL, HARMLESS},
+    {"OUTPUT", NULL, NULL, RESULTS},
     {"NODE OUTPUT", NULL, NULL, HARMLESS},
     {"ELEMENT OUTPUT", NULL, NULL, HARMLESS},
     {"CONTACT OUTPUT", NULL, NULL, HARMLESS},
     {"ENERGY OUTPUT", NULL, NULL, HARMLESS},
-    {"NODE PRINT", NULL, NULL, HARMLESS},
-    {"NODE FILE", NULL, NULL, HARMLESS},
-    {"EL PRINT", NULL, NULL, HARMLESS},
-    {"EL FILE", NULL, NULL, HARMLESS},
-    {"CONTACT PRINT", NULL, NULL, HARMLESS},
-    {"CONTACT FILE", NULL, NULL, HARMLESS},
-    {"ENERGY PRINT", NULL, NULL, HARMLESS},
-    {"ENERGY FILE", NULL, NULL, HARMLESS},
-    {"SECTION PRINT", NULL, NULL, HARMLESS},
+    {"NODE PRINT", NULL, inp_read_node_print, RESULTS},
+    {"NODE FILE", NULL, NULL, RESULTS},
+    {"EL PRINT", NULL, NULL, RESULTS},
+    {"EL FILE", NULL, NULL, RESULTS},
+    {"CONTACT PRINT", NULL, NULL, RESULTS},
+    {"CONTACT FILE", NULL, NULL, RESULTS},
+    {"ENERGY PRINT", NULL, NULL, RESULTS},
+    {"ENERGY FILE", NULL, NULL, RESULTS},
+    {"SECTION PRINT", NULL, NULL, RESULTS},
     {"FILE FORMAT", NULL, NULL, HARMLESS},
     {"FILE OUTPUT", NULL, NULL, HARMLESS},
     {"MONITOR", NULL, NULL, HARMLESS},
@@ -223,15 +233,16 @@ static lar_status read_card(inp_deck *deck, const inp_card *card, bool second) {
     if (row->kind == LEFT_OUT && !second)
         return inp_notice(deck, card->line, "*%.*s was left out", inp_shown(card->keyword),
                           card->keyword.at);
+    if (row->kind == RESULTS && !second) return inp_notice_results(deck, card);
     card_reader *read = second ? row->second : row->first;
     return read ? read(deck, card) : LAR_OK;
 }
 
-static lar_status walk(inp_deck *deck, lar_text start, bool second) {
+static lar_status walk(inp_deck *deck, const lar_bytes *bytes, bool second) {
     inp_card card;
     lar_span line;
     lar_status status = LAR_OK;
-    deck->reader.text = start;
+    deck->reader.text = inp_begin(&deck->reader, bytes);
     deck->current = -1;
     while (!status && inp_next_card(&deck->reader, &card, &status)) {
         deck->reader.line = card.line;
@@ -250,15 +261,9 @@ static lar_status finish_step(inp_deck *deck) {
     if (step->line == 0) return LAR_OK;
     model->duration = step->period;
     lar_status status = LAR_OK;
-    if (step->procedure == INP_STATIC) {
-        model->until_rest = true;
-        model->damping = lar_model_rest_damping(model);
-        for (int i = 0; i < model->curve_count; i++)
-            lar_curve_hold_from(&model->curve[i], model->duration);
-        status = inp_notice(deck, step->line,
-                            "the step is static: Lariat follows it in time, with a damping of %.3g "
-                            "1/s, until it is at rest",
-                            model->damping);
+    if (step->procedure != INP_DYNAMIC) {
+        lar_rest_words words = lar_model_follow_static(model, "step");
+        status = inp_notice(deck, step->line, "%s", words.text);
     }
     if (status || step->large) return status;
     return inp_notice(deck, step->line,
@@ -271,7 +276,7 @@ static lar_status check_first_walk(const inp_deck *deck) {
         return inp_fail(deck, deck->step.line, LAR_ERROR_FORMAT, "*STEP has no *END STEP; add it");
     if (deck->step.line > 0 && deck->step.procedure == INP_NO_PROCEDURE)
         return inp_fail(deck, deck->step.line, LAR_ERROR_FORMAT,
-                        "the step has no procedure; add *STATIC or *DYNAMIC");
+                        "the step has no procedure; add *STATIC, *VISCO or *DYNAMIC");
     return LAR_OK;
 }
 
@@ -293,15 +298,14 @@ static lar_status prepare(inp_deck *deck) {
 static lar_status read_model(inp_deck *deck, const lar_bytes *bytes) {
     enum { SPARE_ENTRIES = 1000000 };
     lar_error *error = deck->reader.error;
-    lar_text start = lar_text_from(bytes);
+    lar_status status = inp_read_mesh(&deck->reader, bytes, deck->mesh);
     deck->reader.entries_left = 4 * bytes->size + SPARE_ENTRIES;
-    lar_status status = lar_inp_parse(deck->reader.path, bytes, deck->mesh, error);
     if (!status) lar_mesh_turn(deck->mesh);
     if (!status) status = lar_mesh_check(deck->mesh, error);
     if (!status) status = prepare(deck);
-    if (!status) status = walk(deck, start, false);
+    if (!status) status = walk(deck, bytes, false);
     if (!status) status = check_first_walk(deck);
-    if (!status) status = walk(deck, start, true);
+    if (!status) status = walk(deck, bytes, true);
     if (!status) status = inp_finish_materials(deck);
     if (!status) status = inp_finish_supports(deck);
     if (!status) status = inp_finish_loads(deck);
@@ -315,6 +319,7 @@ static void clear(inp_deck *deck) {
     for (size_t i = 0; i < deck->forces_count; i++) free(deck->forces[i].force);
     for (size_t i = 0; i < deck->orientation_count; i++) free(deck->orientation[i].name);
     for (size_t i = 0; i < deck->interaction_count; i++) free(deck->interaction[i].name);
+    inp_clear(&deck->reader);
     free(deck->interaction);
     free(deck->material);
     free(deck->orientation);

@@ -5,9 +5,10 @@
  *       |---walk 2: sections, supports, loads, contact (they name sets, materials and amplitudes)
  *       '---finish: materials of elements, supports and loads gathered node by node
  *
- * One table says of every keyword in which walk it is read, that it is harmless (output, solver
- * settings), or that it is left out with a notice; every other one is refused by name and line,
- * because leaving it out would change the answer. The same holds for parameters.
+ * One table says of every keyword in which walk it is read, that it is harmless (solver settings),
+ * or that it is left out with a notice (requests for results: one for all of them); every other one
+ * is refused by name and line, because leaving it out would change the answer. The same holds for
+ * parameters.
  *
  * In a deck what comes later overrides: a step's displacement takes the place of a support that
  * stands above. So supports are kept per node and axis while the deck is read, and made into lists
@@ -24,8 +25,9 @@ typedef struct inp_material {
     char *name;
     int line;
     bool has_law, has_density;
-    bool linear;        /* from *ELASTIC */
-    double damping;     /* ALPHA of *DAMPING [1/s] */
+    bool linear;    /* from *ELASTIC */
+    double damping; /* ALPHA of *DAMPING [1/s] */
+    int damping_line;
     lar_material value; /* its viscosity without what `instant` says */
     bool instant;       /* its moduli are those at once: MODULI=INSTANTANEOUS */
     int index;          /* in lar_model.material, -1 until a section uses it */
@@ -65,6 +67,7 @@ typedef struct inp_vector {
 /* Concentrated forces on one curve, summed per node. */
 typedef struct inp_forces {
     int curve;
+    int line; /* of the first */
     double (*force)[3];
 } inp_forces;
 
@@ -75,21 +78,29 @@ typedef struct inp_pressure {
     int32_t face; /* element * 6 + local face */
 } inp_pressure;
 
-typedef enum inp_procedure { INP_NO_PROCEDURE, INP_STATIC, INP_DYNAMIC } inp_procedure;
+/* An acceleration of GRAV. */
+typedef struct inp_gravity {
+    double by[3];
+    int curve, line;
+} inp_gravity;
+enum { INP_GRAVITIES = 8 };
+
+typedef enum inp_procedure { INP_NO_PROCEDURE, INP_STATIC, INP_VISCO, INP_DYNAMIC } inp_procedure;
 
 typedef struct inp_step {
     int line;  /* of *STEP, 0: none so far */
     bool open; /* between *STEP and *END STEP */
     inp_procedure procedure;
-    double period; /* [s] */
-    int amplitude; /* AMPLITUDE of *STEP: 0 not given, 1 STEP, 2 RAMP */
-    bool large;    /* NLGEOM */
-    bool supports; /* a *BOUNDARY has been read in it */
-    bool at_once;  /* a notice says that displacements are there at once */
+    bool long_term; /* of *STATIC: what is viscous has relaxed */
+    double period;  /* [s] */
+    int amplitude;  /* AMPLITUDE of *STEP: 0 not given, 1 STEP, 2 RAMP */
+    bool large;     /* NLGEOM */
+    bool supports;  /* a *BOUNDARY has been read in it */
+    bool at_once;   /* a notice says that displacements are there at once */
 } inp_step;
 
 typedef struct inp_deck {
-    inp_reader reader; /* position, path, error; its mesh members are not used */
+    inp_reader reader; /* position, path, error; what it knows of the mesh */
     lar_model *model;
     lar_mesh *mesh;
     lar_id_map nodes, elements;
@@ -105,6 +116,7 @@ typedef struct inp_deck {
     inp_amplitude *amplitude;
 
     inp_step step;
+    bool results;       /* a notice says that requests for results were left out */
     int constant, ramp; /* curves, -1 until wanted */
 
     int32_t *hold; /* [nodes][3]: 0 free, 1 fixed, 2 + index into `prescribed` */
@@ -113,13 +125,13 @@ typedef struct inp_deck {
     size_t forces_count, forces_room;
     inp_forces *forces;
     double (*velocity)[3]; /* of *INITIAL CONDITIONS, NULL: none */
+    int velocity_line;
     size_t pressure_count, pressure_room;
     inp_pressure *pressure;
-    char *pressed;    /* [elements][6]: the face has a pressure */
-    int gravity_line; /* of the first GRAV, 0: none */
-    char *heavy;      /* [elements]: GRAV acts on it */
-    double gravity[3];
-    int gravity_curve;
+    char *pressed; /* [elements][6]: the face has a pressure */
+    int gravity_count;
+    inp_gravity gravity[INP_GRAVITIES];
+    unsigned char *heavy; /* [elements]: bits of those that act on it */
 } inp_deck;
 
 /* ---- values.c: what every card needs ------------------------------------------------- */
@@ -146,7 +158,8 @@ lar_status inp_number(inp_deck *deck, const lar_span *field, int count, int at, 
 lar_status inp_optional(inp_deck *deck, const lar_span *field, int count, int at, const char *what,
                         double fallback, double *value);
 
-/* The set of that name, in any case of letters and with or without its instance, or NULL. */
+/* The set that a card means by that name, in any case of letters and with or without its instance,
+ * or NULL. */
 const lar_set *inp_mesh_set(const inp_deck *deck, lar_span name, lar_set_kind kind);
 /* What a field names: a node or a node set, an element or an element set. *index points into the
  * mesh or to `own`. Naming costs: few bytes could ask for any amount of work. */
@@ -168,6 +181,11 @@ lar_status inp_add(inp_deck *deck, const inp_card *card, void *list, size_t *roo
 #define INP_ADD(deck, card, list)                                                                  \
     inp_add(deck, card, &(deck)->list, &(deck)->list##_room, &(deck)->list##_count,                \
             sizeof *(deck)->list)
+
+/* Whether time is none, or the material's. */
+static inline bool inp_is_static(const inp_deck *deck) {
+    return deck->step.procedure == INP_STATIC || deck->step.procedure == INP_VISCO;
+}
 
 /* The curve of a load: AMPLITUDE of its card, else what the step says. */
 lar_status inp_curve_of(inp_deck *deck, const inp_card *card, int *curve);
@@ -205,7 +223,8 @@ lar_status inp_lay_fibres(inp_deck *deck, const inp_card *card, const lar_fibre 
 lar_status inp_read_viscoelastic(inp_deck *deck, const inp_card *card);
 /* Whether the moduli of *ELASTIC or *HYPERELASTIC are those at once. */
 lar_status inp_read_moduli(const inp_deck *deck, const inp_card *card, inp_material *material);
-/* The viscosity of the model's material, once its moduli are known too. */
+/* The viscosity of the model's material, once its moduli are known too, or what a static step takes
+ * instead. */
 lar_status inp_finish_viscosity(inp_deck *deck, const inp_material *from, lar_material *material);
 
 /* ---- conditions.c ------------------------------------------------------------------------ */
@@ -227,6 +246,12 @@ lar_status inp_read_cload(inp_deck *deck, const inp_card *card);
 lar_status inp_read_dload(inp_deck *deck, const inp_card *card);
 lar_status inp_read_dsload(inp_deck *deck, const inp_card *card);
 lar_status inp_finish_loads(inp_deck *deck);
+
+/* ---- results.c --------------------------------------------------------------------------- */
+
+/* Once for all such cards. */
+lar_status inp_notice_results(inp_deck *deck, const inp_card *card);
+lar_status inp_read_node_print(inp_deck *deck, const inp_card *card);
 
 /* ---- contact.c --------------------------------------------------------------------------- */
 

@@ -14,6 +14,13 @@ static bool is_comment(lar_span line) {
     return line.length == 0 || (line.length >= 2 && line.at[0] == '*' && line.at[1] == '*');
 }
 
+lar_text inp_begin(inp_reader *reader, const lar_bytes *bytes) {
+    lar_text text = lar_text_from(bytes);
+    reader->in_part = false;
+    if (bytes->size >= 3 && memcmp(text.at, "\xef\xbb\xbf", 3) == 0) text.at += 3;
+    return text;
+}
+
 bool inp_data_line(inp_reader *reader, lar_span *line) {
     lar_text ahead = reader->text;
     for (int number = ahead.line; lar_text_line(&ahead, line); number = ahead.line) {
@@ -36,6 +43,17 @@ lar_status inp_expected(inp_reader *reader, int line, const char *what, lar_span
     return lar_fail(reader->error, LAR_ERROR_FORMAT,
                     "%s:%d: expected %s, found '%s'; correct the line", reader->path, line, what,
                     text);
+}
+
+/* A part and an instance end with an *END of their own; nothing of them is behind any other one. */
+static void enter_scope(inp_reader *reader, const inp_card *card) {
+    lar_span word = card->keyword, ignored;
+    if (lar_span_equal_nocase(word, "PART") || lar_span_equal_nocase(word, "INSTANCE"))
+        reader->in_part = true;
+    else if (lar_span_equal_nocase(word, "ASSEMBLY") ||
+             (word.length > 3 && strncasecmp(word.at, "END", 3) == 0))
+        reader->in_part = false;
+    reader->of_part = reader->in_part || inp_parameter(card, "INSTANCE", &ignored);
 }
 
 bool inp_next_card(inp_reader *reader, inp_card *card, lar_status *status) {
@@ -64,6 +82,7 @@ bool inp_next_card(inp_reader *reader, inp_card *card, lar_status *status) {
     card->text[length] = '\0';
     lar_span_split((lar_span){card->text + 1, length - 1}, ',', &card->keyword, &card->parameters);
     card->keyword = lar_span_trim(card->keyword);
+    enter_scope(reader, card);
     return true;
 }
 
@@ -135,9 +154,10 @@ static lar_status read_node(inp_reader *reader, lar_span line, int number, inp_s
         if (field.length > 0 && !lar_span_double(field, &position[i]))
             return inp_expected(reader, number, "a coordinate", field);
     }
+    if (!reader->in_part && reader->part_count > 0) return remember_id(reader, &reader->apart, id);
     lar_status status = lar_mesh_builder_node(reader->builder, id, position, number, reader->error);
     if (!status) status = remember_id(reader, &reader->nodes, id);
-    if (!status && set) status = inp_add_entry(reader, set, id, number);
+    if (!status && set) status = inp_add_entry(reader, set, (inp_entry){id, number, false});
     return status;
 }
 
@@ -149,7 +169,7 @@ static lar_status read_nodes(inp_reader *reader, const inp_card *card) {
     if (inp_parameter(card, "SYSTEM", &value) && !lar_span_equal_nocase(value, "R"))
         return refuse(reader, card, "with SYSTEM=; write the nodes in rectangular coordinates");
     if (inp_parameter(card, "NSET", &value)) {
-        lar_status status = inp_open_set(reader, value, true, &set);
+        lar_status status = inp_open_set(reader, value, LAR_SET_NODES, &set);
         if (status) return status;
     }
     lar_status status = LAR_OK;
@@ -242,12 +262,14 @@ static lar_status read_connectivity(inp_reader *reader, lar_span line, int64_t *
                     nodes);
 }
 
-static lar_status add_boundary(inp_reader *reader, const int64_t *number, int nodes, int line) {
+static lar_status add_boundary(inp_reader *reader, const int64_t *number, const element_type *type,
+                               int line) {
     if (!LAR_GROW(reader->boundary, reader->boundary_capacity, reader->boundary_count))
         return lar_fail_memory(reader->error, sizeof *reader->boundary, "surface elements");
     inp_boundary *boundary = &reader->boundary[reader->boundary_count++];
-    *boundary = (inp_boundary){.id = number[0], .is_quad = nodes == 4, .line = line};
-    if (nodes == 4) memcpy(boundary->node_ids, number + 1, sizeof boundary->node_ids);
+    *boundary = (inp_boundary){
+        .id = number[0], .is_quad = type->nodes == 4, .type = type->name, .line = line};
+    if (boundary->is_quad) memcpy(boundary->node_ids, number + 1, sizeof boundary->node_ids);
     return LAR_OK;
 }
 
@@ -273,7 +295,7 @@ static lar_status read_elements(inp_reader *reader, const inp_card *card) {
 
     inp_set *set = NULL;
     if (inp_parameter(card, "ELSET", &value)) {
-        lar_status status = inp_open_set(reader, value, false, &set);
+        lar_status status = inp_open_set(reader, value, LAR_SET_ELEMENTS, &set);
         if (status) return status;
         if (solid && set->tag == 0) set->tag = ++reader->tag_count;
     }
@@ -284,8 +306,8 @@ static lar_status read_elements(inp_reader *reader, const inp_card *card) {
         status = read_connectivity(reader, line, number, type->nodes);
         if (!status) status = remember_id(reader, &reader->elements, number[0]);
         if (!status && solid) status = add_solid(reader, type, set ? set->tag : 0, number, at);
-        if (!status && !solid) status = add_boundary(reader, number, type->nodes, at);
-        if (!status && set) status = inp_add_entry(reader, set, number[0], at);
+        if (!status && !solid) status = add_boundary(reader, number, type, at);
+        if (!status && set) status = inp_add_entry(reader, set, (inp_entry){number[0], at, false});
     }
     return status;
 }
@@ -302,21 +324,38 @@ static lar_status refuse_generation(inp_reader *reader, const inp_card *card) {
         "here; write out all nodes and elements (most programs export a flat input file)");
 }
 
+static lar_status keep_instance(inp_reader *reader, const inp_card *card) {
+    lar_span name;
+    if (!inp_parameter(card, "NAME", &name)) return LAR_OK;
+    free(reader->instance);
+    reader->instance = lar_strndup(name.at, name.length);
+    return reader->instance ? LAR_OK : lar_fail_memory(reader->error, name.length, "a name");
+}
+
 static lar_status read_part(inp_reader *reader, const inp_card *card) {
     if (++reader->part_count > 1)
         return refuse(reader, card, "a second time; join the parts and write one flat input file");
-    return LAR_OK;
+    return keep_instance(reader, card);
 }
 
+/* Where it is put: nowhere else. Behind that a line that turns it could stand. */
 static lar_status read_instance(inp_reader *reader, const inp_card *card) {
-    lar_span line;
+    lar_span line, field, rest = {"", 0};
     if (++reader->instance_count > 1)
         return refuse(reader, card,
                       "a second time; join the instances and write one flat input file");
-    if (inp_data_line(reader, &line))
+    bool moved = false;
+    double by = 0;
+    if (inp_data_line(reader, &line)) rest = line;
+    while (rest.length > 0) {
+        lar_span_split(rest, ',', &field, &rest);
+        field = lar_span_trim(field);
+        moved |= field.length > 0 && !(lar_span_double(field, &by) && by == 0);
+    }
+    if (moved || inp_data_line(reader, &line))
         return refuse(reader, card,
                       "with a displacement; move the nodes and write one flat input file");
-    return LAR_OK;
+    return keep_instance(reader, card);
 }
 
 typedef struct keyword_row {
@@ -332,6 +371,7 @@ static const keyword_row keywords[] = {
     {"ELEMENT", WALK_MESH, read_elements},
     {"NSET", WALK_SETS, inp_read_nset},
     {"ELSET", WALK_SETS, inp_read_elset},
+    {"SURFACE", WALK_SETS, inp_name_surface}, /* so that all names are known before any is built */
     {"SURFACE", WALK_SURFACES, inp_read_surface},
     {"INCLUDE", WALK_MESH, refuse_include},
     {"PART", WALK_MESH, read_part},
@@ -349,11 +389,11 @@ static const keyword_row keywords[] = {
 static const char parameters[] =
     "NAME,NSET,ELSET,TYPE,GENERATE,UNSORTED,INTERNAL,INSTANCE,PART,SYSTEM";
 
-static lar_status walk_file(inp_reader *reader, lar_text start, int walk) {
+static lar_status walk_file(inp_reader *reader, const lar_bytes *bytes, int walk) {
     inp_card card;
     lar_span line;
     lar_status status = LAR_OK;
-    reader->text = start;
+    reader->text = inp_begin(reader, bytes);
     while (!status && inp_next_card(reader, &card, &status)) {
         for (size_t i = 0; i < sizeof keywords / sizeof *keywords; i++)
             if (keywords[i].walk == walk &&
@@ -387,6 +427,7 @@ static void sort_ids(inp_ids *ids) {
  * that concern a surface element. */
 static lar_status sort_mesh(inp_reader *reader) {
     sort_ids(&reader->nodes);
+    sort_ids(&reader->apart);
     sort_ids(&reader->elements);
     if (reader->boundary_count == 0) return LAR_OK;
     qsort(reader->boundary, reader->boundary_count, sizeof *reader->boundary, compare_boundaries);
@@ -403,33 +444,47 @@ static lar_status sort_mesh(inp_reader *reader) {
     return LAR_OK;
 }
 
+lar_status inp_read_mesh(inp_reader *reader, const lar_bytes *bytes, lar_mesh *mesh) {
+    enum { SPARE_ENTRIES = 1000000 };
+    if (!memchr(bytes->data, '\n', bytes->size) && memchr(bytes->data, '\r', bytes->size))
+        return lar_fail(reader->error, LAR_ERROR_FORMAT,
+                        "%s: its lines end with CR alone, as on old Macs; turn them into LF",
+                        reader->path);
+    reader->entries_left = bytes->size + SPARE_ENTRIES;
+    reader->builder = lar_mesh_builder_create(reader->path);
+    lar_status status =
+        reader->builder ? LAR_OK : lar_fail_memory(reader->error, sizeof *reader, "the reader");
+    for (int walk = 0; walk < WALK_COUNT && !status; walk++) {
+        status = walk_file(reader, bytes, walk);
+        if (!status) status = walk == WALK_MESH ? sort_mesh(reader) : inp_name_sets(reader);
+    }
+    if (!status) status = inp_build_sets(reader);
+    if (!status) status = lar_mesh_builder_finish(reader->builder, mesh, reader->error);
+    mesh->sparse_ranges = reader->sparse_ranges;
+    mesh->sparse_line = reader->sparse_line;
+    lar_mesh_builder_destroy(reader->builder);
+    reader->builder = NULL;
+    return status;
+}
+
+void inp_clear(inp_reader *reader) {
+    for (size_t s = 0; s < reader->set_count; s++) {
+        free(reader->set[s].name);
+        free(reader->set[s].built);
+        free(reader->set[s].entry);
+    }
+    free(reader->set);
+    free(reader->boundary);
+    free(reader->instance);
+    free(reader->nodes.id);
+    free(reader->apart.id);
+    free(reader->elements.id);
+}
+
 lar_status lar_inp_parse(const char *path, const lar_bytes *bytes, lar_mesh *mesh,
                          lar_error *error) {
-    enum { SPARE_ENTRIES = 1000000 };
-    lar_text start = lar_text_from(bytes);
-    inp_reader reader = {.path = path,
-                         .error = error,
-                         .builder = lar_mesh_builder_create(path),
-                         .entries_left = bytes->size + SPARE_ENTRIES};
-    lar_status status =
-        reader.builder ? LAR_OK : lar_fail_memory(error, sizeof reader, "the reader");
-    for (int walk = 0; walk < WALK_COUNT && !status; walk++) {
-        status = walk_file(&reader, start, walk);
-        if (!status && walk == WALK_MESH) status = sort_mesh(&reader);
-    }
-    if (!status) status = inp_build_sets(&reader);
-    if (!status) status = lar_mesh_builder_finish(reader.builder, mesh, error);
-    mesh->sparse_ranges = reader.sparse_ranges;
-    mesh->sparse_line = reader.sparse_line;
-
-    lar_mesh_builder_destroy(reader.builder);
-    for (size_t s = 0; s < reader.set_count; s++) {
-        free(reader.set[s].name);
-        free(reader.set[s].entry);
-    }
-    free(reader.set);
-    free(reader.boundary);
-    free(reader.nodes.id);
-    free(reader.elements.id);
+    inp_reader reader = {.path = path, .error = error};
+    lar_status status = inp_read_mesh(&reader, bytes, mesh);
+    inp_clear(&reader);
     return status;
 }

@@ -35,7 +35,7 @@ static lar_status forces_on(inp_deck *deck, int curve, inp_forces **forces) {
         return inp_no_memory(deck, "the loads");
     }
     *forces = &deck->forces[deck->forces_count++];
-    **forces = (inp_forces){curve, force};
+    **forces = (inp_forces){curve, deck->reader.line, force};
     return LAR_OK;
 }
 
@@ -130,47 +130,65 @@ static lar_status gravity_vector(inp_deck *deck, const lar_span *field, int coun
     return LAR_OK;
 }
 
-/* Every part may have a line of its own; together they must be the whole model and one gravity. */
+/* The one with this vector and curve, new where there is none: a model of several parts has a line
+ * for each of them. */
+static lar_status open_gravity(inp_deck *deck, const double by[3], int curve, int *bit) {
+    inp_gravity *made = &deck->gravity[deck->gravity_count];
+    for (*bit = 0; *bit < deck->gravity_count; (*bit)++)
+        if (deck->gravity[*bit].curve == curve &&
+            memcmp(by, deck->gravity[*bit].by, sizeof made->by) == 0)
+            return LAR_OK;
+    if (*bit == INP_GRAVITIES)
+        return inp_fail(deck, deck->reader.line, LAR_ERROR_UNSUPPORTED,
+                        "more than %d different GRAV; add some of them up", INP_GRAVITIES);
+    *made = (inp_gravity){{by[0], by[1], by[2]}, curve, deck->reader.line};
+    deck->gravity_count++;
+    return LAR_OK;
+}
+
+/* Different ones add up; each must be that of the whole model. */
 static lar_status read_gravity(inp_deck *deck, const lar_span *field, int count, int curve) {
     double gravity[3] = {0};
+    int bit = 0;
     lar_status status = gravity_vector(deck, field, count, gravity);
+    if (!status) status = open_gravity(deck, gravity, curve, &bit);
     if (status) return status;
-    if (deck->gravity_line > 0 &&
-        (memcmp(gravity, deck->gravity, sizeof gravity) != 0 || deck->gravity_curve != curve))
-        return inp_fail(deck, deck->reader.line, LAR_ERROR_UNSUPPORTED,
-                        "another GRAV than in line %d; Lariat has one gravity for the whole model",
-                        deck->gravity_line);
     if (!deck->heavy) deck->heavy = lar_calloc((size_t)deck->mesh->element_count, 1);
     if (!deck->heavy) return inp_no_memory(deck, "gravity");
     const bool whole = field[0].length == 0;
-    if (deck->gravity_line == 0) deck->gravity_line = deck->reader.line;
-    memcpy(deck->gravity, gravity, sizeof gravity);
-    deck->gravity_curve = curve;
     const int32_t *index = NULL;
     int32_t own, elements = deck->mesh->element_count, twice = 0;
     if (!whole) status = inp_elements(deck, field[0], &own, &index, &elements);
     for (int32_t e = 0; e < elements && !status; e++) {
-        char *heavy = &deck->heavy[whole ? e : index[e]];
-        twice += *heavy;
-        *heavy = 1;
+        unsigned char *heavy = &deck->heavy[whole ? e : index[e]];
+        twice += *heavy >> bit & 1;
+        *heavy |= (unsigned char)(1u << bit);
     }
     if (status || twice == 0) return status;
-    return inp_notice(
-        deck, deck->reader.line,
-        "%d elements have GRAV already; together it is one gravity, not twice as much", (int)twice);
+    return inp_notice(deck, deck->reader.line,
+                      "%d elements have this GRAV already; it acts once, not twice", (int)twice);
 }
 
 static lar_status finish_gravity(inp_deck *deck) {
     lar_model *model = deck->model;
-    if (deck->gravity_line == 0) return LAR_OK;
-    const char *light = memchr(deck->heavy, 0, (size_t)deck->mesh->element_count);
-    if (light)
-        return inp_fail(deck, deck->gravity_line, LAR_ERROR_UNSUPPORTED,
-                        "GRAV leaves out element %lld; Lariat's gravity acts on the whole model",
-                        (long long)deck->mesh->element_id[light - deck->heavy]);
-    for (int i = 0; i < 3; i++) {
-        model->gravity[i] = deck->gravity[i];
-        model->gravity_curve[i] = deck->gravity_curve;
+    for (int g = 0; g < deck->gravity_count; g++) {
+        const inp_gravity *gravity = &deck->gravity[g];
+        for (int32_t e = 0; e < deck->mesh->element_count; e++)
+            if (!(deck->heavy[e] >> g & 1))
+                return inp_fail(
+                    deck, gravity->line, LAR_ERROR_UNSUPPORTED,
+                    "GRAV leaves out element %lld; Lariat's gravity acts on the whole model",
+                    (long long)deck->mesh->element_id[e]);
+        for (int i = 0; i < 3; i++) {
+            if (gravity->by[i] == 0 && model->gravity[i] != 0) continue;
+            if (model->gravity[i] != 0 && model->gravity_curve[i] != gravity->curve)
+                return inp_fail(deck, gravity->line, LAR_ERROR_UNSUPPORTED,
+                                "another GRAV along %c has another amplitude; Lariat has one for "
+                                "each axis",
+                                "xyz"[i]);
+            model->gravity[i] += gravity->by[i];
+            model->gravity_curve[i] = gravity->curve;
+        }
     }
     return LAR_OK;
 }
@@ -252,10 +270,29 @@ static lar_status finish_pressures(inp_deck *deck) {
     return LAR_OK;
 }
 
+/* Whether a force only pulls along axes that are held. */
+static bool is_held(const inp_deck *deck, const inp_vector *force) {
+    for (int i = 0; i < 3; i++)
+        if (force->value[i] != 0.0 && deck->hold[3 * (size_t)force->node + (size_t)i] == 0)
+            return false;
+    return true;
+}
+
+static lar_status notice_held(inp_deck *deck, const inp_forces *forces, const inp_vector *vector,
+                              int32_t count) {
+    int32_t held = 0;
+    for (int32_t i = 0; i < count; i++) held += is_held(deck, &vector[i]);
+    if (held == 0) return LAR_OK;
+    return inp_notice(deck, forces->line,
+                      "forces on %d nodes act along axes that *BOUNDARY holds: they move nothing",
+                      (int)held);
+}
+
 static lar_status finish_forces(inp_deck *deck, const inp_forces *forces) {
     inp_vector *vector = NULL;
     int32_t count = 0;
     lar_status status = inp_sort_vectors(deck, (const double(*)[3])forces->force, &vector, &count);
+    if (!status) status = notice_held(deck, forces, vector, count);
     for (int32_t i = 0, end = 0; i < count && !status; i = end) {
         lar_nodal_load *load = LAR_MODEL_APPEND(deck->model, load);
         if (!load) status = inp_no_memory(deck, "the loads");

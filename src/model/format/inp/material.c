@@ -167,7 +167,16 @@ typedef struct asked_law {
     int terms;
 } asked_law;
 
-static asked_law find_asked(const inp_card *card) {
+/* Whether a card has no other parameter than these. */
+static bool has_only(const inp_deck *deck, const inp_card *card, const char *known) {
+    lar_error unused;
+    inp_reader quiet = deck->reader;
+    quiet.error = &unused;
+    return inp_check_parameters(&quiet, card, known) == LAR_OK;
+}
+
+/* Without a kind it is a polynomial. */
+static asked_law find_asked(const inp_deck *deck, const inp_card *card) {
     lar_span ignored;
     for (int law = LAR_LAW_COUNT - 1; law >= 0; law--) {
         const lar_law_dialect *dialect = lar_law_table[law].abaqus;
@@ -176,6 +185,7 @@ static asked_law find_asked(const inp_card *card) {
         if (dialect->name && inp_parameter(card, dialect->name, &ignored))
             return (asked_law){(lar_law)law, 0};
     }
+    if (has_only(deck, card, "MODULI,N")) return (asked_law){LAR_LAW_mooney_rivlin, 1};
     return (asked_law){LAR_LAW_COUNT, 0};
 }
 
@@ -217,8 +227,9 @@ static lar_status read_terms(inp_deck *deck, const inp_card *card, asked_law *as
                         inp_shown(text), text.at);
     if (count > terms_max(law->abaqus))
         return inp_fail(deck, card->line, LAR_ERROR_UNSUPPORTED,
-                        "N=%lld of *HYPERELASTIC; Lariat's %s law has %d terms at most",
-                        (long long)count, law->title, terms_max(law->abaqus));
+                        "N=%lld of *HYPERELASTIC; Lariat's %s law has %d term%s at most",
+                        (long long)count, law->title, terms_max(law->abaqus),
+                        terms_max(law->abaqus) > 1 ? "s" : "");
     asked->terms = (int)count;
     return LAR_OK;
 }
@@ -256,7 +267,7 @@ lar_status inp_read_hyperelastic(inp_deck *deck, const inp_card *card) {
     double given[LAR_LAW_GIVEN] = {0}, own[LAR_LAW_GIVEN];
     int count = list_laws(name), length;
     inp_material *material;
-    asked_law asked = find_asked(card);
+    asked_law asked = find_asked(deck, card);
     lar_law law = 0;
     if (asked.law == LAR_LAW_COUNT) return refuse_law(deck, card);
     length = snprintf(known, sizeof known, "MODULI%s", asked.terms ? ",N" : "");
@@ -312,6 +323,7 @@ lar_status inp_read_damping(inp_deck *deck, const inp_card *card) {
                         "Lariat damps in proportion to mass only; leave BETA out and give ALPHA, "
                         "not negative");
     deck->material[deck->current].damping = value;
+    deck->material[deck->current].damping_line = card->line;
     return LAR_OK;
 }
 
@@ -356,6 +368,7 @@ lar_status inp_read_section(inp_deck *deck, const inp_card *card) {
             "ORIENTATION of *SOLID SECTION is not read where the material has no fibres; "
             "remove it");
     status = inp_elements(deck, elements, &own, &index, &count);
+    if (!status) status = inp_check_solids(&deck->reader, elements);
     if (!status) status = use_material(deck, material);
     if (!status && inp_parameter(card, "CONTROLS", &ignored))
         status = inp_notice(deck, card->line, "CONTROLS of *SOLID SECTION was left out");
@@ -405,16 +418,15 @@ static lar_status notice_law(inp_deck *deck, const inp_material *material) {
 static lar_status choose_density(inp_deck *deck, const inp_material *material) {
     enum { PERIODS = 10 };
     lar_model *model = deck->model;
-    if (deck->step.procedure != INP_STATIC || deck->gravity_line > 0)
+    if (!inp_is_static(deck) || deck->gravity_count > 0)
         return inp_fail(deck, material->line, LAR_ERROR_MODEL,
                         "the material '%.60s' has no density; give it *DENSITY", material->name);
     for (int i = 0; i < model->material_count; i++) model->material[i].density = 1.0;
     double wanted = deck->step.period / PERIODS / lar_model_slow_period(model);
     for (int i = 0; i < model->material_count; i++) model->material[i].density = wanted * wanted;
     return inp_notice(deck, material->line,
-                      "no *DENSITY: the static answer does not depend on it, Lariat takes %.3g for "
-                      "all materials",
-                      wanted * wanted);
+                      "no *DENSITY: the static answer does not depend on it, Lariat takes one that "
+                      "fits the step");
 }
 
 static lar_status finish_densities(inp_deck *deck) {
@@ -440,6 +452,12 @@ static lar_status finish_damping(inp_deck *deck) {
     for (size_t i = 0; i < deck->material_count; i++) {
         const inp_material *material = &deck->material[i];
         if (material->index < 0) continue;
+        if (inp_is_static(deck)) {
+            if (material->damping > 0)
+                return inp_notice(deck, material->damping_line,
+                                  "*DAMPING was left out: it does not count in a static step");
+            continue;
+        }
         if (first && first->damping != material->damping)
             return inp_fail(deck, material->line, LAR_ERROR_UNSUPPORTED,
                             "the materials '%.60s' and '%.60s' have different *DAMPING; Lariat has "
@@ -454,9 +472,9 @@ static lar_status finish_damping(inp_deck *deck) {
 lar_status inp_finish_materials(inp_deck *deck) {
     for (int32_t e = 0; e < deck->mesh->element_count; e++)
         if (deck->model->element_material[e] < 0)
-            return lar_fail(deck->reader.error, LAR_ERROR_MODEL,
-                            "%s: element %lld has no material; put it into a *SOLID SECTION",
-                            deck->reader.path, (long long)deck->mesh->element_id[e]);
+            return inp_fail(deck, deck->mesh->element_line[e], LAR_ERROR_MODEL,
+                            "element %lld has no material; put it into a *SOLID SECTION",
+                            (long long)deck->mesh->element_id[e]);
     lar_status status = finish_densities(deck);
     if (!status) status = finish_damping(deck);
     for (size_t i = 0; i < deck->material_count && !status; i++)

@@ -1,19 +1,64 @@
 /* Sets and surfaces of an Abaqus file. */
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
 #include "model/format/inp/reader.h"
 
-static inp_set *find_set(const inp_reader *reader, lar_span name, bool of_nodes) {
-    for (size_t s = 0; s < reader->set_count; s++)
-        if (reader->set[s].of_nodes == of_nodes && lar_span_equal_nocase(name, reader->set[s].name))
-            return &reader->set[s];
+lar_span inp_without_instance(lar_span name) {
+    size_t dot = name.length;
+    while (dot > 0 && name.at[dot - 1] != '.') dot--;
+    return (lar_span){name.at + dot, name.length - dot};
+}
+
+static inp_set *find_set(const inp_reader *reader, lar_span name, lar_set_kind kind, bool in_part) {
+    for (size_t s = 0; s < reader->set_count; s++) {
+        inp_set *set = &reader->set[s];
+        if (set->kind == kind && set->in_part == in_part && lar_span_equal_nocase(name, set->name))
+            return set;
+    }
     return NULL;
 }
 
-lar_status inp_open_set(inp_reader *reader, lar_span name, bool of_nodes, inp_set **set) {
-    *set = find_set(reader, name, of_nodes);
+/* The set that a card means by a name: one of its own scope before one of the other. */
+static const inp_set *named_set(const inp_reader *reader, lar_span name, lar_set_kind kind) {
+    const lar_span bare = inp_without_instance(name);
+    for (int look = 0; look < 4; look++) {
+        bool part = look < 2 ? reader->of_part == (look == 0) : look == 2;
+        const inp_set *set = find_set(reader, look < 2 ? name : bare, kind, part);
+        if (set) return set;
+    }
+    return NULL;
+}
+
+/* Whether a set of the part needs its instance's name before its own. Sets of elements and of faces
+ * share their names, because elements without volume become faces. */
+static bool is_taken(const inp_reader *reader, const inp_set *set) {
+    for (size_t s = 0; s < reader->set_count && set->in_part; s++) {
+        const inp_set *other = &reader->set[s];
+        if (!other->in_part && (other->kind == LAR_SET_NODES) == (set->kind == LAR_SET_NODES) &&
+            strcasecmp(other->name, set->name) == 0)
+            return true;
+    }
+    return false;
+}
+
+lar_status inp_name_sets(inp_reader *reader) {
+    const char *instance = reader->instance ? reader->instance : "";
+    for (size_t s = 0; s < reader->set_count; s++) {
+        inp_set *set = &reader->set[s];
+        if (set->built || !is_taken(reader, set)) continue;
+        size_t size = strlen(instance) + strlen(set->name) + 2;
+        set->built = malloc(size);
+        if (!set->built) return lar_fail_memory(reader->error, size, "a name");
+        snprintf(set->built, size, "%s.%s", instance, set->name);
+    }
+    return LAR_OK;
+}
+
+lar_status inp_open_set(inp_reader *reader, lar_span name, lar_set_kind kind, inp_set **set) {
+    *set = find_set(reader, name, kind, reader->in_part);
     if (*set) return LAR_OK;
     if (reader->set_count >= LAR_MESH_SETS_MAX)
         return lar_fail(reader->error, LAR_ERROR_UNSUPPORTED,
@@ -25,7 +70,7 @@ lar_status inp_open_set(inp_reader *reader, lar_span name, bool of_nodes, inp_se
         return lar_fail_memory(reader->error, sizeof **set, "a set");
     }
     *set = &reader->set[reader->set_count++];
-    **set = (inp_set){.name = copy, .of_nodes = of_nodes};
+    **set = (inp_set){.name = copy, .kind = kind, .in_part = reader->in_part};
     return LAR_OK;
 }
 
@@ -40,12 +85,41 @@ static lar_status spend_entry(inp_reader *reader, int line) {
                     reader->path, line);
 }
 
-lar_status inp_add_entry(inp_reader *reader, inp_set *set, int64_t id, int line) {
-    lar_status status = spend_entry(reader, line);
+lar_status inp_add_entry(inp_reader *reader, inp_set *set, inp_entry entry) {
+    lar_status status = spend_entry(reader, entry.line);
     if (status) return status;
     if (!LAR_GROW(set->entry, set->capacity, set->count))
         return lar_fail_memory(reader->error, set->count * sizeof *set->entry, "a set");
-    set->entry[set->count++] = (inp_entry){id, line};
+    set->entry[set->count++] = entry;
+    return LAR_OK;
+}
+
+/* ---- elements without volume -------------------------------------------------------------- */
+
+static int compare_boundary(const void *id, const void *boundary) {
+    int64_t x, y = ((const inp_boundary *)boundary)->id;
+    memcpy(&x, id, sizeof x);
+    return (x > y) - (x < y);
+}
+
+static const inp_boundary *find_boundary(const inp_reader *reader, int64_t id) {
+    if (reader->boundary_count == 0) return NULL;
+    return bsearch(&id, reader->boundary, reader->boundary_count, sizeof *reader->boundary,
+                   compare_boundary);
+}
+
+lar_status inp_check_solids(inp_reader *reader, lar_span name) {
+    const inp_set *set = named_set(reader, name, LAR_SET_ELEMENTS);
+    for (size_t i = 0; set && i < set->count; i++) {
+        const inp_boundary *found = find_boundary(reader, set->entry[i].id);
+        if (found)
+            return lar_fail(reader->error, LAR_ERROR_UNSUPPORTED,
+                            "%s:%d: element %lld is of type %s, and a *SOLID SECTION gives it a "
+                            "material; Lariat computes with eight-node hexahedra, take it out of "
+                            "the set '%s'",
+                            reader->path, found->line, (long long)found->id, found->type,
+                            set->name);
+    }
     return LAR_OK;
 }
 
@@ -57,6 +131,30 @@ static lar_status fail_set_name(inp_reader *reader, int line, lar_span name, boo
                     "name or move the set up",
                     reader->path, line, (int)(name.length < 60 ? name.length : 60), name.at,
                     of_nodes ? "a node" : "an element");
+}
+
+/* The first of the ids that is not below this one. */
+static size_t first_id(const inp_ids *ids, int64_t id) {
+    size_t low = 0, high = ids->count;
+    while (low < high) {
+        size_t middle = low + (high - low) / 2;
+        if (ids->id[middle] < id)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+bool inp_is_apart(const inp_reader *reader, int64_t id) {
+    size_t at = first_id(&reader->apart, id);
+    return !reader->of_part && at < reader->apart.count && reader->apart.id[at] == id;
+}
+
+/* A number of a list or a range. */
+static lar_status add_number(inp_reader *reader, inp_set *set, int64_t id, int at) {
+    if (set->kind == LAR_SET_NODES && inp_is_apart(reader, id)) return spend_entry(reader, at);
+    return inp_add_entry(reader, set, (inp_entry){id, at, false});
 }
 
 /* Of a range so many numbers exist: unlike a list it may have others too, which is told; none is a
@@ -86,25 +184,20 @@ static lar_status add_range(inp_reader *reader, inp_set *set, lar_span line, int
     }
     if (bound[1] < bound[0] || bound[2] < 1)
         return inp_expected(reader, at, "an ascending range after GENERATE", line);
-    const inp_ids *ids = set->of_nodes ? &reader->nodes : &reader->elements;
-    size_t low = 0, high = ids->count, before = set->count;
-    while (low < high) {
-        size_t middle = low + (high - low) / 2;
-        if (ids->id[middle] < bound[0])
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    for (; low < ids->count && ids->id[low] <= bound[1]; low++) {
+    const bool of_nodes = set->kind == LAR_SET_NODES;
+    const inp_ids *ids = of_nodes ? &reader->nodes : &reader->elements;
+    uint64_t found = 0;
+    for (size_t low = first_id(ids, bound[0]); low < ids->count && ids->id[low] <= bound[1];
+         low++) {
         uint64_t offset = (uint64_t)ids->id[low] - (uint64_t)bound[0];
-        lar_status status = offset % (uint64_t)bound[2] == 0
-                                ? inp_add_entry(reader, set, ids->id[low], at)
-                                : spend_entry(reader, at);
+        bool wanted = offset % (uint64_t)bound[2] == 0;
+        found += wanted;
+        lar_status status =
+            wanted ? add_number(reader, set, ids->id[low], at) : spend_entry(reader, at);
         if (status) return status;
     }
     uint64_t span = (uint64_t)bound[1] - (uint64_t)bound[0];
-    return check_range(reader, set->of_nodes, set->count - before, span / (uint64_t)bound[2] + 1,
-                       at);
+    return check_range(reader, of_nodes, found, span / (uint64_t)bound[2] + 1, at);
 }
 
 /* Numbers and names of sets, comma separated. */
@@ -117,30 +210,45 @@ static lar_status add_list(inp_reader *reader, inp_set *set, lar_span line, int 
         lar_status status = LAR_OK;
         if (field.length == 0) continue;
         if (lar_span_int64(field, &id)) {
-            status = inp_add_entry(reader, set, id, at);
+            status = add_number(reader, set, id, at);
         } else {
-            const inp_set *other = find_set(reader, field, set->of_nodes);
-            if (!other) return fail_set_name(reader, at, field, set->of_nodes);
+            const inp_set *other = named_set(reader, field, set->kind);
+            if (!other) return fail_set_name(reader, at, field, set->kind == LAR_SET_NODES);
             /* A set may name itself: it gets the entries it has now once more. */
             for (size_t i = 0, count = other->count; i < count && !status; i++)
-                status = inp_add_entry(reader, set, other->entry[i].id, at);
+                status = inp_add_entry(
+                    reader, set, (inp_entry){other->entry[i].id, at, other->entry[i].corners});
         }
         if (status) return status;
     }
     return LAR_OK;
 }
 
+/* The nodes of an element set. */
+static lar_status add_nodes_of(inp_reader *reader, inp_set *set, lar_span name, int at) {
+    const inp_set *from = named_set(reader, name, LAR_SET_ELEMENTS);
+    if (!from) return fail_set_name(reader, at, name, false);
+    lar_status status = LAR_OK;
+    for (size_t i = 0; i < from->count && !status; i++) {
+        const inp_boundary *boundary = find_boundary(reader, from->entry[i].id);
+        if (!boundary)
+            status = inp_add_entry(reader, set, (inp_entry){from->entry[i].id, at, true});
+        for (int a = 0; boundary && boundary->is_quad && a < 4 && !status; a++)
+            status = inp_add_entry(reader, set, (inp_entry){boundary->node_ids[a], at, false});
+    }
+    return status;
+}
+
 static lar_status read_set(inp_reader *reader, const inp_card *card, bool of_nodes) {
-    lar_span name, ignored, line;
+    lar_span name, ignored, line, elements;
     inp_set *set;
     if (!inp_parameter(card, of_nodes ? "NSET" : "ELSET", &name) || name.length == 0)
         return lar_fail(reader->error, LAR_ERROR_FORMAT, "%s:%d: the set has no name; add %s=name",
                         reader->path, card->line, of_nodes ? "NSET" : "ELSET");
-    if (of_nodes && inp_parameter(card, "ELSET", &ignored))
-        return lar_fail(reader->error, LAR_ERROR_UNSUPPORTED,
-                        "%s:%d: *NSET with ELSET= is not read; list the nodes", reader->path,
-                        card->line);
-    lar_status status = inp_open_set(reader, name, of_nodes, &set);
+    lar_status status =
+        inp_open_set(reader, name, of_nodes ? LAR_SET_NODES : LAR_SET_ELEMENTS, &set);
+    if (!status && of_nodes && inp_parameter(card, "ELSET", &elements))
+        status = add_nodes_of(reader, set, elements, card->line);
     bool range = inp_parameter(card, "GENERATE", &ignored);
     while (!status && inp_data_line(reader, &line)) {
         int at = reader->line;
@@ -155,20 +263,6 @@ lar_status inp_read_nset(inp_reader *reader, const inp_card *card) {
 
 lar_status inp_read_elset(inp_reader *reader, const inp_card *card) {
     return read_set(reader, card, false);
-}
-
-/* ---- elements without volume -------------------------------------------------------------- */
-
-static int compare_boundary(const void *id, const void *boundary) {
-    int64_t x, y = ((const inp_boundary *)boundary)->id;
-    memcpy(&x, id, sizeof x);
-    return (x > y) - (x < y);
-}
-
-static const inp_boundary *find_boundary(const inp_reader *reader, int64_t id) {
-    if (reader->boundary_count == 0) return NULL;
-    return bsearch(&id, reader->boundary, reader->boundary_count, sizeof *reader->boundary,
-                   compare_boundary);
 }
 
 /* ---- *SURFACE ----------------------------------------------------------------------------- */
@@ -209,7 +303,7 @@ static lar_status read_faces(inp_reader *reader, lar_span line, int at) {
         lar_status status = spend_entry(reader, at);
         return status ? status : add_face(reader, id, label, at);
     }
-    const inp_set *set = find_set(reader, first, false);
+    const inp_set *set = named_set(reader, first, LAR_SET_ELEMENTS);
     if (!set) return fail_set_name(reader, at, first, false);
     lar_status status = LAR_OK;
     for (size_t i = 0; i < set->count && !status; i++) {
@@ -219,49 +313,60 @@ static lar_status read_faces(inp_reader *reader, lar_span line, int at) {
     return status;
 }
 
-/* A name for the builder, which wants it terminated. */
-static lar_status open_built_set(inp_reader *reader, lar_span name, lar_set_kind kind) {
-    char *copy = lar_strndup(name.at, name.length);
-    if (!copy) return lar_fail_memory(reader->error, name.length, "a name");
-    lar_status status = lar_mesh_builder_set(reader->builder, copy, kind, reader->error);
-    free(copy);
-    return status;
+/* Opens the set of that kind which the builder has for this one. */
+static lar_status open_built(inp_reader *reader, const inp_set *set, lar_set_kind kind) {
+    return lar_mesh_builder_set(reader->builder, set->built ? set->built : set->name, kind,
+                                reader->error);
 }
 
-lar_status inp_read_surface(inp_reader *reader, const inp_card *card) {
-    lar_span name, type = {"ELEMENT", 7}, ignored, line;
-    bool typed = inp_parameter(card, "TYPE", &type);
-    bool of_nodes = typed && lar_span_equal_nocase(type, "NODE");
+static bool is_of_nodes(const inp_card *card) {
+    lar_span type;
+    return inp_parameter(card, "TYPE", &type) && lar_span_equal_nocase(type, "NODE");
+}
+
+static lar_status open_surface(inp_reader *reader, const inp_card *card, inp_set **set) {
+    lar_span name;
     if (!inp_parameter(card, "NAME", &name) || name.length == 0)
         return lar_fail(reader->error, LAR_ERROR_FORMAT,
                         "%s:%d: the surface has no name; add NAME=name", reader->path, card->line);
+    return inp_open_set(reader, name, is_of_nodes(card) ? LAR_SET_NODES : LAR_SET_FACES, set);
+}
+
+lar_status inp_name_surface(inp_reader *reader, const inp_card *card) {
+    inp_set *set;
+    return is_of_nodes(card) ? LAR_OK : open_surface(reader, card, &set);
+}
+
+lar_status inp_read_surface(inp_reader *reader, const inp_card *card) {
+    lar_span type, ignored, line;
+    const bool of_nodes = is_of_nodes(card), typed = inp_parameter(card, "TYPE", &type);
+    inp_set *set;
+    lar_status status = open_surface(reader, card, &set);
+    if (status) return status;
     if (inp_parameter(card, "COMBINE", &ignored) ||
         (typed && !of_nodes && !lar_span_equal_nocase(type, "ELEMENT")))
         return lar_fail(reader->error, LAR_ERROR_UNSUPPORTED,
                         "%s:%d: only surfaces with TYPE=ELEMENT or TYPE=NODE are read; list the "
-                        "faces of surface '%.*s'",
-                        reader->path, card->line, (int)name.length, name.at);
-    lar_status status = LAR_OK;
-    if (of_nodes) {
-        inp_set *set;
-        status = inp_open_set(reader, name, true, &set);
-        while (!status && inp_data_line(reader, &line))
-            status = add_list(reader, set, line, reader->line);
-        return status;
-    }
-    status = open_built_set(reader, name, LAR_SET_FACES);
-    while (!status && inp_data_line(reader, &line)) status = read_faces(reader, line, reader->line);
+                        "faces of surface '%s'",
+                        reader->path, card->line, set->name);
+    if (!of_nodes) status = open_built(reader, set, LAR_SET_FACES);
+    while (!status && inp_data_line(reader, &line))
+        status = of_nodes ? add_list(reader, set, line, reader->line)
+                          : read_faces(reader, line, reader->line);
     return status;
 }
 
 /* ---- handing over ------------------------------------------------------------------------- */
 
 static lar_status build_node_set(inp_reader *reader, const inp_set *set) {
-    lar_status status =
-        lar_mesh_builder_set(reader->builder, set->name, LAR_SET_NODES, reader->error);
-    for (size_t i = 0; i < set->count && !status; i++)
-        status = lar_mesh_builder_set_id(reader->builder, set->entry[i].id, set->entry[i].line,
-                                         reader->error);
+    lar_mesh_builder *builder = reader->builder;
+    lar_status status = open_built(reader, set, LAR_SET_NODES);
+    for (size_t i = 0; i < set->count && !status; i++) {
+        const inp_entry *entry = &set->entry[i];
+        status = entry->corners
+                     ? lar_mesh_builder_set_corners(builder, entry->id, entry->line, reader->error)
+                     : lar_mesh_builder_set_id(builder, entry->id, entry->line, reader->error);
+    }
     return status;
 }
 
@@ -269,19 +374,17 @@ static lar_status build_node_set(inp_reader *reader, const inp_set *set) {
 static lar_status build_quad(inp_reader *reader, const inp_set *set, const inp_boundary *quad,
                              bool nodes_too) {
     lar_mesh_builder *builder = reader->builder;
-    lar_status status = lar_mesh_builder_set(builder, set->name, LAR_SET_FACES, reader->error);
+    lar_status status = open_built(reader, set, LAR_SET_FACES);
     if (!status)
         status = lar_mesh_builder_set_quad(builder, quad->node_ids, quad->line, reader->error);
-    if (!status && nodes_too)
-        status = lar_mesh_builder_set(builder, set->name, LAR_SET_NODES, reader->error);
+    if (!status && nodes_too) status = open_built(reader, set, LAR_SET_NODES);
     for (int a = 0; a < 4 && nodes_too && !status; a++)
         status = lar_mesh_builder_set_id(builder, quad->node_ids[a], quad->line, reader->error);
     return status;
 }
 
 static lar_status build_element_set(inp_reader *reader, const inp_set *set) {
-    lar_span name = {set->name, strlen(set->name)};
-    bool nodes_too = !find_set(reader, name, true);
+    bool nodes_too = !named_set(reader, (lar_span){set->name, strlen(set->name)}, LAR_SET_NODES);
     lar_status status = LAR_OK;
     for (size_t i = 0; i < set->count && !status; i++) {
         const inp_boundary *boundary = find_boundary(reader, set->entry[i].id);
@@ -289,7 +392,7 @@ static lar_status build_element_set(inp_reader *reader, const inp_set *set) {
             if (boundary->is_quad) status = build_quad(reader, set, boundary, nodes_too);
             continue;
         }
-        status = lar_mesh_builder_set(reader->builder, set->name, LAR_SET_ELEMENTS, reader->error);
+        status = open_built(reader, set, LAR_SET_ELEMENTS);
         if (!status)
             status = lar_mesh_builder_set_id(reader->builder, set->entry[i].id, set->entry[i].line,
                                              reader->error);
@@ -299,8 +402,10 @@ static lar_status build_element_set(inp_reader *reader, const inp_set *set) {
 
 lar_status inp_build_sets(inp_reader *reader) {
     lar_status status = LAR_OK;
-    for (size_t s = 0; s < reader->set_count && !status; s++)
-        status = reader->set[s].of_nodes ? build_node_set(reader, &reader->set[s])
-                                         : build_element_set(reader, &reader->set[s]);
+    for (size_t s = 0; s < reader->set_count && !status; s++) {
+        const inp_set *set = &reader->set[s];
+        if (set->kind == LAR_SET_NODES) status = build_node_set(reader, set);
+        if (set->kind == LAR_SET_ELEMENTS) status = build_element_set(reader, set);
+    }
     return status;
 }

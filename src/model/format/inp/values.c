@@ -92,22 +92,26 @@ static const lar_set *find_set(const lar_mesh *mesh, lar_span name, lar_set_kind
     return NULL;
 }
 
-/* "Part-1-1.Wall": behind the instance's name. */
-static lar_span without_instance(lar_span name) {
-    size_t dot = name.length;
-    while (dot > 0 && name.at[dot - 1] != '.') dot--;
-    return (lar_span){name.at + dot, name.length - dot};
-}
-
 static lar_span without_quotes(lar_span name) {
     if (name.length < 2 || name.at[0] != '"' || name.at[name.length - 1] != '"') return name;
     return (lar_span){name.at + 1, name.length - 2};
 }
 
+/* Of two sets of one name, that of the part is called by its instance in the mesh. */
 const lar_set *inp_mesh_set(const inp_deck *deck, lar_span name, lar_set_kind kind) {
+    enum { LONGEST = 2100 }; /* longer than two names */
+    char full[LONGEST];
     name = without_quotes(name);
-    const lar_set *set = find_set(deck->mesh, name, kind);
-    return set ? set : find_set(deck->mesh, without_instance(name), kind);
+    const lar_span bare = inp_without_instance(name);
+    const char *instance = deck->reader.instance ? deck->reader.instance : "";
+    int length = snprintf(full, sizeof full, "%s.%.*s", instance,
+                          (int)(bare.length < LONGEST ? bare.length : LONGEST), bare.at);
+    const lar_set *of_part = NULL, *set = NULL;
+    if (length < LONGEST) of_part = find_set(deck->mesh, (lar_span){full, (size_t)length}, kind);
+    if (of_part && (deck->reader.in_part || bare.length < name.length)) return of_part;
+    set = find_set(deck->mesh, name, kind);
+    if (!set) set = find_set(deck->mesh, bare, kind);
+    return set ? set : of_part;
 }
 
 static lar_status spend(inp_deck *deck, size_t count) {
@@ -130,8 +134,10 @@ static lar_status find_many(inp_deck *deck, lar_span field, bool of_nodes, int32
                             const int32_t **index, int32_t *count) {
     const char *what = of_nodes ? "node" : "element";
     int64_t id;
-    if (lar_span_int64(field, &id) || lar_span_int64(without_instance(field), &id)) {
-        *own = lar_id_map_find(of_nodes ? &deck->nodes : &deck->elements, id);
+    const bool bare = lar_span_int64(field, &id);
+    if (bare || lar_span_int64(inp_without_instance(field), &id)) {
+        bool apart = of_nodes && bare && inp_is_apart(&deck->reader, id);
+        *own = apart ? -1 : lar_id_map_find(of_nodes ? &deck->nodes : &deck->elements, id);
         *index = own;
         *count = 1;
         if (*own >= 0) return LAR_OK;

@@ -7,6 +7,10 @@
  * moduli of the law are those in the end (MODULI=LONG TERM, Abaqus's default), or those at once
  * (MODULI=INSTANTANEOUS): then 1 - sum g is left of them. law/viscosity.h counts shares by the
  * law's moduli.
+ *
+ *     *STATIC               elastic, with the moduli at once
+ *     *STATIC, LONG TERM    elastic, with those in the end
+ *     *VISCO, *DYNAMIC      relaxes in the step's time
  */
 #include <math.h>
 #include <stdio.h>
@@ -94,6 +98,18 @@ lar_status inp_read_viscoelastic(inp_deck *deck, const inp_card *card) {
     return status;
 }
 
+/* In Abaqus too nothing relaxes in a static step. */
+static lar_status freeze(inp_deck *deck, const inp_material *from, lar_material *material) {
+    const bool at_once = !deck->step.long_term;
+    lar_material_freeze(material, at_once);
+    return inp_notice(
+        deck, material->viscosity.line,
+        "material '%.60s': *STATIC takes its moduli %s; *STATIC%s takes those %s, and "
+        "*VISCO follows what relaxes",
+        from->name, at_once ? "at once" : "in the end", at_once ? ", LONG TERM" : "",
+        at_once ? "in the end" : "at once");
+}
+
 lar_status inp_finish_viscosity(inp_deck *deck, const inp_material *from, lar_material *material) {
     lar_viscosity *v = &material->viscosity;
     char where[300];
@@ -111,6 +127,7 @@ lar_status inp_finish_viscosity(inp_deck *deck, const inp_material *from, lar_ma
     lar_material tried = *material;
     tried.density = 1.0; /* it may not be known yet */
     lar_status status = lar_material_check(&tried, where, deck->reader.error);
+    if (!status && deck->step.procedure == INP_STATIC) return freeze(deck, from, material);
     return status ? status
                   : inp_notice(deck, v->line,
                                "material '%.60s': Lariat relaxes the stress of the shape at rest "
