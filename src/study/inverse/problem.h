@@ -67,6 +67,7 @@ typedef struct lar_inverse_experiment {
     double noise;        /* standard deviation of a measured number, or a hundredth of `largest` */
     double *error;       /* [values] of each; NULL: `noise` of all */
     int move, tool;      /* of the model: what is driven; -1: nothing */
+    double way;          /* 1 or -1: where the driven support's positive way goes on its axis */
     double direction[3]; /* into the tissue, of a tool */
     lar_inverse_aspiration aspiration;
 } lar_inverse_experiment;
