@@ -465,7 +465,8 @@ static lar_status set_noise(const source *s) {
     lar_inverse_experiment *e = s->e;
     const lar_yaml *own = lar_yaml_get(s->node, "noise");
     for (int32_t i = 0; i < e->values; i++) e->largest = fmax(e->largest, fabs(e->measured[i]));
-    if (e->kind == LAR_INVERSE_SURFACE) e->largest = SHARE * body_size(e->model, -1);
+    e->whole = e->kind == LAR_INVERSE_SURFACE ? body_size(e->model, -1) : e->largest;
+    if (e->kind == LAR_INVERSE_SURFACE) e->largest = SHARE * e->whole;
     if (!(e->largest > 0))
         return lar_fail(s->scene->error, LAR_ERROR_MODEL,
                         "%s: all that is measured is zero, which tells nothing", s->table.path);
