@@ -212,10 +212,9 @@ static PyObject *session_repr(PyObject *me) {
 
 /* ---- the clock ------------------------------------------------------------------------------ */
 
-/* The session for a call that lets it go on; one that has stopped does not. */
-static lar_session *look_sound(PyObject *me, const char *call) {
+lar_session *python_session_look_sound(python_session *self, const char *call) {
     lar_session_status now;
-    lar_session *session = python_session_look((python_session *)me, call);
+    lar_session *session = python_session_look(self, call);
     if (!session) return NULL;
     lar_session_status_get(session, &now);
     if (now.state != LAR_SESSION_STOPPED) return session;
@@ -229,7 +228,7 @@ static lar_session *look_sound(PyObject *me, const char *call) {
 
 static PyObject *play(PyObject *me, PyObject *nothing) {
     (void)nothing;
-    lar_session *session = look_sound(me, "play");
+    lar_session *session = python_session_look_sound((python_session *)me, "play");
     if (!session) return NULL;
     lar_session_play(session);
     Py_RETURN_NONE;
@@ -246,8 +245,12 @@ static PyObject *pause_session(PyObject *me, PyObject *nothing) {
 static PyObject *step(PyObject *me, PyObject *steps) {
     unsigned long long count;
     if (!python_steps(steps, "steps", &count)) return NULL;
-    lar_session *session = look_sound(me, "step");
+    lar_session *session = python_session_look_sound((python_session *)me, "step");
     if (!session) return NULL;
+    if (count == 0) {
+        python_refuse("steps: expected one at least, got 0; pause() is to stand still");
+        return NULL;
+    }
     lar_session_step(session, count);
     Py_RETURN_NONE;
 }

@@ -38,6 +38,7 @@ static PyObject *tool_move(PyObject *me, PyObject *args, PyObject *keywords) {
     python_asked *asked = &((python_session *)me)->asked[index];
     if (!python_pose(position, orientation, opening, asked, &now, &pose)) return NULL;
     /* Reading numbers may have run any code. */
+    if (!python_session_look_sound((python_session *)me, "tool_move")) return NULL;
     if (!(session = look(me, tool, &index, "tool_move"))) return NULL;
     if (lar_session_tool_move(session, index, &pose, &error)) return python_raise(&error);
     python_asked_set(asked, &pose);
