@@ -337,7 +337,8 @@ static PyMethodDef session_methods[] = {
     {"pause", pause_session, METH_NOARGS,
      "pause($self)\n--\n\nPauses after the tick under way. Returns None at once."},
     {"step", step, METH_O,
-     "step($self, steps)\n--\n\nDoes so many steps at the session's pace, then pauses. Returns "
+     "step($self, steps)\n--\n\nDoes so many steps, one at least, at the session's pace, then "
+     "pauses. Returns "
      "None at once: status()[\"step\"] tells how far it is; Simulation.advance waits and returns "
      "their number. UnstableError when the run has broken off."},
     {"set_pace", set_pace, METH_O,
