@@ -1172,7 +1172,7 @@ LAR_SIZED void lar_session_inspect(const lar_session *session, lar_session_info 
 /* Asked for here, done at the end of the tick under way, in this order. */
 LAR_API void lar_session_play(lar_session *session);
 LAR_API void lar_session_pause(lar_session *session);
-LAR_API void lar_session_step(lar_session *session, uint64_t steps); /* pauses after them */
+LAR_API void lar_session_step(lar_session *session, uint64_t steps); /* pauses then; 0: nothing */
 /* 0 to 1e6, as lar_session_options.pace; another one is passed over. */
 LAR_API void lar_session_set_pace(lar_session *session, double pace);
 /* These wait until it is done, or failed. */

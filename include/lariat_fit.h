@@ -132,7 +132,7 @@ typedef struct lar_fit_experiment_info {
     const double *model;                    /* [values] of the fitted model; NULL: no answer yet */
     double noise;                           /* standard deviation of one [N] or [m] */
     double rms;                             /* of measured minus model [N] or [m] */
-    double relative;                        /* the same over the largest measured number */
+    double relative;                        /* by the largest, surfaces: by the body's length */
     int32_t systematic;                     /* what is left is no chance: a note says how */
     int32_t sign_runs;                      /* how often what is left keeps its sign for a while */
     double sign_runs_z;                     /* against what chance gives; below -1.96: too few */

@@ -358,6 +358,8 @@ extern PyMethodDef python_batch_state_methods[];
 
 /* The session for a call that keeps the lock, and for one that does not. */
 lar_session *python_session_look(python_session *self, const char *call);
+/* For a call that lets it go on, or leads a tool: one that has stopped does neither. */
+lar_session *python_session_look_sound(python_session *self, const char *call);
 lar_session *python_session_take(python_session *self, const char *call);
 void python_session_give(python_session *self);
 lar_session *python_session_tool(python_session *self, const char *call, PyObject *source,

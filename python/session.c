@@ -212,10 +212,9 @@ static PyObject *session_repr(PyObject *me) {
 
 /* ---- the clock ------------------------------------------------------------------------------ */
 
-/* The session for a call that lets it go on; one that has stopped does not. */
-static lar_session *look_sound(PyObject *me, const char *call) {
+lar_session *python_session_look_sound(python_session *self, const char *call) {
     lar_session_status now;
-    lar_session *session = python_session_look((python_session *)me, call);
+    lar_session *session = python_session_look(self, call);
     if (!session) return NULL;
     lar_session_status_get(session, &now);
     if (now.state != LAR_SESSION_STOPPED) return session;
@@ -229,7 +228,7 @@ static lar_session *look_sound(PyObject *me, const char *call) {
 
 static PyObject *play(PyObject *me, PyObject *nothing) {
     (void)nothing;
-    lar_session *session = look_sound(me, "play");
+    lar_session *session = python_session_look_sound((python_session *)me, "play");
     if (!session) return NULL;
     lar_session_play(session);
     Py_RETURN_NONE;
@@ -246,8 +245,12 @@ static PyObject *pause_session(PyObject *me, PyObject *nothing) {
 static PyObject *step(PyObject *me, PyObject *steps) {
     unsigned long long count;
     if (!python_steps(steps, "steps", &count)) return NULL;
-    lar_session *session = look_sound(me, "step");
+    lar_session *session = python_session_look_sound((python_session *)me, "step");
     if (!session) return NULL;
+    if (count == 0) {
+        python_refuse("steps: expected one at least, got 0; pause() is to stand still");
+        return NULL;
+    }
     lar_session_step(session, count);
     Py_RETURN_NONE;
 }
@@ -334,7 +337,8 @@ static PyMethodDef session_methods[] = {
     {"pause", pause_session, METH_NOARGS,
      "pause($self)\n--\n\nPauses after the tick under way. Returns None at once."},
     {"step", step, METH_O,
-     "step($self, steps)\n--\n\nDoes so many steps at the session's pace, then pauses. Returns "
+     "step($self, steps)\n--\n\nDoes so many steps, one at least, at the session's pace, then "
+     "pauses. Returns "
      "None at once: status()[\"step\"] tells how far it is; Simulation.advance waits and returns "
      "their number. UnstableError when the run has broken off."},
     {"set_pace", set_pace, METH_O,

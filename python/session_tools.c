@@ -38,6 +38,7 @@ static PyObject *tool_move(PyObject *me, PyObject *args, PyObject *keywords) {
     python_asked *asked = &((python_session *)me)->asked[index];
     if (!python_pose(position, orientation, opening, asked, &now, &pose)) return NULL;
     /* Reading numbers may have run any code. */
+    if (!python_session_look_sound((python_session *)me, "tool_move")) return NULL;
     if (!(session = look(me, tool, &index, "tool_move"))) return NULL;
     if (lar_session_tool_move(session, index, &pose, &error)) return python_raise(&error);
     python_asked_set(asked, &pose);
@@ -232,7 +233,7 @@ PyMethodDef python_session_tool_methods[] = {
     {"tool_move", FUNCTION(tool_move), METH_VARARGS | METH_KEYWORDS,
      "tool_move($self, tool, position, *, orientation=None, opening=None)\n--\n\nWhere the tool's "
      "hand or device is now; the tool follows, no faster than tool_speed. position: of the tip "
-     "[m]; orientation: unit quaternion w, x, y, z."},
+     "[m]; orientation: unit quaternion w, x, y, z. UnstableError when the run has broken off."},
     {"grasp", FUNCTION(grasp), METH_VARARGS | METH_KEYWORDS,
      "grasp($self, tool, point=None)\n--\n\nTakes hold between two ticks; a hand at `point` [m]. "
      "Returns how many surface points a hand has got."},

@@ -95,7 +95,7 @@ class Experiment(Answer):
     values = _Field("int: how many numbers were measured.")
     noise = _Field("float: standard deviation of a measured number [N or m].")
     rms = _Field("float: root mean square of what is left [N or m].")
-    relative = _Field("float: rms by the largest that was measured.")
+    relative = _Field("float: rms by the largest that was measured; surfaces: by the body's length.")
     sign_runs = _Field("int: how often what is left changes its sign, plus 1.")
     sign_runs_z = _Field("float: the same against chance; None: cannot be told.")
     lag = _Field("float: correlation of what is left of neighbours; None: cannot be told.")

@@ -10,6 +10,13 @@ static bool is_space(char c) {
     return c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == '\f' || c == '\v';
 }
 
+lar_text lar_text_from(const lar_bytes *bytes) {
+    static const char MARK[] = "\xef\xbb\xbf";
+    const char *at = (const char *)bytes->data, *end = at + bytes->size;
+    if (bytes->size >= 3 && memcmp(at, MARK, 3) == 0) at += 3;
+    return (lar_text){at, end, 1};
+}
+
 bool lar_text_skip_space(lar_text *text) {
     while (text->at < text->end && is_space(*text->at)) {
         if (*text->at == '\n') text->line++;

@@ -28,9 +28,9 @@ typedef struct lar_span {
     size_t length;
 } lar_span;
 
-static inline lar_text lar_text_from(const lar_bytes *bytes) {
-    return (lar_text){(const char *)bytes->data, (const char *)bytes->data + bytes->size, 1};
-}
+/* The whole of a file, behind the byte order mark of UTF-8 that editors and spreadsheets put before
+ * it. */
+lar_text lar_text_from(const lar_bytes *bytes);
 
 /* Skips blanks and line ends, counting lines. False at the end of the text. */
 bool lar_text_skip_space(lar_text *text);

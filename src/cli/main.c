@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <signal.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -39,6 +40,16 @@ int cli_unknown_command(const char *name) {
     return cli_complain(NULL, CLI_USAGE, "unknown command %s; lariat --help lists them", name);
 }
 
+/* A word in the environment that no build knows is wrong usage, as behind --isa. */
+static int check_environment(const cli_command *command) {
+    const char *wanted = getenv("LARIAT_ISA");
+    if (!wanted || !*wanted) return CLI_DONE;
+    for (int i = 0; cli_isa_names[i]; i++)
+        if (strcmp(cli_isa_names[i], wanted) == 0) return CLI_DONE;
+    return cli_complain(command, CLI_USAGE,
+                        "LARIAT_ISA=%.40s: expected one of auto, c, neon, avx2, avx512", wanted);
+}
+
 static int dispatch(int argc, char **argv) {
     if (argc < 2) {
         cli_print_overview(stderr);
@@ -54,8 +65,10 @@ static int dispatch(int argc, char **argv) {
         return CLI_DONE;
     }
     for (int i = 0; i < COUNT; i++)
-        if (strcmp(cli_commands[i]->name, name) == 0)
-            return cli_commands[i]->main(argc - 2, argv + 2);
+        if (strcmp(cli_commands[i]->name, name) == 0) {
+            int status = check_environment(cli_commands[i]);
+            return status ? status : cli_commands[i]->main(argc - 2, argv + 2);
+        }
     return cli_unknown_command(name);
 }
 

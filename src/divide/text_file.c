@@ -13,16 +13,16 @@
 
 lar_text_file lar_text_file_from(const char *kind, const char *path, const lar_bytes *bytes,
                                  lar_error *error) {
-    const char *start = (const char *)bytes->data;
+    const lar_text text = lar_text_from(bytes);
     return (lar_text_file){.path = path,
                            .kind = kind,
                            .error = error,
-                           .at = start,
-                           .end = start + bytes->size,
-                           .next = 1,
-                           .line = start,
-                           .number = 1,
-                           .word = start};
+                           .at = text.at,
+                           .end = text.end,
+                           .next = text.line,
+                           .line = text.at,
+                           .number = text.line,
+                           .word = text.at};
 }
 
 lar_status lar_text_file_refuse(const lar_text_file *file, int line, const char *format, ...) {

@@ -124,8 +124,6 @@ lar_status lar_tool_script_read(const char *path, lar_tool_script *script, lar_e
     lar_status status = lar_bytes_read(path, &bytes, error);
     if (status) return status;
     script_reader reader = {.path = path, .text = lar_text_from(&bytes)};
-    /* Spreadsheets put a byte order mark before the names. */
-    if (bytes.size >= 3 && memcmp(bytes.data, "\xef\xbb\xbf", 3) == 0) reader.text.at += 3;
     status = read_header(&reader, error);
     lar_span line;
     while (!status && next_line(&reader, &line)) status = add_row(&reader, script, line, error);

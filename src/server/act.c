@@ -111,7 +111,22 @@ void lar_server_watch_recording(lar_server *server) {
                         "may (--save-most)");
 }
 
+/* Materials of viewers begin at 0, and all are none. */
+static bool has_material(lar_server *server, lar_viewer *viewer, const lar_command *command) {
+    const long of = command->material, count = lar_model_material_count(server->model);
+    bool asked = command->kind == LAR_COMMAND_STIFFNESS || command->kind == LAR_COMMAND_ACTIVATE;
+    if (!asked || of < count) return true;
+    char sentence[128];
+    snprintf(sentence, sizeof sentence,
+             "there is no material %ld; there are %ld, counted from 0, and without material all "
+             "are meant",
+             of, count);
+    lar_viewer_note(server, viewer, sentence);
+    return false;
+}
+
 static void ask_setting(lar_server *server, lar_viewer *viewer, const lar_command *command) {
+    if (!has_material(server, viewer, command)) return;
     lar_job job = {.kind = command->kind, .viewer = viewer->number, .setting = *command};
     if (!lar_work_ask(&server->work, &job))
         lar_viewer_note(server, viewer, "too much is asked for at once; try again in a moment");
@@ -156,6 +171,8 @@ void lar_server_job_ended(lar_server *server, const lar_job_end *end) {
         lar_saved_add(&server->recordings, server->recording);
         if (viewer) tell_saved(server, viewer, RECORDING, server->recording);
         server->recording[0] = '\0';
+    } else if (over && viewer) {
+        lar_viewer_note(server, viewer, "nothing is being recorded");
     }
 }
 
@@ -205,6 +222,14 @@ static void move_tool(lar_server *server, lar_viewer *viewer, const lar_command 
     if (is_played(server, viewer, command)) return;
     if (lar_hands_move(&server->hands, viewer->number, command, lar_clock_ns(), &error))
         lar_viewer_note(server, viewer, error.message);
+}
+
+static void seek(lar_server *server, lar_viewer *viewer, const lar_command *command) {
+    lar_session_status now;
+    lar_session_seek(server->session, command->time);
+    lar_session_status_get(server->session, &now);
+    if (!now.replaying)
+        lar_viewer_note(server, viewer, "no recording is being played; replay one first");
 }
 
 static void remove_tool(lar_server *server, lar_viewer *viewer, const lar_command *command) {
@@ -266,7 +291,7 @@ void lar_server_act(lar_server *server, lar_viewer *viewer, const lar_command *c
         server->pace = command->pace;
         break;
     case LAR_COMMAND_SEEK:
-        lar_session_seek(server->session, command->time);
+        seek(server, viewer, command);
         break;
     case LAR_COMMAND_SLICE:
         ask_slice(server, viewer, command);

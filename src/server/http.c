@@ -8,6 +8,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include "base/text.h"
 #include "server/state.h"
 
 /* ---- who is let in --------------------------------------------------------------------------- */
@@ -137,14 +138,23 @@ static int answer(lar_server *server, struct lws *wsi, lar_download *download, c
     return begin_file(wsi, download, file, get);
 }
 
+/* Whether ours is among the protocols that a viewer speaks: then libwebsockets takes it. */
+static bool speaks_ours(const char *list) {
+    lar_span rest = {list, strlen(list)}, one;
+    for (bool more = true; more;) {
+        more = lar_span_split(rest, ',', &one, &rest);
+        if (lar_span_equal(lar_span_trim(one), LAR_PROTOCOL)) return true;
+    }
+    return false;
+}
+
 /* An upgrade is a viewer's: to a WebSocket, at its path, in our protocol. */
 static int check_upgrade(lar_server *server, struct lws *wsi, const char *to) {
-    char path[16], protocol[64];
-    bool good = to && strcasecmp(to, "websocket") == 0 && trusts(server, wsi) &&
-                copy_header(wsi, WSI_TOKEN_GET_URI, path, sizeof path) &&
-                strcmp(path, "/socket") == 0 &&
-                copy_header(wsi, WSI_TOKEN_PROTOCOL, protocol, sizeof protocol) &&
-                strcmp(protocol, LAR_PROTOCOL) == 0;
+    char path[16], protocols[128];
+    bool good =
+        to && strcasecmp(to, "websocket") == 0 && trusts(server, wsi) &&
+        copy_header(wsi, WSI_TOKEN_GET_URI, path, sizeof path) && strcmp(path, "/socket") == 0 &&
+        copy_header(wsi, WSI_TOKEN_PROTOCOL, protocols, sizeof protocols) && speaks_ours(protocols);
     if (good) return 0;
     int sent = lws_return_http_status(wsi, HTTP_STATUS_FORBIDDEN,
                                       "This is not the address, origin or protocol of a viewer.");

@@ -173,8 +173,9 @@ static void *run(void *argument) {
 static const lws_retry_bo_t idle_policy = {.secs_since_valid_ping = 5,
                                            .secs_since_valid_hangup = 15};
 
+/* The first one is of what is no WebSocket: with a name that no viewer can ask for. */
 static const struct lws_protocols protocol_table[] = {
-    {"http", lar_server_http, sizeof(lar_download), 0, 0, NULL, 0},
+    {"no protocol", lar_server_http, sizeof(lar_download), 0, 0, NULL, 0},
     {LAR_PROTOCOL, lar_server_socket, sizeof(lar_viewer), LAR_MESSAGE_MAX + 1, 0, NULL, 0},
     {NULL, NULL, 0, 0, 0, NULL, 0}};
 

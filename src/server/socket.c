@@ -45,7 +45,7 @@ static void read_rights(const lar_server *server, lar_viewer *viewer, struct lws
     bool full = !server->token || (token && same_secret(token, server->token));
     bool part = token && server->watch_token && same_secret(token, server->watch_token);
     viewer->token_is_right = full || part;
-    viewer->watches = !full || watch;
+    viewer->watches = !full || (watch && strcmp(watch, "1") == 0);
 }
 
 static void welcome(lar_server *server, lar_viewer *viewer) {

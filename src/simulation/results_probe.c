@@ -64,7 +64,7 @@ static lar_status print_values(FILE *line, const lar_simulation *simulation, lar
         lar_status status = LAR_OK;
         if (probe->what == LAR_PROBE_REACTION)
             status = lar_measure_reaction(&simulation->domain, &simulation->scratch->measure,
-                                          &simulation->state, &probe->nodes, value, error);
+                                          &simulation->state, &probe->nodes, false, value, error);
         else
             mean_displacement(simulation, &probe->nodes, value);
         if (status) return status;

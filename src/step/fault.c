@@ -80,7 +80,7 @@ static const char *describe_action(const lar_domain *domain, const lar_fault *fa
     if (!isfinite(fault->volume_ratio) || !isfinite(fault->growth)) return "tears apart";
     if (!(fault->volume_ratio > domain->limits.min_volume)) return "turns inside out or crushes";
     if (fault->growth * domain->time_step > domain->stable_step)
-        return "squeezes more than the time step allows";
+        return "strains more than the time step allows";
     return "exceeds the force limit at";
 }
 
@@ -103,7 +103,7 @@ static lar_status report_element(const lar_domain *domain, const lar_fault *faul
         cause = "is turned inside out or crushed";
         remedy = "use a smaller time step, slower or smaller loads, or a finer mesh there";
     } else if (growth * domain->time_step > domain->stable_step) {
-        cause = "is squeezed so much that the time step has become too large for it";
+        cause = "is strained so much that the time step has become too large for it";
         remedy = "use a smaller time step or a stiffer or finer mesh there";
     } else {
         cause = "exceeds the force limit";

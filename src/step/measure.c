@@ -330,8 +330,8 @@ double lar_measure_stress(const lar_domain *domain, const lar_state *state, lar_
 }
 
 lar_status lar_measure_reaction(const lar_domain *domain, lar_measure_scratch *scratch,
-                                const lar_state *state, const lar_node_list *nodes, double sum[3],
-                                lar_error *error) {
+                                const lar_state *state, const lar_node_list *nodes, bool arriving,
+                                double sum[3], lar_error *error) {
     const lar_condition_notes *supports = &scratch->interactions.notes;
     size_t count = (size_t)domain->layout.node_padded;
     bool *wanted = lar_calloc(count, sizeof *wanted);
@@ -340,10 +340,12 @@ lar_status lar_measure_reaction(const lar_domain *domain, lar_measure_scratch *s
     look l;
     begin_look(domain, scratch, state, &l);
     memset(sum, 0, 3 * sizeof *sum);
+    arriving = arriving || state->step == 0;
     for (int32_t i = 0; i < supports->constraint_count; i++) {
         const lar_constraint *c = &supports->constraint[i];
         if (!wanted[c->node]) continue;
-        sum[c->axis] += support_force(&l, c, supported_velocity(&l, c));
+        double ahead = arriving ? state->v[lar_constraint_at(state, c)] : supported_velocity(&l, c);
+        sum[c->axis] += support_force(&l, c, ahead);
     }
     end_look(&l);
     free(wanted);

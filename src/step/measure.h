@@ -43,9 +43,12 @@ double lar_measure_stress(const lar_domain *domain, const lar_state *state, lar_
                           double cauchy[6]);
 
 /* Sum over some global nodes of the forces that their supports exert on them [N]; axes without a
- * support add nothing. Fails only for want of memory. */
+ * support add nothing. `arriving`: those that bring them here at the speed that they have, whatever
+ * the supports do next; else what the next step takes, which throws them from one speed to the next
+ * where a curve has a kink. At step 0 nothing has moved, and nothing is thrown. Fails only for want
+ * of memory. */
 lar_status lar_measure_reaction(const lar_domain *domain, lar_measure_scratch *scratch,
-                                const lar_state *state, const lar_node_list *nodes, double sum[3],
-                                lar_error *error);
+                                const lar_state *state, const lar_node_list *nodes, bool arriving,
+                                double sum[3], lar_error *error);
 
 #endif

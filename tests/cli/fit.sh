@@ -255,6 +255,75 @@ scene=one.yaml
 bad 'one\.yaml has no pressure; give its faces' tube
 scene=
 
+# A stretch goes by the body: the scene may pull or press.
+awk 'BEGIN { print "stretch,force"; for (s = 0.97; s > 0.84; s -= 0.04) print s "," 0.2 * (1 / s / s - s) }' \
+    >pressed.csv
+awk 'BEGIN { print "stretch,force"; for (s = 1.03; s < 1.16; s += 0.04) print s "," 0.2 * (s - 1 / s / s) }' \
+    >pulled.csv
+sed 's/by: 0.002/by: -0.002/' one.yaml >push.yaml
+sed 's/^move.*/move: [ { nodes: { plane: { point: [0, 0, 0], normal: [0, 0, 1] } }, axes: z, by: 0.002, over: 1 } ]/
+    s/point: \[0, 0, 0\], normal: \[0, 0, 1\] } }, axes: z }/point: [0, 0, 0.02], normal: [0, 0, 1] } }, axes: z }/' \
+    one.yaml >lift.yaml # its lower end is moved
+of_kind() { # KIND SCENE TABLE KEYS
+    fit shear_modulus 1.5e3 "$3" "${4:-}" | sed "s/tension/$1/; s/one\.yaml/$2/"
+}
+for scene in one push lift; do
+    for kind in tension:pulled compression:pressed; do
+        of_kind ${kind%:*} $scene.yaml ${kind#*:}.csv >stretch.yaml
+        expect 0 "$LARIAT" fit stretch.yaml --json
+        value_of parameters.0.value | awk '{ exit !($1 > 1960 && $1 < 2040) }' ||
+            fail "$kind in $scene.yaml: $(value_of parameters.0.value) instead of 2000"
+    done
+done
+scene=
+bad 'pressed\.csv:2: no stretch is above 1, and bad\.yaml:5 says kind: tension; say kind: compression' \
+    of_kind tension one.yaml pressed.csv
+bad 'pulled\.csv:2: no stretch is below 1.*say kind: tension' of_kind compression one.yaml pulled.csv
+bad 'bad\.yaml:5:.*length: 20 m, and the body of .*one\.yaml is only 0.02 m long.*say length: 0.02' \
+    of_kind tension one.yaml pulled.csv ', length: 20'
+printf 'stretch,force\n0.03,0.01\n0.4,0.2\n' >strain.csv
+bad 'strain\.csv:2: the stretch is 0.03.*was a strain' of_kind compression one.yaml strain.csv
+sed 's/axes: z, by/axes: x, by/' one.yaml >aside.yaml
+bad 'pulled\.csv:1: .* moved along x and sits in the middle.*give displacement' \
+    of_kind tension aside.yaml pulled.csv
+
+# Tables as spreadsheets write them: a byte order mark, semicolons or tabs, quotes.
+of_table() { # TEXT
+    # shellcheck disable=SC2059
+    printf "$1" >sheet.csv
+    fit shear_modulus 1.5e3 sheet.csv >sheet.yaml
+    expect 0 "$LARIAT" fit sheet.yaml
+    says 'shear_modulus: [12][09][0-9][0-9]'
+}
+of_table '\357\273\277displacement,force\r\n0.001,0.0286\r\n0.002,0.0547\r\n'
+of_table '"displacement";"of, what";"force"\n0.001;a, b;0.0286\n0.002;"a; b";"0.0547"\n'
+of_table 'displacement\t"force"\n0.001\t0.0286\n0.002\t0.0547\n'
+printf 'displacement;force\n0,001;0,0286\n0,002;0,0547\n' >comma.csv
+bad 'comma\.csv:2: .* displacement is no finite number, as 0.5' fit shear_modulus 1e3 comma.csv
+
+# A ball that never touches is told from a law that does not fit, and nothing is written.
+sed 's/^move.*/tools: [ { name: ball, shape: sphere, radius: 0.008, at: [0.005, 0.005, 0.02801] } ]/' \
+    one.yaml >ball.yaml
+printf 'depth,force\n-0.0005,0.02\n-0.001,0.05\n' >up.csv
+bad 'bad\.yaml:5: the tool ball touches nothing in any row of .*up\.csv.*say scale: {depth: -1}' \
+    of_kind indentation ball.yaml up.csv
+sed 's/-0/0/' up.csv >down.csv
+bad 'the tool ball touches nothing.*give the direction into the tissue' \
+    of_kind indentation ball.yaml down.csv ', direction: [0, 0, 1]'
+of_kind indentation ball.yaml up.csv >up.yaml
+expect 1 "$LARIAT" fit up.yaml --out nothing
+[ -z "$(ls nothing)" ] || fail "a tissue of nothing: $(ls nothing)"
+
+# Of a surface no distance is measured: what is left is a share of the body.
+printf 'x,y,z\n0.005,0.005,0.0201\n0,0.005,0.01\n0.01,0.005,0.005\n' >scan.csv
+of_kind surface one.yaml scan.csv >scan.yaml
+expect 0 "$LARIAT" fit scan.yaml --json
+value_of experiments.0.relative >share
+value_of experiments.0.rms | awk '{ getline share <"share"; off = $1 / 0.02 / share - 1; exit off * off > 1e-8 }' ||
+    fail "another share than of 20 mm: $(cat share)"
+expect 0 "$LARIAT" fit scan.yaml
+says "surface: 3 values, residual .* % of the body's length"
+
 # In millimetres and with other names, once that is said.
 printf 'mm,mN\n1,28.6\n2,54.7\n3,78.8\n' >other.csv
 fit shear_modulus 1e3 other.csv \

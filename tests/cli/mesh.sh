@@ -229,4 +229,9 @@ says '^speed'
 expect 0 "$LARIAT" run top/top.yaml --steps 100
 expect 0 "$LARIAT" mesh top.obj other.obj --scale 0.001 --elements 500 --title tops
 says 'other (2): [0-9]* elements'
+awk '/^v/ { print $1, $2 / 2, $3 / 2, $4 / 2; next } { print }' top.obj >core.obj
+expect 0 "$LARIAT" mesh core.obj top.obj --scale 0.001 --elements 500 --title swallowed
+says 'core (1): left out: a later surface covers all of it; name the outer one first'
+expect 0 "$LARIAT" mesh top.obj core.obj --scale 0.001 --elements 500 --title kept
+says 'core (2): [0-9]* elements'
 finish "mesh: images, surfaces, figures, scenes that run"

@@ -31,4 +31,31 @@ for element in hex8-full hex8-matrix; do
     expect 3 "$LARIAT" run "$SCRATCH/violent.yaml" --time 1 --element $element
     complains 'unstable at step'
 done
+
+# An element that is pulled long and thin is strained, not squeezed.
+cat >"$SCRATCH/one.vtk" <<'END'
+# vtk DataFile Version 3.0
+one element, 10 x 10 x 20 mm
+ASCII
+DATASET UNSTRUCTURED_GRID
+POINTS 8 double
+0 0 0  0.01 0 0  0.01 0.01 0  0 0.01 0
+0 0 0.02  0.01 0 0.02  0.01 0.01 0.02  0 0.01 0.02
+CELLS 1 9
+8 0 1 2 3 4 5 6 7
+CELL_TYPES 1
+12
+END
+cat >"$SCRATCH/one.yaml" <<'END'
+lariat: 1
+mesh: one.vtk
+materials: [ { cells: all, law: neo-hookean, density: 1050, shear_modulus: 1.0e3, bulk_modulus: 4.0e4 } ]
+fix:
+  - { nodes: { plane: { point: [0, 0, 0], normal: [0, 0, 1] } }, axes: z }
+  - { nodes: { nearest: [0, 0, 0] }, axes: xy }
+  - { nodes: { nearest: [0.01, 0, 0] }, axes: y }
+move: [ { nodes: { plane: { point: [0, 0, 0.02], normal: [0, 0, 1] } }, axes: z, by: 3, over: 0.05 } ]
+END
+expect 3 "$LARIAT" run "$SCRATCH/one.yaml" --time 0.1
+complains 'is strained so much that the time step has become too large for it'
 finish "an unstable run is reported"

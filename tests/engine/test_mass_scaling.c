@@ -175,7 +175,7 @@ static void what_is_at_rest_is_the_same(void **unused) {
         lar_error error;
         assert_int_equal(lar_measure_reaction(&simulation[i]->domain,
                                               &simulation[i]->scratch->measure,
-                                              &simulation[i]->state, &held, sum[i], &error),
+                                              &simulation[i]->state, &held, false, sum[i], &error),
                          LAR_OK);
         free(held.node);
         for (int k = 0; k < 3; k++) /* 48 g, whatever moves */

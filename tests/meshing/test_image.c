@@ -154,6 +154,10 @@ static void lists_of_names(void **state) {
     expect_names("0 0 0 0 0 0 0 \"Clear Label\"\n5 255 0 0 1 1 1 \"Label 5\"\n5 9 9 \"last\"", 2,
                  (lar_label_name[]){{0, "Clear Label"}, {5, "last"}});
     expect_names("65535;a\x1b[31m;x\n", 2, (lar_label_name[]){{5, "five"}, {65535, "a [31m"}});
+    /* a spreadsheet's byte order mark */
+    expect_names("\xef\xbb\xbf"
+                 "7,liver\n8,spleen\n",
+                 3, (lar_label_name[]){{5, "five"}, {7, "liver"}, {8, "spleen"}});
 }
 
 static void bad_names(void **state) {

@@ -33,7 +33,8 @@ class Stopped(unittest.TestCase):
                  lambda: session.set_force(0, (0, 0, 1)), session.clear_forces,
                  lambda: session.add_tool("sphere", 0.01), lambda: session.remove_tool(2),
                  lambda: session.grasp(1, (0, 0, 0.03)), lambda: session.release(1),
-                 session.play, lambda: session.step(3))
+                 lambda: session.tool_move(0, (0, 0, 0.1)), session.play,
+                 lambda: session.step(3))
         for call in calls:
             with self.assertRaisesRegex(lariat.UnstableError, "the run has broken off; reset"):
                 call()
@@ -53,6 +54,10 @@ class Sessions(unittest.TestCase):
         self.sim = lariat.Simulation(block(), hands=1, spares=1)
         self.session = lariat.Session(self.sim)
         self.addCleanup(self.session.close)
+
+    def test_a_step_is_one_at_least(self):
+        with self.assertRaisesRegex(lariat.ArgumentError, "one at least, got 0"):
+            self.session.step(0)
 
     def test_it_runs_and_the_simulation_is_its_own_until_it_is_closed(self):
         wait_until(lambda: self.session.status()["step"] > 20)

@@ -177,6 +177,9 @@ static void test_token_is_asked_for(void **state) {
     lar_link_create(&link, "01234567", &ORIGIN);
     assert_int_equal(take(&link, &HE, 1, "012345678", 0, MS), LAR_LINK_REFUSED);
     assert_int_equal(take(&link, &HE, 1, "01234567", 0, MS), LAR_LINK_TAKEN);
+    lar_link_create(&link, NULL, &ORIGIN); /* where none is wanted there is none */
+    assert_int_equal(take(&link, &HE, 1, "01234567", 0, MS), LAR_LINK_REFUSED);
+    assert_int_equal(take(&link, &HE, 1, NULL, 0, MS), LAR_LINK_TAKEN);
 }
 
 /* Silence: after 20 ms the force goes to zero within 50 ms; the tool stays; and it comes back from

@@ -35,7 +35,10 @@ static void only_our_own_page_may_connect(void **unused) {
                  {403, {.host = "127.0.0.1"}},
                  {403, {.path = "/"}},
                  {403, {.path = "/socket/"}},
+                 {101, {.protocol = "chat, lariat.1"}},
+                 {101, {.protocol = "http,lariat.1 ,lariat.2"}},
                  {403, {.protocol = "chat"}},
+                 {403, {.protocol = "chat, lariat.10"}},
                  {403, {.protocol = "lariat.2"}},
                  {403, {.protocol = "http"}},
                  {403, {.protocol = ""}}};
@@ -127,6 +130,32 @@ static void who_may_only_watch_does_nothing_else(void **unused) {
     close_client(&c);
     c = open_client_at(s.port, "/socket?token=for-the-publik");
     assert_int_equal(await_close(&c), 4001);
+    close_client(&c);
+    end_serving(&s);
+}
+
+static void expect_note(client *c, const char *command, const char *words) {
+    say(c, command);
+    const char *note = await_text(c, "note");
+    if (!strstr(note, words)) fail_msg("%s: %s", command, note);
+}
+
+/* What there is nothing of gets an answer, and 1 alone makes a watcher. */
+static void what_is_not_there_is_said(void **unused) {
+    (void)unused;
+    served s = serve_with(NULL, &(lar_server_options){.save_folder = LAR_TEST_BUILD});
+    static const char *const paths[] = {"/socket?watch=0", "/socket?watch=", "/socket?watch=11"};
+    for (size_t i = 0; i < sizeof paths / sizeof paths[0]; i++) {
+        client c = open_client_at(s.port, paths[i]);
+        assert_non_null(strstr(await_text(&c, "hello"), "\"watches\":false"));
+        close_client(&c);
+    }
+    client c = open_client(s.port);
+    expect_note(&c, "{\"do\":\"seek\",\"time\":0.5}", "no recording is being played");
+    expect_note(&c, "{\"do\":\"record\",\"on\":false}", "nothing is being recorded");
+    expect_note(&c, "{\"do\":\"stiffness\",\"value\":1,\"material\":7}",
+                "there is no material 7; there are 1, counted from 0, and without material all");
+    expect_note(&c, "{\"do\":\"activate\",\"value\":1,\"material\":7}", "without material all");
     close_client(&c);
     end_serving(&s);
 }
@@ -313,6 +342,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(only_our_own_page_may_connect),
                                        cmocka_unit_test(tokens_are_asked_for),
                                        cmocka_unit_test(who_may_only_watch_does_nothing_else),
+                                       cmocka_unit_test(what_is_not_there_is_said),
                                        cmocka_unit_test(files_and_nothing_else_are_served),
                                        cmocka_unit_test(what_makes_no_sense_is_refused),
                                        cmocka_unit_test(another_model_is_refused),

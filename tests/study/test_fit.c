@@ -125,6 +125,35 @@ static void relaxation_is_fitted(void **state) {
     lar_inverse_result_clear(&r);
 }
 
+/* The curve has kinks at its rows, the first one among them. What would throw the plate's nodes
+ * from one speed to the next is no tissue's: a plate ten times as heavy tells the same. */
+static void kinks_throw_nothing(void **state) {
+    (void)state;
+    enum { ROWS = 4 };
+    static const double row[ROWS][2] = {{0, 0}, {0.5, 0.0005}, {1, 0.001}, {1.5, 0.001}};
+    static const char HEAVY[] =
+        "law: neo-hookean, density: %d, shear_modulus: 1.0e3, bulk_modulus: 4.0e4, "
+        "viscous: { part: isochoric, terms: [ { g: 0.4, time: 5 } ] }";
+    const double truth[1] = {1.0e3}, ones[ROWS] = {1, 1, 1, 1};
+    double force[2][ROWS];
+    char material[256], conditions[1024];
+    twin_block("small.vtk", (const int[3]){2, 2, 4}, SIZE);
+    snprintf(conditions, sizeof conditions, "%sdamping: 10\n", CLAMPED);
+    write_curve("kinks.csv", "time,displacement", row, ROWS, ones, true);
+    write_fit("kinks_fit.yaml", FREE("shear_modulus", "1.0e3", "1.0e2", "1.0e5"), "tension",
+              "kinks.yaml", "kinks.csv", "");
+    for (int i = 0; i < 2; i++) {
+        snprintf(material, sizeof material, HEAVY, i ? 1000 : 100);
+        write_scene("kinks.yaml", "small.vtk", material, conditions);
+        twin_measure("kinks_fit.yaml", truth, force[i]);
+        assert_true(force[i][0] == 0);
+    }
+    for (int i = 1; i < ROWS; i++) {
+        print_message("row %d: %.6g N, %.6g N\n", i, force[0][i], force[1][i]);
+        assert_below(fabs(force[1][i] / force[0][i] - 1), 0.01);
+    }
+}
+
 /* A sphere into a pad. The tool begins just above it. The mesh tells 2 % under a ball of two
  * elements; so the data are of the same mesh and a finer step, and in full of another mesh. */
 static void indentation_is_fitted(void **state) {
@@ -447,6 +476,7 @@ int main(void) {
                                        cmocka_unit_test(compression_is_fitted),
                                        cmocka_unit_test(two_constants_are_fitted),
                                        cmocka_unit_test(relaxation_is_fitted),
+                                       cmocka_unit_test(kinks_throw_nothing),
                                        cmocka_unit_test(indentation_is_fitted),
                                        cmocka_unit_test(flat_punches_are_fitted),
                                        cmocka_unit_test(markers_are_fitted),

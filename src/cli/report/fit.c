@@ -41,11 +41,12 @@ void fit_report_table(const lar_inverse_problem *problem, const lar_inverse_resu
     for (int j = 0; j < problem->parameters; j++) print_parameter(problem, r, j, out);
     print_correlations(problem, r, out);
     for (int k = 0; k < problem->experiments; k++)
-        fprintf(out, "%-16s%s: %d values, residual %.3g %s, %.2g %% of the largest%s\n",
+        fprintf(out, "%-16s%s: %d values, residual %.3g %s, %.2g %% of %s%s\n",
                 k ? "" : "experiments", problem->experiment[k].name,
                 (int)problem->experiment[k].values, r->residuals[k].rms,
                 problem->experiment[k].kind < LAR_INVERSE_ASPIRATION ? "N" : "m",
-                100 * r->residuals[k].relative, r->residuals[k].systematic ? ", systematic" : "");
+                100 * r->residuals[k].relative, lar_inverse_whole(&problem->experiment[k]),
+                r->residuals[k].systematic ? ", systematic" : "");
     fprintf(out, "%-16s%d simulations in %.3g s\n", r->converged ? "converged" : "NOT CONVERGED",
             r->runs, r->seconds);
     for (int i = 0; i < r->notes; i++) fprintf(out, "note            %s\n", r->note[i]);

@@ -105,9 +105,11 @@ static void print_regions(const mesh_report *report) {
         if (r.elements > 0)
             printf("%d elements, %s (%+.2f %%), as %s\n", (int)r.elements,
                    cli_volume(r.volume).text, 100 * (r.volume / r.true_volume - 1), r.tissue);
-        else
+        else if (r.true_volume > 0)
             printf("left out: %s are too little for elements of this size\n",
                    cli_volume(r.true_volume).text);
+        else
+            printf("left out: a later surface covers all of it; name the outer one first\n");
     }
     if (report->info.regions > SHOWN)
         printf("%-17sand %d more (--json lists all)\n", "", (int)(report->info.regions - SHOWN));

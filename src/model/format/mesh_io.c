@@ -12,12 +12,9 @@
 
 /* The file from its first byte that is no white space and no byte order mark. */
 static lar_span beginning(const lar_bytes *bytes) {
-    lar_span text = {(const char *)bytes->data, bytes->size};
-    if (text.length >= 3 && memcmp(text.at, "\xef\xbb\xbf", 3) == 0)
-        text = (lar_span){text.at + 3, text.length - 3};
-    while (text.length > 0 && strchr(" \t\r\n", text.at[0]) && text.at[0] != '\0')
-        text = (lar_span){text.at + 1, text.length - 1};
-    return text;
+    lar_text text = lar_text_from(bytes);
+    lar_text_skip_space(&text);
+    return (lar_span){text.at, (size_t)(text.end - text.at)};
 }
 
 static bool starts_with(const lar_bytes *bytes, const char *word) {

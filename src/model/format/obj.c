@@ -143,7 +143,6 @@ lar_status lar_obj_parse(const char *path, const lar_bytes *bytes, lar_triangles
                      .error = error,
                      .text = lar_text_from(bytes),
                      .builder = {.path = path, .error = error, .triangles = triangles}};
-    if (bytes->size >= 3 && memcmp(bytes->data, "\xef\xbb\xbf", 3) == 0) file.text.at += 3;
     lar_status status = read_lines(&file);
     free(file.joined);
     free(file.corner);

@@ -150,7 +150,6 @@ lar_status lar_stl_parse(const char *path, const lar_bytes *bytes, lar_triangles
                          lar_error *error) {
     lar_triangle_builder builder = {.path = path, .error = error, .triangles = triangles};
     stl_text file = {path, error, lar_text_from(bytes)};
-    if (bytes->size >= 3 && memcmp(bytes->data, "\xef\xbb\xbf", 3) == 0) file.text.at += 3;
     bool fits = bytes->size >= HEADER && bytes->size == HEADER + (size_t)RECORD * announced(bytes);
     if (!fits && looks_like_text(&file)) return parse_ascii(&file, &builder);
     if (bytes->size < HEADER)

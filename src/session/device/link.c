@@ -21,7 +21,7 @@ void lar_link_create(lar_link *link, const char *token, const lar_tool_pose *too
 static bool is_token(const lar_link *link, const char token[LAR_PACKET_TOKEN]) {
     int different = 0;
     for (int i = 0; i < LAR_PACKET_TOKEN; i++) different |= link->token[i] ^ token[i];
-    return link->token[0] == '\0' || different == 0;
+    return different == 0;
 }
 
 static bool is_gone(const lar_link *link, uint64_t now) {

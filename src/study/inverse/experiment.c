@@ -147,6 +147,7 @@ static lar_status choose_move(const reader *r, const lar_yaml *node, lar_inverse
                               "the support of %s is moved along several axes; force over "
                               "displacement needs one, hold the others with fix",
                               e->scene);
+    e->way = m->move[e->move].by < 0 ? -1 : 1;
     return LAR_OK;
 }
 

@@ -51,7 +51,7 @@ static lar_status drive(forward *f) {
         f->model.pressure[a->load].curve = curve;
     } else {
         lar_move *move = &f->model.move[e->move];
-        move->by = move->by < 0 ? -1 : 1;
+        move->by = e->way;
         move->curve = curve;
     }
     f->model.curve[curve] = (lar_curve){.kind = LAR_CURVE_TABLE,
@@ -129,15 +129,19 @@ static uint64_t steps_to(const forward *f, double time) {
 
 /* ---- supports that are moved ----------------------------------------------------------------- */
 
-/* Of the support on the body, along the way that it is moved. */
+/* Of the support on the body, along the way that it is moved. The curve through rows has a kink at
+ * each, where the nodes' mass would be thrown from one speed to the next in a single step: what
+ * counts is the force with which the support arrives. */
 static lar_status support_force(forward *f, double *force) {
     const lar_simulation *s = f->simulation;
     const lar_move *move = &f->model.move[f->e->move];
     double sum[3];
-    lar_status status = lar_measure_reaction(&s->domain, &s->scratch->measure,
-                                             lar_simulation_state(s), &move->nodes, sum, f->error);
+    const bool arriving = f->e->along != NULL;
+    lar_status status =
+        lar_measure_reaction(&s->domain, &s->scratch->measure, lar_simulation_state(s),
+                             &move->nodes, arriving, sum, f->error);
     int axis = move->axes == LAR_AXIS_X ? 0 : move->axes == LAR_AXIS_Y ? 1 : 2;
-    *force = move->by < 0 ? -sum[axis] : sum[axis];
+    *force = f->e->way * sum[axis];
     return status;
 }
 

@@ -304,6 +304,34 @@ static lar_status complain_profile(const lar_inverse_problem *p, const lar_inver
         p->path, e->line, e->data, ratio);
 }
 
+/* Forces were measured, and the model has none in any row. */
+static lar_status complain_touch(const lar_inverse_problem *p, const lar_inverse_experiment *e,
+                                 lar_error *error) {
+    if (e->tool < 0)
+        return lar_fail(error, LAR_ERROR_MODEL,
+                        "%s:%d: the model of %s has no force in any row; look with lariat run what "
+                        "the scene does",
+                        p->path, e->line, e->scene);
+    double deepest = 0;
+    for (int32_t i = 0; i < e->rows; i++) deepest = fmax(deepest, e->along[i]);
+    return lar_fail(
+        error, LAR_ERROR_MODEL,
+        "%s:%d: the tool %s touches nothing in any row of %s, and forces were measured; "
+        "%s",
+        p->path, e->line, e->model->tool[e->tool].name, e->data,
+        deepest > 0 ? "give the direction into the tissue (direction: [x, y, z]), and "
+                      "let it begin just above it: depth counts from its place in the "
+                      "scene"
+                    : "depth is positive into the tissue: say scale: {depth: -1}");
+}
+
+/* Whether there is any model's number but 0. */
+static bool answers(const lar_inverse_experiment *e, const double *model) {
+    for (int32_t i = 0; i < e->values; i++)
+        if (model[i] != 0) return true;
+    return false;
+}
+
 /* Forces that are far from those of the guess are of another unit, or of another sign. */
 static lar_status check_units(const lar_inverse_solver *s, lar_error *error) {
     static const double FAR = 300;
@@ -312,6 +340,7 @@ static lar_status check_units(const lar_inverse_solver *s, lar_error *error) {
     for (int k = 0; k < p->experiments; model += p->experiment[k++].values) {
         const lar_inverse_experiment *e = &p->experiment[k];
         if (e->kind > LAR_INVERSE_ASPIRATION) continue;
+        if (!answers(e, model)) return complain_touch(p, e, error);
         double ratio = ratio_of(e, model);
         if (e->kind == LAR_INVERSE_ASPIRATION && !(ratio >= 1 / FAR && ratio <= FAR))
             return complain_profile(p, e, ratio, error);
@@ -319,7 +348,8 @@ static lar_status check_units(const lar_inverse_solver *s, lar_error *error) {
             return lar_fail(error, LAR_ERROR_MODEL,
                             "%s:%d: the forces of %s have the opposite sign of the model's; force "
                             "and way are positive in the direction in which the scene moves the "
-                            "support or the tool goes in: say scale: {force: -1}",
+                            "support or the tool goes in, beside a stretch where tension pulls or "
+                            "compression presses: say scale: {force: -1}",
                             p->path, e->line, e->data);
         if (ratio > FAR || ratio < 1 / FAR)
             return lar_fail(error, LAR_ERROR_MODEL,

@@ -144,23 +144,76 @@ static lar_status read_time(const source *s, bool may_repeat, double **to) {
     return status;
 }
 
-/* Displacement from stretch, with the length at rest: said, or the body's along that axis. */
-static lar_status read_stretch(const source *s) {
-    lar_inverse_experiment *e = s->e;
+/* The length at rest: said, or the body's along that axis. */
+static lar_status read_length(const source *s, int axis, double *length) {
     const lar_yaml *own = lar_yaml_get(s->node, "length");
-    unsigned axes = e->model->move[e->move].axes;
-    double length = body_size(e->model, axes == LAR_AXIS_X ? 0 : axes == LAR_AXIS_Y ? 1 : 2);
-    lar_status status = own ? lar_scene_positive(s->scene, own, LAR_IN_METRES, &length) : LAR_OK;
-    if (!status) status = take(s, STRETCH, &e->along);
-    double way = e->kind == LAR_INVERSE_COMPRESSION ? -1 : 1;
-    for (int32_t i = 0; i < e->rows && !status; i++) {
-        if (!(e->along[i] > 0 && e->along[i] < 20))
+    const double size = body_size(s->e->model, -1);
+    *length = body_size(s->e->model, axis);
+    lar_status status = own ? lar_scene_positive(s->scene, own, LAR_IN_METRES, length) : LAR_OK;
+    if (status || *length <= 2 * size) return status;
+    return lar_scene_fail(s->scene, own, LAR_ERROR_MODEL,
+                          "length: %g m, and the body of %s is only %g m long; were millimetres "
+                          "measured? Then say length: %g",
+                          *length, s->e->scene, size, 0.001 * *length);
+}
+
+/* Every one is in a range that tissue and elements bear, and one at least is of the kind. */
+static lar_status check_stretches(const source *s) {
+    static const double LEAST = 0.1, MOST = 20;
+    const lar_inverse_experiment *e = s->e;
+    const bool pressed = e->kind == LAR_INVERSE_COMPRESSION;
+    bool fits = false, other = false;
+    for (int32_t i = 0; i < e->rows; i++) {
+        const double stretch = e->along[i];
+        if (!(stretch >= LEAST && stretch < MOST))
             return lar_fail(s->scene->error, LAR_ERROR_MODEL,
                             "%s:%d: the stretch is %g; it is a length over the length at rest, 1 "
                             "at rest: was a strain or a displacement measured?",
-                            s->table.path, s->table.line[i], e->along[i]);
-        e->along[i] = way * (e->along[i] - 1) * length;
+                            s->table.path, s->table.line[i], stretch);
+        fits = fits || (pressed ? stretch < 1 : stretch > 1);
+        other = other || stretch != 1;
     }
+    if (fits || !other) return LAR_OK;
+    return lar_fail(s->scene->error, LAR_ERROR_MODEL,
+                    "%s:%d: no stretch is %s 1, and %s:%d says kind: %s; say kind: %s, or was a "
+                    "strain measured? A stretch is a length over the length at rest, 1 at rest",
+                    s->table.path, s->table.line[0], pressed ? "below" : "above", s->scene->path,
+                    s->node->line, lar_inverse_kind_name[e->kind],
+                    lar_inverse_kind_name[pressed ? LAR_INVERSE_TENSION : LAR_INVERSE_COMPRESSION]);
+}
+
+/* Which way along its axis the support makes the body longer, 1 or -1; 0: it sits in the middle. */
+static double longer(const lar_model *m, const lar_node_list *support, int axis) {
+    static const double MIDDLE = 0.1;
+    double low = INFINITY, high = -INFINITY, mean = 0;
+    for (int32_t i = 0; i < m->mesh.node_count; i++) {
+        low = fmin(low, m->mesh.position[i][axis]);
+        high = fmax(high, m->mesh.position[i][axis]);
+    }
+    for (int32_t i = 0; i < support->count; i++)
+        mean += m->mesh.position[support->node[i]][axis] / support->count;
+    const double off = mean - 0.5 * (low + high);
+    return fabs(off) <= MIDDLE * (high - low) ? 0 : off < 0 ? -1 : 1;
+}
+
+/* Displacement from stretch. Its positive way is where the kind goes, whatever the scene's. */
+static lar_status read_stretch(const source *s) {
+    lar_inverse_experiment *e = s->e;
+    const lar_move *move = &e->model->move[e->move];
+    const int axis = move->axes == LAR_AXIS_X ? 0 : move->axes == LAR_AXIS_Y ? 1 : 2;
+    const double sign = e->kind == LAR_INVERSE_COMPRESSION ? -1 : 1;
+    double length;
+    lar_status status = read_length(s, axis, &length);
+    if (!status) status = take(s, STRETCH, &e->along);
+    if (!status) status = check_stretches(s);
+    e->way = sign * longer(e->model, &move->nodes, axis);
+    if (!status && e->way == 0)
+        return lar_fail(s->scene->error, LAR_ERROR_MODEL,
+                        "%s:%d: the support of %s is moved along %c and sits in the middle of the "
+                        "body there, so that no stretch says where it goes; give displacement",
+                        s->table.path, s->table.header_line, e->scene, "xyz"[axis]);
+    for (int32_t i = 0; i < e->rows && !status; i++)
+        e->along[i] = sign * (e->along[i] - 1) * length;
     return status;
 }
 
@@ -412,7 +465,8 @@ static lar_status set_noise(const source *s) {
     lar_inverse_experiment *e = s->e;
     const lar_yaml *own = lar_yaml_get(s->node, "noise");
     for (int32_t i = 0; i < e->values; i++) e->largest = fmax(e->largest, fabs(e->measured[i]));
-    if (e->kind == LAR_INVERSE_SURFACE) e->largest = SHARE * body_size(e->model, -1);
+    e->whole = e->kind == LAR_INVERSE_SURFACE ? body_size(e->model, -1) : e->largest;
+    if (e->kind == LAR_INVERSE_SURFACE) e->largest = SHARE * e->whole;
     if (!(e->largest > 0))
         return lar_fail(s->scene->error, LAR_ERROR_MODEL,
                         "%s: all that is measured is zero, which tells nothing", s->table.path);

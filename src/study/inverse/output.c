@@ -56,9 +56,9 @@ static void write_provenance(FILE *out, const lar_inverse_problem *p, const lar_
             r->interrupted ? ", interrupted: the best so far" : "");
     for (int k = 0; k < p->experiments; k++) {
         plain(p->experiment[k].data, text, sizeof text);
-        fprintf(out, "# %s: %s, %d values, residual %.2g %% of the largest.\n",
+        fprintf(out, "# %s: %s, %d values, residual %.2g %% of %s.\n",
                 lar_inverse_kind_name[p->experiment[k].kind], text, (int)p->experiment[k].values,
-                100 * r->residuals[k].relative);
+                100 * r->residuals[k].relative, lar_inverse_whole(&p->experiment[k]));
     }
     for (int j = 0; j < p->parameters; j++)
         if (strcmp(p->parameter[j].material, material) == 0)

@@ -37,6 +37,10 @@ bool lar_inverse_new_moment(const lar_inverse_experiment *e, int32_t i) {
     return e->in_time ? e->time[i] != e->time[i - 1] : suction[i][1] != suction[i - 1][1];
 }
 
+const char *lar_inverse_whole(const lar_inverse_experiment *e) {
+    return e->kind == LAR_INVERSE_SURFACE ? "the body's length" : "the largest";
+}
+
 int32_t lar_inverse_problem_values(const lar_inverse_problem *p) {
     int32_t values = 0;
     for (int k = 0; k < p->experiments; k++) values += p->experiment[k].values;

@@ -64,9 +64,11 @@ typedef struct lar_inverse_experiment {
                              distances 0 [m] */
     lar_embedded_surface points; /* markers: bound to elements; surface: places alone */
     double largest;              /* of what is measured, in size: the scale of its errors */
-    double noise;        /* standard deviation of a measured number, or a hundredth of `largest` */
-    double *error;       /* [values] of each; NULL: `noise` of all */
-    int move, tool;      /* of the model: what is driven; -1: nothing */
+    double whole;   /* what is left is a share of this: `largest`, of surfaces the body's length */
+    double noise;   /* standard deviation of a measured number, or a hundredth of `largest` */
+    double *error;  /* [values] of each; NULL: `noise` of all */
+    int move, tool; /* of the model: what is driven; -1: nothing */
+    double way;     /* 1 or -1: where the driven support's positive way goes on its axis */
     double direction[3]; /* into the tissue, of a tool */
     lar_inverse_aspiration aspiration;
 } lar_inverse_experiment;
@@ -83,6 +85,9 @@ void lar_inverse_problem_clear(lar_inverse_problem *problem); /* idempotent */
 /* Whether row i of profiles is of another moment than the row before it: of another time, or at
  * rest of another pressure. */
 bool lar_inverse_new_moment(const lar_inverse_experiment *e, int32_t i);
+
+/* What the relative residual is a share of, for sentences. */
+const char *lar_inverse_whole(const lar_inverse_experiment *e);
 
 /* Measured numbers of all experiments together. */
 int32_t lar_inverse_problem_values(const lar_inverse_problem *problem);

@@ -108,7 +108,8 @@ static void look_at_points(const lar_inverse_experiment *e, lar_inverse_residual
                            const double *left, lar_inverse_result *result) {
     r->lag = lag_in_space(e, left);
     /* twice the deviation by chance, in which two that are nearest to each other count twice */
-    r->systematic = r->relative > TINY && e->rows >= ENOUGH && r->lag > 2 * sqrt(2.0 / e->rows);
+    r->systematic =
+        r->rms > TINY * e->largest && e->rows >= ENOUGH && r->lag > 2 * sqrt(2.0 / e->rows);
     if (!r->systematic) return;
     lar_inverse_note(result,
                      "%s: what is left is no chance (of %d points nearest ones correlate by %.2f), "
@@ -172,14 +173,14 @@ void lar_inverse_look_at_residuals(const lar_inverse_problem *problem, lar_inver
             squares += model[i] * model[i];
         }
         r->rms = sqrt(squares / n);
-        r->relative = r->rms / e->largest;
+        r->relative = r->rms / e->whole;
         test_runs(r, model, n);
         look_for_slips(e, model, result);
         if (e->kind >= LAR_INVERSE_MARKERS) {
             look_at_points(e, r, model, result);
         } else {
             r->lag = lag_of(model, n);
-            r->systematic = r->relative > TINY &&
+            r->systematic = r->rms > TINY * e->largest &&
                             (one_sided(e, model) ||
                              (n >= ENOUGH && (r->runs_z < -1.96 || r->lag > 2 / sqrt(n))));
             if (r->systematic) note_shape(e, r, model, result);

@@ -20,7 +20,7 @@ typedef struct lar_inverse_estimate {
 
 typedef struct lar_inverse_residuals {
     double rms;      /* of measured minus model [N] or [m] */
-    double relative; /* over the largest measured */
+    double relative; /* over the largest measured, of surfaces over the body's length */
     int runs;        /* of equal signs */
     double runs_z;   /* against as many as chance gives; below -1.96: too few */
     double lag;      /* correlation of neighbours, by rows or in space */

@@ -12,6 +12,7 @@ enum { COLUMNS_MAX = 64, ROWS_MAX = 100000, SHOWN = 40 };
 typedef struct reader {
     lar_text text;
     int line;
+    char separator;
     size_t capacity, line_capacity;
 } reader;
 
@@ -28,6 +29,32 @@ static int shown(lar_span span) {
     return (int)(span.length < SHOWN ? span.length : SHOWN);
 }
 
+/* What parts the names parts all columns: the first comma, semicolon or tab outside of quotes. */
+static char separator_of(lar_span line) {
+    bool quoted = false;
+    for (size_t c = 0; c < line.length; c++) {
+        if (line.at[c] == '"') quoted = !quoted;
+        if (!quoted && memchr(",;\t", line.at[c], 3)) return line.at[c];
+    }
+    return ',';
+}
+
+/* The next column, without the quotes around it; false: it is the last one. */
+static bool take_column(lar_span *rest, char separator, lar_span *column) {
+    lar_span all = *rest;
+    while (all.length > 0 && *all.at == ' ') all = (lar_span){all.at + 1, all.length - 1};
+    const char *end =
+        all.length > 0 && *all.at == '"' ? memchr(all.at + 1, '"', all.length - 1) : NULL;
+    if (!end) {
+        bool more = lar_span_split(*rest, separator, column, rest);
+        *column = lar_span_trim(*column);
+        return more;
+    }
+    lar_span behind = {end + 1, all.length - (size_t)(end + 1 - all.at)}, unused;
+    *column = lar_span_trim((lar_span){all.at + 1, (size_t)(end - all.at) - 1});
+    return lar_span_split(behind, separator, &unused, rest);
+}
+
 static lar_status read_names(reader *r, lar_inverse_table *t, lar_error *error) {
     lar_span rest, part;
     double number;
@@ -36,9 +63,9 @@ static lar_status read_names(reader *r, lar_inverse_table *t, lar_error *error) 
                         "%s: nothing is in it; the first line names the columns, as time,force",
                         t->path);
     t->header_line = r->line;
+    r->separator = separator_of(rest);
     for (bool more = true; more;) {
-        more = lar_span_split(rest, ',', &part, &rest);
-        part = lar_span_trim(part);
+        more = take_column(&rest, r->separator, &part);
         if (part.length == 0 || lar_span_double(part, &number))
             return lar_fail(error, LAR_ERROR_FORMAT,
                             "%s:%d: '%.*s' is no name of a column; the first line names the "
@@ -70,9 +97,9 @@ static lar_status read_row(reader *r, lar_inverse_table *t, lar_span rest, lar_e
     bool more = true;
     int i = 0;
     for (lar_span part; i < t->columns && more; i++) {
-        more = lar_span_split(rest, ',', &part, &rest);
+        more = take_column(&rest, r->separator, &part);
         double *value = &t->value[rows * (size_t)t->columns + (size_t)i];
-        if (!lar_span_double(lar_span_trim(part), value)) *value = NAN;
+        if (!lar_span_double(part, value)) *value = NAN;
     }
     if (more || i < t->columns)
         return lar_fail(error, LAR_ERROR_FORMAT, "%s:%d: %s values than the %d columns named above",
@@ -125,8 +152,8 @@ lar_status lar_inverse_table_take(const lar_inverse_table *t, int column, double
         value[i] = scale * t->value[(size_t)i * (size_t)t->columns + (size_t)column];
         if (!isfinite(value[i]))
             return lar_fail(error, LAR_ERROR_FORMAT,
-                            "%s:%d: what stands in the column %s is no finite number; correct it, "
-                            "or leave the row out",
+                            "%s:%d: what stands in the column %s is no finite number, as 0.5; "
+                            "correct it, or leave the row out",
                             t->path, t->line[i], t->name[column]);
     }
     return LAR_OK;

@@ -5,7 +5,8 @@
  *     0.0,  0.0
  *     0.5,  0.12
  *
- * Columns are found by name; those that nobody asks for may hold anything.
+ * Semicolons or tabs part columns as well, one of the three in a table, and quotes may stand around
+ * a name or a number. Columns are found by name; those that nobody asks for may hold anything.
  */
 #ifndef LAR_STUDY_INVERSE_TABLE_H
 #define LAR_STUDY_INVERSE_TABLE_H

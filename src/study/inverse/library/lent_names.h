@@ -66,6 +66,7 @@
 #define lar_strndup                  (*lar_lent_to_fit.lar_strndup)
 #define lar_surface_tree_clear       (*lar_lent_to_fit.lar_surface_tree_clear)
 #define lar_surface_tree_create      (*lar_lent_to_fit.lar_surface_tree_create)
+#define lar_text_from                (*lar_lent_to_fit.lar_text_from)
 #define lar_text_line                (*lar_lent_to_fit.lar_text_line)
 #define lar_triangle_tree_nearest    (*lar_lent_to_fit.lar_triangle_tree_nearest)
 #define lar_triangles_clear          (*lar_lent_to_fit.lar_triangles_clear)
