@@ -329,7 +329,9 @@ PyMethodDef python_look_methods[] = {
      "bodies (contact with each other and themselves), loads (forces and pressures of the model, "
      "forces that were set), planes, supports, gravity or damping. Those that the next step begins "
      "with: all together are mass times acceleration, a tool's sum up to minus the force that it "
-     "feels in that step, to the last bit where the step is not divided. Into `out` where given."},
+     "feels in that step, to the last bit where the step is not divided and the tool is not "
+     "limited (a limited one decides anew where it goes when the step begins). Into `out` where "
+     "given."},
     {"stresses", FUNCTION(stresses), METH_VARARGS | METH_KEYWORDS,
      "stresses($self, out=None)\n--\n\nMean Cauchy stress of every element now [Pa], viscous and "
      "active stress included," OUT_DOC},

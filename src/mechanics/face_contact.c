@@ -202,6 +202,14 @@ double lar_face_before(const double x[3], const double corner[4][3]) {
     return lar_face_before_one_by_one(x, corner, middle);
 }
 
+lar_face_finders lar_face_finders_here(void) {
+#if defined(LAR_HAVE_FACE_LANES)
+    if (lar_face_lanes())
+        return (lar_face_finders){lar_face_parts_in_lanes, lar_face_before_in_lanes};
+#endif
+    return (lar_face_finders){lar_face_parts_one_by_one, lar_face_before_one_by_one};
+}
+
 /* ---- segments ------------------------------------------------------------------------------- */
 
 /* Takes a point of the face, by its weights, where it is closer than what was found before. */

@@ -29,6 +29,14 @@ void lar_face_parts_in_lanes(const double x[3], const double corner[4][3], const
 double lar_face_before_in_lanes(const double x[3], const double corner[4][3],
                                 const double middle[3]);
 
+/* What this processor takes. */
+typedef struct lar_face_finders {
+    void (*parts)(const double x[3], const double corner[4][3], const double middle[3],
+                  lar_face_parts *parts);
+    double (*before)(const double x[3], const double corner[4][3], const double middle[3]);
+} lar_face_finders;
+lar_face_finders lar_face_finders_here(void);
+
 #if defined(LAR_HAVE_FACE_LANES)
 /* Whether this processor has them. */
 static inline bool lar_face_lanes(void) {

@@ -2,6 +2,7 @@
 #include "mechanics/face_contact.h"
 
 #include "mechanics/contact.h"
+#include "mechanics/face_parts.h"
 #include "testing.h"
 
 static uint32_t seed = 1;
@@ -247,6 +248,52 @@ static void what_has_no_size_makes_no_trouble(void **unused) {
     assert_false(found.height < 0);
 }
 
+/* Bent, flat, of one point, with corners or edges that coincide. */
+static void any_face(int kind, double corner[4][3]) {
+    random_face(corner, kind % 3 ? 0.5 : 0);
+    if (kind % 7 == 1) memcpy(corner[1], corner[0], sizeof corner[1]);
+    if (kind % 7 == 2) memcpy(corner[2], corner[0], sizeof corner[2]);
+    if (kind % 7 == 3)
+        for (int a = 1; a < 4; a++) memcpy(corner[a], corner[0], sizeof corner[a]);
+    if (kind % 7 == 4)
+        for (int a = 0; a < 4; a++) corner[a][1] = corner[a][0];
+}
+
+/* Anywhere, at a corner, on an edge, in the middle, on a triangle. */
+static void any_place(int kind, const double corner[4][3], const double middle[3], double x[3]) {
+    double m = fabs(noise()), n = (1 - m) * fabs(noise());
+    for (int i = 0; i < 3; i++) {
+        double a = corner[kind % 4][i], b = corner[(kind + 1) % 4][i];
+        const double place[5] = {2 * noise(), a, 0.5 * a + 0.5 * b, middle[i],
+                                 m * a + n * b + (1 - m - n) * middle[i]};
+        x[i] = place[kind % 5];
+    }
+}
+
+/* One by one or in lanes: the same bits, 0 and -0 apart. */
+static void the_widest_has_the_same_bits(void **unused) {
+    (void)unused;
+    const lar_face_finders here = lar_face_finders_here();
+    if (here.parts == lar_face_parts_one_by_one) skip();
+    for (int n = 0; n < 200000; n++) {
+        double corner[4][3], middle[3], x[3];
+        lar_face_parts one, wide;
+        any_face(n, corner);
+        lar_face_mean((const double(*)[3])corner, (const double[4]){0.25, 0.25, 0.25, 0.25},
+                      middle);
+        any_place(n / 7, (const double(*)[3])corner, middle, x);
+        lar_face_parts_one_by_one(x, (const double(*)[3])corner, middle, &one);
+        here.parts(x, (const double(*)[3])corner, middle, &wide);
+        for (int t = 0; t < 4; t++) {
+            assert_true(one.distance[t] == wide.distance[t]);
+            assert_true(one.height[t] == wide.height[t]);
+            for (int a = 0; a < 4; a++) assert_true(one.weight[t][a] == wide.weight[t][a]);
+        }
+        assert_true(lar_face_before_one_by_one(x, (const double(*)[3])corner, middle) ==
+                    here.before(x, (const double(*)[3])corner, middle));
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_closest_point_is_the_closest),
@@ -255,6 +302,7 @@ int main(void) {
         cmocka_unit_test(inside_is_inside_also_at_dented_corners),
         cmocka_unit_test(who_is_before_a_face_stays_so),
         cmocka_unit_test(what_has_no_size_makes_no_trouble),
+        cmocka_unit_test(the_widest_has_the_same_bits),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
