@@ -343,7 +343,8 @@ TEST_UNUSED static lar_model *disc(int width, int rings, int layers) {
     int32_t e = 0;
     for (int l = 0; l < layers; l++)
         for (int n = 0; n < width * width + 4 * width * rings; n++, e++) {
-            int i = n % width, j = n / width, p = n - width * width, k = p / (4 * width);
+            int i = n % width, j = n / width, inside = n < width * width;
+            int p = inside ? 0 : n - width * width, k = p / (4 * width);
             const int32_t core[4] = {i + side * j, i + 1 + side * j, i + 1 + side * (j + 1),
                                      i + side * (j + 1)};
             const int32_t around[4] = {disc_node(width, k + 1, p % (4 * width)),
@@ -351,7 +352,7 @@ TEST_UNUSED static lar_model *disc(int width, int rings, int layers) {
                                        disc_node(width, k, p % (4 * width) + 1),
                                        disc_node(width, k, p % (4 * width))};
             for (int a = 0; a < 8; a++)
-                mesh->element[e][a] = (p < 0 ? core : around)[a % 4] + section * (l + a / 4);
+                mesh->element[e][a] = (inside ? core : around)[a % 4] + section * (l + a / 4);
         }
     return model;
 }
