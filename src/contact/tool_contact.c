@@ -338,7 +338,7 @@ static void grasp_point(lar_tool_contact *contact, const lar_condition_context *
     const lar_tool_contact_face *face = &contact->faces->face[contact->faces->face_of[grasp->face]];
     const lar_tool *tool = &contact->list->tool[grasp->tool];
     double dt = context->time_step, now[3], next[3], x[4][3], v[4][3], point[3], speed[3];
-    double pull[3], force[4][3], length = 0;
+    double pull[3], force[4][3], length = 0, slack = 0;
     place_anchor(&motion->now, grasp->anchor, now);
     place_anchor(&motion->next, grasp->anchor, next);
     lar_tool_contact_corners(face, state, x);
@@ -350,6 +350,7 @@ static void grasp_point(lar_tool_contact *contact, const lar_condition_context *
     for (int i = 0; i < 3; i++) {
         pull[i] = stiffness * (now[i] - point[i]) + damping * ((next[i] - now[i]) / dt - speed[i]);
         length += pull[i] * pull[i];
+        slack += (now[i] - point[i]) * (now[i] - point[i]);
     }
     length = sqrt(length);
     double most = stiffness * tool->radius * lar_division_reach(&contact->tools->division);
@@ -367,7 +368,9 @@ static void grasp_point(lar_tool_contact *contact, const lar_condition_context *
     }
     give(contact, context, contact->faces->face_of[grasp->face], grasp->tool, motion->now.position,
          (const double(*)[3])x, (const double(*)[3])force);
+    double jaws = tool->length + 2 * tool->radius; /* farther away it has slipped out of them */
     contact->sum[grasp->tool].held++;
+    if (tool->shape == LAR_TOOL_HAND || slack <= jaws * jaws) contact->sum[grasp->tool].clings = 1;
 }
 
 static void apply_grasps(lar_tool_contact *contact, const lar_condition_context *context,

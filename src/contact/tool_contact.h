@@ -41,6 +41,9 @@ typedef struct lar_tool_sum {
     lar_wide jaw[2];              /* of the tissue on each jaw, outwards */
     double depth;                 /* the deepest point since the last stretch of steps began [m] */
     int32_t touching, held;       /* in the last step */
+    int32_t clings;               /* since the last stretch of steps began a held point has been no
+                                     farther from where it is held than jaws reach: 1 */
+    int32_t padding;
 } lar_tool_sum;
 
 static const double LAR_TORQUE_REST = 0x1p-20;
@@ -164,7 +167,7 @@ void lar_tool_contact_forget(lar_tool_contact *contact);
 
 /* Before a stretch of steps: the deepest points are asked for stretch by stretch. */
 static inline void lar_tool_contact_forget_depths(lar_tool_contact *contact) {
-    for (int i = 0; i < LAR_TOOLS_MAX; i++) contact->sum[i].depth = 0;
+    for (int i = 0; i < LAR_TOOLS_MAX; i++) contact->sum[i].depth = contact->sum[i].clings = 0;
 }
 
 /* Adds the forces at the state's step to state->force. Asks for no memory. */

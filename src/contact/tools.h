@@ -24,10 +24,13 @@
 
 enum { LAR_GRASPS_MAX = 256 };
 
+enum { LAR_HOLDS = 1, LAR_HOLDS_NEAR };
 typedef struct lar_tool_motion {
     lar_tool_pose from, to;
     uint64_t start, end; /* steps */
-    int32_t holding;     /* it has closed upon something, or nothing, and not opened since */
+    int32_t holding;     /* it has closed upon something, or nothing, and not opened since: 1; and
+                            since the last decision something has been within its jaws, or it has
+                            just closed: 2 */
     int32_t padding;
 } lar_tool_motion;
 

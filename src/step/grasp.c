@@ -117,6 +117,20 @@ void lar_grasp_drop(int32_t tool, lar_tools *tools) {
     tools->grasp_count = kept;
 }
 
+bool lar_grasp_slip(const lar_tool_list *list, lar_tools *tools) {
+    bool slipped = false;
+    for (int32_t t = 0; t < tools->count; t++) {
+        lar_tool_motion *motion = &tools->motion[t];
+        if (list->tool[t].shape != LAR_TOOL_GRASPER || tools->follower[t].felt.steps == 0) continue;
+        if (motion->holding == LAR_HOLDS && lar_grasp_count(tools, t) > 0) {
+            lar_grasp_drop(t, tools);
+            slipped = true;
+        }
+        if (motion->holding == LAR_HOLDS_NEAR) motion->holding = LAR_HOLDS;
+    }
+    return slipped;
+}
+
 lar_status lar_grasp_update(const lar_domain *whole, const lar_state *state,
                             const lar_tool_list *list, int32_t tool, const lar_tool_pose *pose,
                             lar_tools *tools, lar_error *error) {
@@ -129,7 +143,7 @@ lar_status lar_grasp_update(const lar_domain *whole, const lar_state *state,
         motion->holding = 0;
     } else if (!motion->holding && pose->opening < CLOSED) {
         take(whole, state, list, tool, pose, tools);
-        motion->holding = 1;
+        motion->holding = LAR_HOLDS_NEAR;
     }
     return LAR_OK;
 }

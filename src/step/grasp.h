@@ -29,6 +29,10 @@ lar_status lar_grasp_update(const lar_domain *whole, const lar_state *state,
 /* Whether that is asked for: only then the state is looked at. */
 bool lar_grasp_changes(const lar_tool *tool, const lar_tool_motion *motion, double opening);
 
+/* At a decision: what has been pulled out of a grasper's jaws, all of it farther than they are
+ * long, is held no longer; closed as they are they hold nothing. True when that has happened. */
+bool lar_grasp_slip(const lar_tool_list *list, lar_tools *tools);
+
 /* Lets go of everything at once. */
 void lar_grasp_drop(int32_t tool, lar_tools *tools);
 

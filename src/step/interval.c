@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "contact/tool_body.h"
+#include "step/grasp.h"
 #include "step/mass/heavier.h"
 
 void lar_interval_restart(lar_interval *interval) {
@@ -68,6 +69,7 @@ void lar_interval_harvest(lar_interval *interval, const lar_domain *whole, const
         felt->squeeze = whole_number(felt->squeeze + now->squeeze - before->squeeze);
         felt->depth = now->depth > felt->depth ? now->depth : felt->depth;
         felt->steps += steps;
+        if (now->clings && tools->motion[t].holding) tools->motion[t].holding = LAR_HOLDS_NEAR;
         interval->depth[t] = fmax(interval->depth[t], now->depth);
         *before = *now;
     }
@@ -216,6 +218,7 @@ bool lar_interval_decide(const lar_domain *whole, uint64_t step, lar_tools *tool
     const double need = division->need;
     bool changed = lar_interval_divide(whole, step, seconds, tools);
     division->due = 0;
+    changed = lar_grasp_slip(list, tools) || changed;
     return lar_tools_follow(list, tools, step, lar_interval_end(whole, division, step),
                             whole->time_step, lar_division_beside(division, need),
                             1 / whole->scale) ||

@@ -47,6 +47,7 @@ static inline void lar_report_join(lar_report *sum, const lar_report *other) {
         to->depth = from->depth > to->depth ? from->depth : to->depth;
         to->touching += from->touching;
         to->held += from->held;
+        to->clings |= from->clings;
     }
     lar_report_contact(&sum->contact, &other->contact);
     sum->moved = lar_larger(sum->moved, other->moved);

@@ -138,7 +138,7 @@ static void forged_files_are_refused(void **unused) {
         {TOOL + 24, 8, 0.5, "tool"},    /* an orientation */
         {TOOL + 56, 8, 1.5, "tool"},    /* an opening */
         {TOOL + 128, 8, 1e300, "tool"}, /* the step at which it began */
-        {TOOL + 144, 4, 2, "tool"},     /* whether it holds */
+        {TOOL + 144, 4, 3, "tool"},     /* whether it holds, and something near */
         {FOLLOWER, 8, NAN, "tool"},     /* where it was asked to go */
         {FOLLOWER + 64, 8, 1e200, "tool"},
         {FOLLOWER + 24, 8, 0.5, "tool"},

@@ -150,6 +150,36 @@ static void jaws_hold_a_fold_without_crushing_it(void **unused) {
     finish(simulation, model);
 }
 
+/* Pulled away closed, jaws keep a fold as long as it is within their length, and lose it then:
+ * nobody is pulled by an instrument that is not there. The same on every grid. */
+static void what_slips_out_of_jaws_is_held_no_longer(void **unused) {
+    (void)unused;
+    static const char *const grid[] = {NULL, "1x1x1", "2x2x1"};
+    uint64_t hash[3];
+    for (int i = 0; i < 3; i++) {
+        lar_model *model = fold_model();
+        lar_options options = lar_options_default();
+        options.grid = grid[i];
+        touch_tool(model, "jaws", jaws, above);
+        lar_simulation *simulation = start_with(model, options);
+        lead(simulation, 0, above, 0, 0.4);
+        wait(simulation, 0.2);
+        int32_t held = felt(simulation, 0).held;
+        lead(simulation, 0, (double[]){above[0], above[1], above[2] + 0.01}, 0, 0.1);
+        assert_true(held > 10 && felt(simulation, 0).held == held);
+        lead(simulation, 0, (double[]){above[0], above[1], above[2] + 0.3}, 0, 0.6);
+        wait(simulation, 0.5);
+        lar_tool_force force = felt(simulation, 0);
+        assert_true(force.held == 0 && force.force[2] == 0 && force.grasp_force == 0);
+        hash[i] = lar_simulation_hash(simulation); /* gathers the state, too */
+        double lifted = node_u(simulation, brick_node(&fold, 1, 4, 6))[2];
+        assert_below(fabs(lifted), 1e-4);
+        print_message("%s: %d points were held\n", grid[i] ? grid[i] : "no grid", (int)held);
+        finish(simulation, model);
+    }
+    assert_true(hash[1] == hash[0] && hash[2] == hash[0]);
+}
+
 /* ---- letting go ----------------------------------------------------------------------------- */
 
 /* The tool is gone from one step to the next: what the tissue does then is its own. */
@@ -300,6 +330,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(grasp_is_what_one_jaw_is_pushed_with),
         cmocka_unit_test(jaws_hold_a_fold_without_crushing_it),
+        cmocka_unit_test(what_slips_out_of_jaws_is_held_no_longer),
         cmocka_unit_test(opening_lets_go_without_a_jump),
         cmocka_unit_test(two_graspers_stretch_an_organ_between_them),
     };
