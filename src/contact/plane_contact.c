@@ -372,7 +372,7 @@ void lar_plane_contact_stop(lar_plane_contact *plane_contact, const lar_conditio
     if (plane_contact->planes->count == 0) return;
     plane_contact->travel += step_travel(context, state);
     /* Faster within one step than the search allowed for: somebody else may be there now. (What
-     * they had before is lost, which costs the energy account a little and the motion nothing.) */
+     * those had before is lost, which costs the energy account a little and the motion nothing.) */
     if (!(plane_contact->travel < plane_contact->reach) && !always)
         search_again(plane_contact, context, state, seen);
     double dt = context->time_step, rate = 1 / dt, moved = step_travel(context, state);

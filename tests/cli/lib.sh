@@ -67,3 +67,20 @@ finish() {
     rm -rf "$SCRATCH"
     echo "$1"
 }
+
+# A mesh of one element, written to the file.
+one_element() {
+    cat >"$1" <<'END'
+# vtk DataFile Version 3.0
+one element, 10 x 10 x 20 mm
+ASCII
+DATASET UNSTRUCTURED_GRID
+POINTS 8 double
+0 0 0  0.01 0 0  0.01 0.01 0  0 0.01 0
+0 0 0.02  0.01 0 0.02  0.01 0.01 0.02  0 0.01 0.02
+CELLS 1 9
+8 0 1 2 3 4 5 6 7
+CELL_TYPES 1
+12
+END
+}

@@ -33,19 +33,7 @@ for element in hex8-full hex8-matrix; do
 done
 
 # An element that is pulled long and thin is strained, not squeezed.
-cat >"$SCRATCH/one.vtk" <<'END'
-# vtk DataFile Version 3.0
-one element, 10 x 10 x 20 mm
-ASCII
-DATASET UNSTRUCTURED_GRID
-POINTS 8 double
-0 0 0  0.01 0 0  0.01 0.01 0  0 0.01 0
-0 0 0.02  0.01 0 0.02  0.01 0.01 0.02  0 0.01 0.02
-CELLS 1 9
-8 0 1 2 3 4 5 6 7
-CELL_TYPES 1
-12
-END
+one_element "$SCRATCH/one.vtk"
 cat >"$SCRATCH/one.yaml" <<'END'
 lariat: 1
 mesh: one.vtk

@@ -142,6 +142,20 @@ static void parts_of_bricks(void **unused) {
     }
 }
 
+/* All of a model in one part, and slices of it at random, in turn; the model is destroyed. */
+static void check_slices(lar_model *model, int slices) {
+    lar_layout whole;
+    assert_int_equal(lar_layout_create(model, &whole, NULL), LAR_OK);
+    for (int i = 0; i < slices; i++) {
+        slice s = new_slice(&model->mesh, 1 + i / 2);
+        if (i % 2) fill_at_random(&model->mesh, &s);
+        cost_of_part(model, &whole, &s.part);
+        free_slice(&s);
+    }
+    lar_layout_destroy(&whole);
+    lar_model_destroy(model);
+}
+
 /* Chains that end nowhere, and one that crosses itself. */
 static void parts_of_rings(void **unused) {
     (void)unused;
@@ -149,16 +163,7 @@ static void parts_of_rings(void **unused) {
     for (int n = 0; n < 12; n++) {
         int width = 1 + n % 3, around = width == 1 ? 3 + 3 * n : 9 + n;
         lar_model *model = n ? ring(around, width, around > 8 ? n % 5 : 0) : loop();
-        lar_layout whole;
-        assert_int_equal(lar_layout_create(model, &whole, NULL), LAR_OK);
-        for (int i = 0; i < 4; i++) {
-            slice s = new_slice(&model->mesh, 1 + i / 2);
-            if (i % 2) fill_at_random(&model->mesh, &s);
-            cost_of_part(model, &whole, &s.part);
-            free_slice(&s);
-        }
-        lar_layout_destroy(&whole);
-        lar_model_destroy(model);
+        check_slices(model, 4);
     }
 }
 
@@ -169,16 +174,7 @@ static void parts_of_discs(void **unused) {
     for (int n = 0; n < 40; n++) {
         lar_model *model = disc(1 + n % 5, 1 + chance(6), 1 + chance(4));
         if (n % 4 == 3) turn_elements(&model->mesh);
-        lar_layout whole;
-        assert_int_equal(lar_layout_create(model, &whole, NULL), LAR_OK);
-        for (int i = 0; i < 6; i++) {
-            slice s = new_slice(&model->mesh, 1 + i / 2);
-            if (i % 2) fill_at_random(&model->mesh, &s);
-            cost_of_part(model, &whole, &s.part);
-            free_slice(&s);
-        }
-        lar_layout_destroy(&whole);
-        lar_model_destroy(model);
+        check_slices(model, 6);
     }
 }
 
