@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "contact/history/body_friction.h"
+#include "contact/history/flush.h"
 #include "mechanics/face_contact.h"
 
 /* How much nearer a node and a face come when all nodes move by 1 along every axis. */
@@ -27,6 +28,7 @@ typedef struct touching {
 typedef struct survey {
     double x[3];  /* the node [m] */
     double reach; /* of the faces for the node [m] */
+    bool flush;   /* with the body: some of its faces are not seen */
     double fade;  /* by how much others than the closest may be farther away and still count [m] */
     int32_t count;
     int32_t entry[LAR_GROUP_FACES_MAX]; /* ascending */
@@ -91,12 +93,15 @@ static void survey_group(lar_body_contact *contact, const lar_state *state, int3
     s->fade = fade_of(contact, group->node, face[0]);
     s->min = s->gap = s->next = INFINITY;
     s->count = 0;
+    s->flush = lar_offset_is_flush(contact, state, g);
     lar_face_point of_first;
     double corner_of_first[4][3];
     lar_contact_place(contact, state, group->node, s->x, NULL);
-    double distance_of_first =
-        survey_face(contact, state, face[first], s, corner_of_first, &of_first);
+    double distance_of_first = 0;
+    if (!s->flush || !lar_flush_hides(contact->surface, group->node, face[first]))
+        distance_of_first = survey_face(contact, state, face[first], s, corner_of_first, &of_first);
     for (int32_t i = 0; i < group->count; i++) {
+        if (s->flush && lar_flush_hides(contact->surface, group->node, face[i])) continue;
         if (i != first && contact->travel < away[i]) {
             if (away[i] < s->next) s->next = away[i];
             continue;
@@ -320,7 +325,7 @@ static bool push(lar_body_contact *contact, const lar_state *state, int32_t g, i
     double standoff = lar_contact_standoff(surface, &surface->node[node], f);
     double from = standoff - offset;
     moved *= softness(contact, standoff);
-    double force = f->fades && !own
+    double force = f->fades && !own && !s->flush
                        ? fade(contact, x, &known, closest, full_of(contact, node, face), moved,
                               depth + from, rate, t)
                        : lar_contact_force(&contact->law, moved, depth + from, rate);
@@ -352,7 +357,8 @@ static int32_t closest(lar_body_contact *contact, const lar_state *state, int32_
     const lar_contact_group *group = &contact->list.group[g];
     survey_group(contact, state, g, s);
     /* A little earlier, for rounding. */
-    contact->due[g] = s->gap > 0 ? fmin(contact->travel + 0.999 * s->gap / APPROACH, s->next) : 0;
+    contact->due[g] =
+        s->gap > 0 && !s->flush ? fmin(contact->travel + 0.999 * s->gap / APPROACH, s->next) : 0;
     if (!(s->min < INFINITY)) return -1;
     int32_t chosen = choose_face(contact, g, s, point);
     if (chosen < 0) return -1;
@@ -360,9 +366,17 @@ static int32_t closest(lar_body_contact *contact, const lar_state *state, int32_
     return contact->list.face[group->first + chosen];
 }
 
-static bool touches(const lar_body_contact *contact, int32_t node, int32_t face,
+/* Who does not see the sides of a body is beside it, and not in it, where it is not straight behind
+ * a face. */
+static bool is_beside(const lar_face_point *closest) {
+    static const double STRAIGHT = 0.7; /* 45 degrees */
+    return closest->height < 0 && -closest->height < STRAIGHT * closest->distance;
+}
+
+static bool touches(const lar_body_contact *contact, int32_t node, int32_t face, const survey *s,
                     const lar_face_point *point) {
     const lar_contact_surface *surface = contact->surface;
+    if (s->flush && is_beside(point)) return false;
     return point->height < 0 ||
            point->distance <
                lar_contact_standoff(surface, &surface->node[node], &surface->face[face]);
@@ -397,14 +411,16 @@ static bool in_contact(lar_body_contact *contact, const lar_state *state, int32_
     lar_face_point point;
     survey s;
     int32_t face = closest(contact, state, g, &s, &point);
-    if (face >= 0 && touches(contact, group->node, face, &point))
+    if (face >= 0 && touches(contact, group->node, face, &s, &point))
         return push(contact, state, g, face, &point, &s, t);
     if (lar_group_is_own(contact->surface, &contact->list, group)) {
         lar_offset_leave(contact, state, group->node, face);
         return false;
     }
     lar_offset_out(contact, state, g);
-    if (face >= 0) {
+    if (s.flush) {
+        lar_offset_stay_flush(contact, g, face, &point);
+    } else if (face >= 0) {
         double clear = 0.999 * clear_of(contact, g, &s, &point) / APPROACH;
         contact->due[g] = fmax(contact->due[g], fmin(contact->travel + clear, s.next));
     }

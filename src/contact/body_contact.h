@@ -35,6 +35,10 @@
  * not pushed is remembered until it touches nothing. Points of edges and faces, which have no
  * offset, are not pushed by other bodies from a quarter of the layer on.
  *
+ * Blocks that stand exactly on each other (history/flush.h). A node has parted from the block that
+ * it was flush with once it is beside it, or above it by a part of a face: then it sees all faces,
+ * for good, which is remembered in the sign of its offset.
+ *
  * Offsets are the one thing that contact remembers: they stand in state->level [m], 0 for who is
  * not inside, and belong to the state like u and v.
  *
@@ -57,6 +61,7 @@
 #include "contact/conditions.h"
 #include "contact/contact_search.h"
 #include "mechanics/contact.h"
+#include "mechanics/face_contact.h"
 
 /* The larger of two ways or speeds. What is not a number stays: nothing is larger. */
 static inline double lar_larger(double max, double other) {
@@ -109,6 +114,10 @@ static inline bool lar_offset_is_behind(double offset) {
     return offset > 3.5e-300 && offset < 1e-280;
 }
 
+/* No offset: the node has parted from what it was flush with (history/flush.h), which the sign of
+ * its offset says from then on. */
+#define LAR_OFFSET_PARTED (-0.0)
+
 /* An offset that is another than in the last step. */
 typedef struct lar_penetration_offset {
     int32_t node; /* local */
@@ -150,7 +159,7 @@ typedef struct lar_body_contact {
     lar_body_contact_part *part; /* [list.group_room] */
     uint8_t *keeps;              /* [contact nodes] those that this thread moves; NULL: all */
     int32_t offset_count;
-    lar_penetration_offset *offset; /* [list.group_room] of these nodes, from when they move on */
+    lar_penetration_offset *offset; /* [2 list.group_room] of these nodes, from when they move on */
     lar_body_friction *friction;    /* NULL: no body is rough */
     bool fresh;                     /* no forces have been computed with the list */
     bool too_many_pairs;            /* there was no room for all pairs: the run must stop */
@@ -227,6 +236,18 @@ bool lar_offset_pushes(lar_body_contact *contact, const lar_state *state, int32_
 /* The node of group g touches no face of that other body: from now on it is pushed like any other.
  */
 void lar_offset_out(lar_body_contact *contact, const lar_state *state, int32_t g);
+
+/* Whether the node or point of group g is flush still with the body of that (history/flush.h), and
+ * does not see all of its faces. */
+bool lar_offset_is_flush(const lar_body_contact *contact, const lar_state *state, int32_t g);
+
+/* The node of group g, which is flush, touches nothing of that body. It has parted when it is
+ * beside it, or too far above. `face`: the closest one that it sees, or -1. */
+void lar_offset_stay_flush(lar_body_contact *contact, int32_t g, int32_t face,
+                           const lar_face_point *closest);
+
+/* A node has parted from all that it was flush with, from when it moves on. */
+void lar_offset_part(lar_body_contact *contact, int32_t node);
 
 /* ---- the step -------------------------------------------------------------------------------- */
 

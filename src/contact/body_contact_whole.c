@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "contact/history/body_friction.h"
+#include "contact/history/flush.h"
 
 /* ---- a new list ------------------------------------------------------------------------------ */
 
@@ -43,13 +44,27 @@ static int32_t body_behind(const lar_body_contact *contact, int32_t n, double of
     return s->node[n].body;
 }
 
+/* Of a node that is flush; `g` is of group_with. */
+static void look_at_flush(lar_body_contact *contact, int32_t n, int32_t g) {
+    int32_t at = 0, body = -1;
+    while (lar_flush_next_body(contact->surface, n, &at, &body)) {
+        int32_t found = group_with(contact, n, body, &g);
+        if (found < 0) {
+            lar_offset_part(contact, n);
+            return;
+        }
+        contact->due[found] = 0;
+    }
+}
+
 void lar_body_contact_end_offsets(lar_body_contact *contact, const lar_state *state) {
     int32_t g = 0;
     contact->fresh = false;
     for (int32_t n = 0; n < contact->surface->node_count; n++) {
         if (contact->keeps && !contact->keeps[n]) continue;
         int32_t local = contact->view.local[n];
-        double before = state->level[local];
+        double before = fabs(state->level[local]);
+        if (!signbit(state->level[local])) look_at_flush(contact, n, g);
         if (before == 0 || before == LAR_OFFSET_OUT) continue;
         int32_t found = group_with(contact, n, body_behind(contact, n, before), &g);
         if (found >= 0)
@@ -173,9 +188,14 @@ void lar_body_contact_apply(lar_body_contact *contact, const lar_condition_conte
     contact->info.steps++;
 }
 
+/* Who has parted stays so, whatever its offset is. */
+static void take_offset(const lar_penetration_offset *offset, double *level) {
+    *level = signbit(offset->depth) ? -fabs(*level) : copysign(offset->depth, *level);
+}
+
 void lar_body_contact_moved(lar_body_contact *contact, lar_state *state, double way) {
     for (int32_t i = 0; i < contact->offset_count; i++)
-        state->level[contact->offset[i].node] = contact->offset[i].depth;
+        take_offset(&contact->offset[i], &state->level[contact->offset[i].node]);
     contact->offset_count = 0;
     if (contact->friction) lar_body_friction_keep(contact, state);
     contact->moved += way;
@@ -207,7 +227,7 @@ static lar_status allocate(lar_body_contact *contact, const int32_t *local, lar_
     contact->near = lar_calloc(groups, sizeof *contact->near);
     contact->away = lar_calloc(pairs, sizeof *contact->away);
     contact->part = lar_calloc(groups, sizeof *contact->part);
-    contact->offset = lar_calloc(groups, sizeof *contact->offset);
+    contact->offset = lar_calloc(2 * groups, sizeof *contact->offset);
     if (!own || !search_state->x || !search_state->searched || !contact->due || !contact->last ||
         !contact->near || !contact->away || !contact->part || !contact->offset)
         return lar_fail_memory(error, groups * sizeof *contact->part, "contact of bodies");

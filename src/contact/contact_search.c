@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "contact/history/flush.h"
 #include "mechanics/face_contact.h"
 #include "model/contact_check.h"
 
@@ -469,6 +470,8 @@ static lar_status keep_shape(const lar_model *model, lar_contact_search *search,
     if (!status) status = refuse_twice(model, search, error);
     if (status) return status;
     measure_clearance(s, list, lar_overlap_rounding(&model->mesh));
+    status = lar_flush_find(s, list, lar_overlap_rounding(&model->mesh), error);
+    if (status) return status;
     int32_t(*pair)[2] = lar_calloc((size_t)list->face_count, sizeof *pair), count = 0;
     if (!pair) return lar_fail_memory(error, 8 * (size_t)list->face_count, "pairs at rest");
     for (int32_t g = 0; g < list->group_count; g++) {

@@ -23,30 +23,6 @@
 
 #include "contact/contact_surface.h"
 
-enum { LAR_PAIRS_PER_NODE = 64, LAR_GROUP_FACES_MAX = 128 };
-
-/* A node and faces of one body: entries first .. first + count - 1 of lar_contact_list.face. */
-typedef struct lar_contact_group {
-    int32_t node; /* contact node */
-    int32_t first, count;
-    float gap; /* by which the node is outside the boxes of all faces, grown by their reach only,
-                  along some axis; at most 0 when it is inside one [m] */
-} lar_contact_group;
-
-typedef struct lar_contact_list {
-    int32_t group_count, face_count;
-    lar_contact_group *group; /* [group_count] by node, then by body */
-    int32_t *face;            /* [face_count] contact faces */
-    int32_t group_room, face_room;
-    double skin; /* [m] */
-} lar_contact_list;
-
-/* Whether a group's faces are of its node's own body. */
-static inline bool lar_group_is_own(const lar_contact_surface *surface,
-                                    const lar_contact_list *list, const lar_contact_group *group) {
-    return surface->face[list->face[group->first]].body == surface->node[group->node].body;
-}
-
 /* A patch: faces first .. first + count - 1 of lar_contact_tree.order; its left half follows it,
  * its right half is `right`, 0 for one that is not divided. */
 typedef struct lar_patch {

@@ -413,5 +413,7 @@ void lar_contact_surface_clear(lar_contact_surface *surface) {
     free(surface->rest);
     free(surface->apart_first);
     free(surface->apart);
+    free(surface->flush_first);
+    free(surface->flush);
     *surface = (lar_contact_surface){0};
 }

@@ -72,12 +72,39 @@ typedef struct lar_contact_surface {
     double (*rest)[3];        /* [point_count] reference positions */
     int64_t *apart_first;     /* [node_count + 1] faces that are never together with a node: */
     int32_t *apart;           /* ascending for each node */
+    int32_t *flush_first;     /* [point_count + 1] faces that a node or point is flush with at */
+    int32_t *flush;           /* rest, by bodies: history/flush.h */
     double reach;             /* the least of all bodies [m] */
     double reach_max;         /* the largest [m] */
     uint64_t possible;        /* pairs of a node and a face that belong together, neighbours too */
     double friction[LAR_CONTACT_PASSES_MAX]; /* Coulomb's coefficient of each pass */
     bool rough;                              /* one of them is not 0 */
 } lar_contact_surface;
+
+enum { LAR_PAIRS_PER_NODE = 64, LAR_GROUP_FACES_MAX = 128 };
+
+/* What a search finds (contact_search.h): a node and faces of one body: entries first .. first +
+ * count - 1 of lar_contact_list.face. */
+typedef struct lar_contact_group {
+    int32_t node; /* contact node */
+    int32_t first, count;
+    float gap; /* by which the node is outside the boxes of all faces, grown by their reach only,
+                  along some axis; at most 0 when it is inside one [m] */
+} lar_contact_group;
+
+typedef struct lar_contact_list {
+    int32_t group_count, face_count;
+    lar_contact_group *group; /* [group_count] by node, then by body */
+    int32_t *face;            /* [face_count] contact faces */
+    int32_t group_room, face_room;
+    double skin; /* [m] */
+} lar_contact_list;
+
+/* Whether a group's faces are of its node's own body. */
+static inline bool lar_group_is_own(const lar_contact_surface *surface,
+                                    const lar_contact_list *list, const lar_contact_group *group) {
+    return surface->face[list->face[group->first]].body == surface->node[group->node].body;
+}
 
 /* Without contacts of these kinds node_count is 0 and nothing is allocated. mass[local[node]] is
  * the mass of a node of the model. Cleared with lar_contact_surface_clear. */

@@ -84,6 +84,12 @@ static bool has_node(const lar_contact_map *map, int32_t processor, int32_t node
 
 /* ---- who takes part -------------------------------------------------------------------------- */
 
+/* Whether nodes remember something of a group: the one node of which it is its offset and what it
+ * is flush with, all that a point is made of where they stick. */
+static bool remembers(const lar_contact_surface *surface, int nodes) {
+    return surface->rough || nodes == 1;
+}
+
 /* Whether a processor adds forces of a group, or has the node and keeps what it remembers. */
 static bool concerns(const lar_contact_map *map, const lar_contact_list *list,
                      const lar_contact_group *group, int32_t processor) {
@@ -93,9 +99,8 @@ static bool concerns(const lar_contact_map *map, const lar_contact_list *list,
     int count = lar_contact_parents(s, group->node, parent, weight);
     for (int k = 0; k < count; k++)
         if (map->reporter[parent[k]] == processor ||
-            (s->rough && has_node(map, processor, parent[k])))
+            (remembers(s, count) && has_node(map, processor, parent[k])))
             return true;
-    if (lar_group_is_own(s, list, group) && has_node(map, processor, group->node)) return true;
     for (int32_t i = group->first; i < group->first + group->count; i++) {
         int32_t f = list->face[i];
         if (map->recoverer[f] == processor &&
@@ -167,11 +172,10 @@ static void take_groups(lar_worker *worker, const lar_contact_list *list) {
         int32_t parent[LAR_CONTACT_PARENTS];
         double weight[LAR_CONTACT_PARENTS];
         int count = lar_contact_parents(contact->surface, group->node, parent, weight);
-        bool remembers = contact->friction || lar_group_is_own(contact->surface, list, group);
         bool takes = false;
         for (int k = 0; k < count; k++)
-            takes =
-                takes || contact->adds_node[parent[k]] || (remembers && contact->keeps[parent[k]]);
+            takes = takes || contact->adds_node[parent[k]] ||
+                    (remembers(contact->surface, count) && contact->keeps[parent[k]]);
         for (int32_t i = 0; i < group->count && !takes; i++)
             takes = contact->adds_corner[face[i]] &&
                     lar_contact_active(&contact->surface->node[group->node],
@@ -223,7 +227,7 @@ static lar_status create_contact(const lar_body_contact *whole, int32_t thread, 
                                   .near = lar_calloc(groups, sizeof *contact->near),
                                   .away = lar_calloc(pairs, sizeof *contact->away),
                                   .part = lar_calloc(groups, sizeof *contact->part),
-                                  .offset = lar_calloc(groups, sizeof *contact->offset)};
+                                  .offset = lar_calloc(2 * groups, sizeof *contact->offset)};
     contact->list.group = lar_calloc(groups, sizeof *contact->list.group);
     contact->list.face = lar_calloc(pairs, sizeof *contact->list.face);
     if (!adds_node || !adds_corner || !keeps || !contact->due || !contact->last || !contact->near ||

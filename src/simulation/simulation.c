@@ -18,48 +18,6 @@ lar_options lar_options_default(void) {
     return (lar_options){.element = LAR_ELEMENT_HEX8, .isa = LAR_ISA_AUTO, .listener = -1};
 }
 
-/* Where a deck prescribes a displacement from time 0 on, the body starts with it: energies begin
- * with what that holds (lar_energy: "+ start"), and nothing jumps in the first step. */
-static void set_initial_displacements(lar_simulation *simulation) {
-    const lar_conditions *conditions = &simulation->domain.surroundings.conditions;
-    for (int32_t i = 0; i < conditions->constraint_count; i++) {
-        const lar_constraint *c = &conditions->constraint[i];
-        double value = lar_constraint_value(simulation->domain.model, c, 0);
-        if (value != 0) /* never -0: it has other bits */
-            simulation->state.u[lar_constraint_at(&simulation->state, c)] = value;
-    }
-}
-
-/* The velocities half a step BEFORE the start, such that those half a step before and after it
- * have the given ones as their mean: v' = keep v + p with p = drift - push f gives
- * v = (2 v0 - p) / (1 + keep). Starting with v0 itself would cost half a step. */
-static void set_initial_velocities(lar_simulation *simulation) {
-    const lar_domain *domain = &simulation->domain;
-    lar_state *state = &simulation->state;
-    const lar_model *model = domain->model;
-    double keep = domain->leapfrog.keep, gravity[3];
-    for (int i = 0; i < model->initial_count; i++) {
-        const lar_initial_velocity *initial = &model->initial[i];
-        for (int32_t k = 0; k < initial->nodes.count; k++)
-            lar_axes_put(state->v, state->stride, domain->layout.local[initial->nodes.node[k]],
-                         initial->velocity);
-    }
-    lar_fault ignored = {0};
-    lar_step_forces(domain, &simulation->scratch->measure.interactions, state, &ignored);
-    lar_gravity_at(model, NULL, 0, gravity);
-    for (lar_gid g = 0; g < model->mesh.node_count; g++)
-        for (int i = 0; i < 3; i++) {
-            size_t value = lar_state_at(state, domain->layout.local[g], i);
-            double drift =
-                gravity[i] * domain->time_step / (1 + 0.5 * model->damping * domain->time_step);
-            double push = domain->push[domain->layout.local[g]] * (double)state->force[value];
-            state->v[value] = (2 * state->v[value] - (drift - push)) / (1 + keep);
-        }
-    memset(state->force, 0, 3 * state->stride * sizeof *state->force);
-    for (int32_t i = 0; i < domain->surroundings.conditions.constraint_count; i++)
-        state->v[lar_constraint_at(state, &domain->surroundings.conditions.constraint[i])] = 0;
-}
-
 /* Within one step damping can stop a node, but not turn it around: v' = keep v needs keep > 0. */
 static lar_status check_damping(const lar_domain *domain, lar_error *error) {
     const lar_model *model = domain->model;
@@ -133,26 +91,6 @@ void lar_simulation_settle(lar_simulation *simulation) {
     bool tools = lar_spares_take(&simulation->tools, &simulation->list);
     if (tissue || tools) lar_simulation_limit_tools(simulation);
     lar_burden_take(&simulation->domain, &simulation->tools.heavier, NULL);
-}
-
-void lar_simulation_set_start(lar_simulation *simulation) {
-    lar_state *state = &simulation->state;
-#define LAR_STATE_CLEAR(type, name, of_node, of_history, kept)                                     \
-    if (state->name)                                                                               \
-        memset(state->name, 0, LAR_STATE_SIZE(state, of_node, of_history) * sizeof(type));
-    LAR_STATE_ARRAYS(LAR_STATE_CLEAR)
-#undef LAR_STATE_CLEAR
-    state->step = 0;
-    state->part = 0;
-    state->parts = 1;
-    state->listed = false;
-    state->damped = state->external = state->contact = 0;
-    simulation->measured = simulation->taken = 0;
-    lar_tools_reset(&simulation->list, &simulation->tools);
-    lar_simulation_settle(simulation);
-    set_initial_displacements(simulation);
-    set_initial_velocities(simulation);
-    lar_interactions_forget(&simulation->interactions);
 }
 
 lar_status lar_simulation_create_state(lar_simulation *simulation, bool search_always,
@@ -306,8 +244,8 @@ static bool advance_alone(lar_simulation *simulation, uint64_t end, bool first,
 enum { STEPS_BETWEEN_LOOKS = 32 }; /* at what contact has given */
 _Static_assert(STEPS_BETWEEN_LOOKS % LAR_INTERVAL_MAX == 0, "nobody stops only for a look");
 
-/* Without anything to touch it is the barriers of corners that give: what a load does that is faster
- * than the steps, which the account of energy tells. */
+/* Without anything to touch it is the barriers of corners that give: what a load does that is
+ * faster than the steps, which the account of energy tells. */
 static bool may_touch(const lar_simulation *simulation) {
     const lar_domain *domain = &simulation->domain;
     return domain->model->contact_count > 0 ||

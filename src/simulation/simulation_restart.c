@@ -2,9 +2,112 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/vector.h"
 #include "simulation/checkpoint.h"
 #include "simulation/simulation.h"
 #include "step/viscous_history.h"
+
+/* ---- the start ------------------------------------------------------------------------------- */
+
+/* Where a deck prescribes a displacement from time 0 on, the body starts with it: energies begin
+ * with what that holds (lar_energy: "+ start"), and nothing jumps in the first step. */
+static void set_initial_displacements(lar_simulation *simulation) {
+    const lar_conditions *conditions = &simulation->domain.surroundings.conditions;
+    for (int32_t i = 0; i < conditions->constraint_count; i++) {
+        const lar_constraint *c = &conditions->constraint[i];
+        double value = lar_constraint_value(simulation->domain.model, c, 0);
+        if (value != 0) /* never -0: it has other bits */
+            simulation->state.u[lar_constraint_at(&simulation->state, c)] = value;
+    }
+}
+
+/* What the first step adds to velocities: v' = keep v + p. */
+static double first_push(const lar_domain *domain, const lar_state *state, lar_lid node, int axis,
+                         const double gravity[3]) {
+    double drift =
+        gravity[axis] * domain->time_step / (1 + 0.5 * domain->model->damping * domain->time_step);
+    return drift - domain->push[node] * (double)state->force[lar_state_at(state, node, axis)];
+}
+
+/* Of a node at entry `entry` of the planes: where a plane bears it from the start on, it does so
+ * half a step before, too. Otherwise it would come up from below and be stopped, by a plane that
+ * gives what it never took. Who flies onto a plane is stopped. Returns the entry behind its last.
+ */
+static int32_t start_on_planes(const lar_domain *domain, int32_t entry, const double gravity[3],
+                               lar_state *state) {
+    static const double ALONG = 1e-9; /* of what is free: it neither leaves nor comes */
+    const lar_planes *planes = &domain->surroundings.planes;
+    const lar_condition_context context = lar_domain_context(domain);
+    const lar_lid node = planes->node[entry].node;
+    double v[3], free[3], ahead[3];
+    lar_state_velocity(state, node, v);
+    for (int i = 0; i < 3; i++) {
+        free[i] = domain->leapfrog.keep * v[i] + first_push(domain, state, node, i, gravity);
+        ahead[i] = free[i];
+    }
+    const int32_t first = entry;
+    entry = lar_planes_ahead(planes, &context, state, entry, ahead);
+    for (int32_t k = first; k < entry; k++) {
+        const double *normal = planes->way[planes->node[k].way].normal;
+        double start = 0.5 * (lar_dot(normal, v) + lar_dot(normal, free));
+        if (start < -ALONG * lar_length(free)) return entry;
+    }
+    for (int i = 0; i < 3; i++) state->v[lar_state_at(state, node, i)] -= ahead[i] - free[i];
+    return entry;
+}
+
+/* The velocities half a step BEFORE the start, such that those half a step before and after it
+ * have the given ones as their mean: v' = keep v + p with p = drift - push f gives
+ * v = (2 v0 - p) / (1 + keep). Starting with v0 itself would cost half a step. */
+static void set_initial_velocities(lar_simulation *simulation) {
+    const lar_domain *domain = &simulation->domain;
+    lar_state *state = &simulation->state;
+    const lar_model *model = domain->model;
+    double keep = domain->leapfrog.keep, gravity[3];
+    for (int i = 0; i < model->initial_count; i++) {
+        const lar_initial_velocity *initial = &model->initial[i];
+        for (int32_t k = 0; k < initial->nodes.count; k++)
+            lar_axes_put(state->v, state->stride, domain->layout.local[initial->nodes.node[k]],
+                         initial->velocity);
+    }
+    lar_fault ignored = {0};
+    lar_step_forces(domain, &simulation->scratch->measure.interactions, state, &ignored);
+    lar_gravity_at(model, NULL, 0, gravity);
+    for (lar_gid g = 0; g < model->mesh.node_count; g++)
+        for (int i = 0; i < 3; i++) {
+            lar_lid node = domain->layout.local[g];
+            size_t value = lar_state_at(state, node, i);
+            double push = first_push(domain, state, node, i, gravity);
+            state->v[value] = (2 * state->v[value] - push) / (1 + keep);
+        }
+    for (int32_t i = 0; i < domain->surroundings.conditions.constraint_count; i++)
+        state->v[lar_constraint_at(state, &domain->surroundings.conditions.constraint[i])] = 0;
+    for (int32_t entry = 0; entry < domain->surroundings.planes.count;)
+        entry = start_on_planes(domain, entry, gravity, state);
+    memset(state->force, 0, 3 * state->stride * sizeof *state->force);
+}
+
+void lar_simulation_set_start(lar_simulation *simulation) {
+    lar_state *state = &simulation->state;
+#define LAR_STATE_CLEAR(type, name, of_node, of_history, kept)                                     \
+    if (state->name)                                                                               \
+        memset(state->name, 0, LAR_STATE_SIZE(state, of_node, of_history) * sizeof(type));
+    LAR_STATE_ARRAYS(LAR_STATE_CLEAR)
+#undef LAR_STATE_CLEAR
+    state->step = 0;
+    state->part = 0;
+    state->parts = 1;
+    state->listed = false;
+    state->damped = state->external = state->contact = 0;
+    simulation->measured = simulation->taken = 0;
+    lar_tools_reset(&simulation->list, &simulation->tools);
+    lar_simulation_settle(simulation);
+    set_initial_displacements(simulation);
+    set_initial_velocities(simulation);
+    lar_interactions_forget(&simulation->interactions);
+}
+
+/* ---- going back ------------------------------------------------------------------------------ */
 
 static lar_status check_whole(const lar_simulation *simulation, lar_error *error) {
     return simulation->computer && simulation->computer->broken ? lar_computer_refuse(error)

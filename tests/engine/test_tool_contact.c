@@ -99,6 +99,36 @@ static void a_plane_takes_nothing_from_what_rests(void **unused) {
         assert_below(fabs(contact[way] - contact[0]), 1e-12 + 1e-6 * fabs(contact[0]));
 }
 
+/* What stands on a plane from the start on is borne from the start on: the plane gives nothing,
+ * which would stop the run where so little moves. */
+static void a_body_stands_on_a_plane_from_the_start(void **unused) {
+    (void)unused;
+    for (int way = 0; way < 8; way++) {
+        const double friction = way & 1 ? 0.5 : 0, gap = way & 2 ? 1e-6 : 0,
+                     slope = way & 4 ? 2 : 0;
+        brick b = {{4, 3, 1 + way % 3}, 0.01, 0, LAR_LAW_neo_hookean, 3e3, 1e4, 1000};
+        lar_model *model = brick_model(&b);
+        add_plane(model, (double[]){0, 0, -gap}, (double[]){0, 0, 1});
+        model->contact[0].friction = friction;
+        memcpy(model->gravity, (double[]){-slope, 0, -9.81}, 24);
+        model->damping = 50;
+        lar_simulation *simulation = start(model);
+        lar_energy e;
+        double first = body_energy(simulation, &e), least = 0;
+        for (int k = 0; k < 40; k++) {
+            advance(simulation, 8);
+            lar_simulation_energy(simulation, &e);
+            least = fmin(least, e.contact);
+        }
+        double stored = body_energy(simulation, &e);
+        print_message("friction %.1f, gap %.0e m, slope %.0f: a plane gave %.1e of %.1e J\n",
+                      friction, gap, slope, -least, e.external);
+        assert_below(-least, 1e-9 * e.external);
+        assert_below(fabs(stored + e.damping + e.contact - e.external - first), 0.01 * e.external);
+        finish(simulation, model);
+    }
+}
+
 /* A body lies on a plane: it comes to rest, and does not sink in. */
 static void a_body_comes_to_rest_on_a_plane(void **unused) {
     (void)unused;
@@ -412,6 +442,7 @@ int main(void) {
         cmocka_unit_test(a_dropped_body_gains_no_energy),
         cmocka_unit_test(every_joule_of_a_plane_is_accounted_for),
         cmocka_unit_test(a_plane_takes_nothing_from_what_rests),
+        cmocka_unit_test(a_body_stands_on_a_plane_from_the_start),
         cmocka_unit_test(a_body_comes_to_rest_on_a_plane),
         cmocka_unit_test(what_tools_feel_is_what_the_body_feels),
         cmocka_unit_test(every_joule_of_a_tool_is_accounted_for),

@@ -2,11 +2,12 @@
 #include <math.h>
 
 #include "contact/body_contact.h"
+#include "contact/history/flush.h"
 #include "mechanics/face_contact.h"
 
 static double offset_of(const lar_body_contact *contact, const lar_state *state, int32_t node) {
     const lar_contact_view *view = &contact->view;
-    return view->place ? view->place[view->slot[node]][6] : state->level[view->local[node]];
+    return fabs(view->place ? view->place[view->slot[node]][6] : state->level[view->local[node]]);
 }
 
 /* Notes the offset that the node will have when it moves. */
@@ -51,6 +52,44 @@ void lar_offset_leave(lar_body_contact *contact, const lar_state *state, int32_t
     set_offset(contact, state, node, offset);
 }
 
+/* ---- flush bodies ---------------------------------------------------------------------------- */
+
+static bool has_parted(const lar_body_contact *contact, const lar_state *state, int32_t node) {
+    const lar_contact_view *view = &contact->view;
+    return signbit(view->place ? view->place[view->slot[node]][6]
+                               : state->level[view->local[node]]);
+}
+
+bool lar_offset_is_flush(const lar_body_contact *contact, const lar_state *state, int32_t g) {
+    const lar_contact_group *group = &contact->list.group[g];
+    const lar_contact_surface *s = contact->surface;
+    const int32_t node = group->node;
+    int32_t parent[LAR_CONTACT_PARENTS];
+    double weight[LAR_CONTACT_PARENTS];
+    if (!lar_flush_at_rest(s, node, s->face[contact->list.face[group->first]].body)) return false;
+    int count = lar_contact_parents(s, node, parent, weight);
+    for (int k = 0; k < count; k++)
+        if (has_parted(contact, state, parent[k])) return false;
+    return true;
+}
+
+void lar_offset_part(lar_body_contact *contact, int32_t node) {
+    if (contact->keeps && !contact->keeps[node]) return;
+    contact->offset[contact->offset_count++] =
+        (lar_penetration_offset){contact->view.local[node], LAR_OFFSET_PARTED};
+}
+
+void lar_offset_stay_flush(lar_body_contact *contact, int32_t g, int32_t face,
+                           const lar_face_point *closest) {
+    static const double ROUNDING = 1e-6; /* who is nearer may be beside or above but for that */
+    const lar_contact_surface *s = contact->surface;
+    const int32_t node = contact->list.group[g].node;
+    if (node >= s->node_count) return;
+    double near =
+        face < 0 ? 0 : (closest->height < 0 ? ROUNDING : LAR_FLUSH_NEAR) * s->face[face].size;
+    if (face < 0 || !(closest->distance < near)) lar_offset_part(contact, node);
+}
+
 /* ---- other bodies ---------------------------------------------------------------------------- */
 
 static void place_before(const double v[3], double past, double x[3]) {
@@ -67,7 +106,10 @@ static void point_before(const lar_body_contact *contact, const lar_state *state
     lar_face_point all[LAR_GROUP_FACES_MAX];
     lar_contact_place(contact, state, group->node, x, v);
     place_before(v, state->past, x);
+    const bool flush = lar_offset_is_flush(contact, state, g);
     for (int32_t i = 0; i < group->count; i++) {
+        all[i].distance = INFINITY;
+        if (flush && lar_flush_hides(contact->surface, group->node, face[i])) continue;
         lar_contact_corners(contact, state, face[i], corner, speed);
         for (int a = 0; a < 4; a++) place_before(speed[a], state->past, corner[a]);
         lar_face_closest(x, (const double(*)[3])corner,

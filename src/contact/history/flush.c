@@ -1,0 +1,131 @@
+#include "contact/history/flush.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/vector.h"
+#include "mechanics/face_contact.h"
+
+/* ---- at rest --------------------------------------------------------------------------------- */
+
+static void corners_at_rest(const lar_contact_surface *s, int32_t face, double corner[4][3]) {
+    for (int a = 0; a < 4; a++)
+        memcpy(corner[a], s->rest[s->face[face].corner[a]], 3 * sizeof(double));
+}
+
+/* Whether a face of one body goes on in the plane of one of another, and looks the same way. */
+static bool goes_on_in(const lar_contact_surface *s, int32_t own, int32_t other, int32_t node,
+                       double rounding) {
+    static const double SAME = 0.9999; /* cosine */
+    double corner[2][4][3], way[2][3], from[3];
+    corners_at_rest(s, own, corner[0]);
+    corners_at_rest(s, other, corner[1]);
+    for (int k = 0; k < 2; k++) lar_face_normal((const double(*)[3])corner[k], way[k]);
+    lar_minus(s->rest[node], corner[1][0], from);
+    double length = lar_length(way[1]);
+    return lar_dot(way[0], way[1]) > SAME * lar_length(way[0]) * length &&
+           fabs(lar_dot(from, way[1])) <= rounding * length;
+}
+
+/* Faces by their corners: those of node n are at[first[n]] up to at[first[n + 1]]. */
+typedef struct around {
+    int32_t *first, *at;
+} around;
+
+static bool list_around(const lar_contact_surface *s, around *faces) {
+    faces->first = lar_calloc((size_t)s->node_count + 2, sizeof *faces->first);
+    faces->at = lar_calloc(4 * (size_t)s->face_count, sizeof *faces->at);
+    if (!faces->first || !faces->at) return false;
+    for (int32_t i = 0; i < 4 * s->face_count; i++)
+        faces->first[s->face[i / 4].corner[i % 4] + 2]++;
+    for (int32_t n = 2; n <= s->node_count; n++) faces->first[n] += faces->first[n - 1];
+    for (int32_t i = 0; i < 4 * s->face_count; i++)
+        faces->at[faces->first[s->face[i / 4].corner[i % 4] + 1]++] = i / 4;
+    return true;
+}
+
+static bool has_corner(const lar_contact_face *face, int32_t node) {
+    bool has = false;
+    for (int a = 0; a < 4; a++) has = has || face->corner[a] == node;
+    return has;
+}
+
+/* Whether one of the faces that a node, or all nodes of a point, are corners of goes on in
+ * `other`. */
+static bool is_flush_with(const lar_contact_surface *s, const around *faces, int32_t node,
+                          int32_t other, double rounding) {
+    int32_t parent[LAR_CONTACT_PARENTS];
+    double weight[LAR_CONTACT_PARENTS];
+    int count = lar_contact_parents(s, node, parent, weight);
+    for (int32_t i = faces->first[parent[0]]; i < faces->first[parent[0] + 1]; i++) {
+        bool common = s->face[faces->at[i]].fades;
+        for (int k = 1; k < count; k++)
+            common = common && has_corner(&s->face[faces->at[i]], parent[k]);
+        if (common && goes_on_in(s, faces->at[i], other, node, rounding)) return true;
+    }
+    return false;
+}
+
+/* How far the node of a group is from its faces at rest, in parts of their size. */
+static double distance_at_rest(const lar_contact_surface *s, const lar_contact_list *list,
+                               const lar_contact_group *group) {
+    double min = INFINITY, corner[4][3];
+    for (int32_t i = group->first; i < group->first + group->count; i++) {
+        const double size = s->face[list->face[i]].size;
+        corners_at_rest(s, list->face[i], corner);
+        min = fmin(min, lar_face_distance(s->rest[group->node], (const double(*)[3])corner) / size);
+    }
+    return min;
+}
+
+lar_status lar_flush_find(lar_contact_surface *s, const lar_contact_list *list, double rounding,
+                          lar_error *error) {
+    around faces = {0};
+    size_t points = (size_t)s->point_count;
+    s->flush_first = lar_calloc(points + 1, sizeof *s->flush_first);
+    s->flush = lar_calloc((size_t)list->face_count + 1, sizeof *s->flush);
+    bool fits = s->flush_first && s->flush && list_around(s, &faces);
+    int32_t count = 0, next = 0;
+    for (int32_t g = 0; g < list->group_count && fits; g++) {
+        const lar_contact_group *group = &list->group[g];
+        if (lar_group_is_own(s, list, group) || !(s->node[group->node].blunt < 1) ||
+            !(distance_at_rest(s, list, group) < LAR_FLUSH_NEAR))
+            continue;
+        while (next <= group->node) s->flush_first[next++] = count;
+        for (int32_t i = group->first; i < group->first + group->count; i++)
+            if (s->face[list->face[i]].fades &&
+                is_flush_with(s, &faces, group->node, list->face[i], rounding))
+                s->flush[count++] = list->face[i];
+    }
+    while (fits && next <= s->point_count) s->flush_first[next++] = count;
+    free(faces.first);
+    free(faces.at);
+    return fits ? LAR_OK
+                : lar_fail_memory(error, 8 * points + 16 * (size_t)s->face_count, "flush bodies");
+}
+
+/* ---- which they are ----------------------------------------------------------------------- */
+
+bool lar_flush_next_body(const lar_contact_surface *s, int32_t node, int32_t *at, int32_t *body) {
+    int32_t i = s->flush_first[node] + *at;
+    while (i < s->flush_first[node + 1] && s->face[s->flush[i]].body == *body) i++;
+    *at = i - s->flush_first[node];
+    if (i >= s->flush_first[node + 1]) return false;
+    *body = s->face[s->flush[i]].body;
+    return true;
+}
+
+bool lar_flush_at_rest(const lar_contact_surface *s, int32_t node, int32_t body) {
+    int32_t at = 0, other = -1;
+    while (lar_flush_next_body(s, node, &at, &other))
+        if (other == body) return true;
+    return false;
+}
+
+bool lar_flush_hides(const lar_contact_surface *s, int32_t node, int32_t face) {
+    bool hides = false;
+    for (int32_t i = s->flush_first[node]; i < s->flush_first[node + 1] && !hides; i++)
+        hides = s->flush[i] == face;
+    return hides;
+}

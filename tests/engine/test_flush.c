@@ -1,0 +1,156 @@
+/* Blocks that stand exactly on each other, side over side: pressed they bear what one block does,
+ * and when they part they are like any others. */
+#include "engine/body_contact_test.h"
+#include "engine/friction_test.h"
+
+/* Nodes of the sides of both cubes of n elements, the second of which begins at node `first`. */
+static lar_node_list both_sides(const brick *b, int axis, int32_t first) {
+    lar_node_list one = brick_side(b, axis, 0),
+                  all = {2 * one.count, lar_calloc(2 * (size_t)one.count, 4)};
+    for (int32_t i = 0; i < one.count; i++) {
+        all.node[i] = one.node[i];
+        all.node[one.count + i] = one.node[i] + first;
+    }
+    free(one.node);
+    return all;
+}
+
+static lar_node_list shifted(lar_node_list nodes, int32_t by) {
+    for (int32_t i = 0; i < nodes.count; i++) nodes.node[i] += by;
+    return nodes;
+}
+
+static double force_below(const lar_simulation *s, const brick *b) {
+    lar_node_list below = brick_side(b, 2, 0);
+    double(*force)[3] = lar_calloc((size_t)s->domain.model->mesh.node_count, sizeof *force),
+    sum = 0;
+    lar_error error;
+    if (lar_simulation_nodal_forces(s, LAR_CAUSE_SUPPORTS, -1, force, &error))
+        fail_msg("%s", error.message);
+    for (int32_t i = 0; i < below.count; i++) sum += force[below.node[i]][2];
+    free(below.node);
+    free(force);
+    return sum;
+}
+
+/* A quarter of two cubes with n elements along an edge, pressed together by a part of one. Returns
+ * the force, as a part of that of a body of which all is strained alike. */
+static double pressed(int n, double by) {
+    const double edge = 0.02;
+    const brick cube = {{n, n, n}, edge / n, 0, LAR_LAW_neo_hookean, 1e3, 1e4, 1000};
+    lar_model *model = empty_model(&cube);
+    add_brick(model, &cube, (double[]){0, 0, 0});
+    int32_t split = model->mesh.element_count,
+            first = add_brick(model, &cube, (double[]){0, 0, edge});
+    touch_between(model, split);
+    fix_nodes(model, both_sides(&cube, 0, first), LAR_AXIS_X);
+    fix_nodes(model, both_sides(&cube, 1, first), LAR_AXIS_Y);
+    fix_nodes(model, brick_side(&cube, 2, 0), LAR_AXIS_Z);
+    move_nodes(model, shifted(brick_side(&cube, 2, -1), first), LAR_AXIS_Z, -by * edge,
+               add_ramp(model, 0.2));
+    model->damping = 60;
+    lar_simulation *s = start(model);
+    while (lar_simulation_time(s) < 0.6) advance(s, 100);
+    double force = force_below(s, &cube);
+    finish(s, model);
+
+    /* One element of the same shape and strain, with nothing between. */
+    const brick alike = {{1, 1, 1}, edge, 0, LAR_LAW_neo_hookean, 1e3, 1e4, 1000};
+    model = brick_model(&alike);
+    fix_nodes(model, brick_side(&alike, 0, 0), LAR_AXIS_X);
+    fix_nodes(model, brick_side(&alike, 1, 0), LAR_AXIS_Y);
+    fix_nodes(model, brick_side(&alike, 2, 0), LAR_AXIS_Z);
+    move_nodes(model, brick_side(&alike, 2, -1), LAR_AXIS_Z, -0.5 * by * edge,
+               add_ramp(model, 0.2));
+    model->damping = 60;
+    s = start(model);
+    while (lar_simulation_time(s) < 0.6) advance(s, 100);
+    double wanted = force_below(s, &alike);
+    finish(s, model);
+    return force / wanted;
+}
+
+/* What is missing is how far contact lets them in, which is less the smaller the elements are: with
+ * edges that went down along each other's sides 0.15, 0.61 and 0.77 were left with 2, 4 and 6. */
+static void a_pressed_edge_bears(void **unused) {
+    (void)unused;
+    static const double least[] = {0.73, 0.84, 0.87, 0.92}, half[] = {0.64, 0.78, 0.82, 0.89};
+    static const int cells[] = {1, 2, 3, 6};
+    for (int i = 0; i < 4; i++) {
+        double part = pressed(cells[i], 0.2), hard = pressed(cells[i], 0.5);
+        print_message("%d elements along an edge: %.3f of the force when pressed by a fifth, %.3f "
+                      "by half\n",
+                      cells[i], part, hard);
+        assert_below(least[i], part);
+        assert_below(part, 1.001);
+        assert_below(half[i], hard);
+        assert_below(hard, 1.001);
+    }
+}
+
+/* A block that stands flush on another one and slides off over its edge, falls beside it and comes
+ * against its side. */
+static lar_model *sliding(int32_t *first) {
+    static const brick lower = {{4, 3, 3}, 0.01, 0, LAR_LAW_neo_hookean, 4e3, 4e4, 1000};
+    static const brick upper = {{4, 3, 2}, 0.01, 0, LAR_LAW_neo_hookean, 3e3, 3e4, 1000};
+    lar_model *model = empty_model(&lower);
+    add_brick(model, &lower, (double[]){0, 0, 0});
+    int32_t split = model->mesh.element_count;
+    *first = add_brick(model, &upper, (double[]){0, 0, 0.03});
+    touch_between(model, split);
+    fix_nodes(model, brick_side(&lower, 2, 0), LAR_AXIS_ALL);
+    memcpy(model->gravity, (double[]){0, 0, -9.81}, 24);
+    throw_nodes(model, *first, model->mesh.node_count, (double[]){0.35, 0.1, 0});
+    return model;
+}
+
+static void who_slides_off_gains_nothing(void **unused) {
+    (void)unused;
+    int32_t first;
+    lar_model *model = sliding(&first);
+    lar_simulation *s = start(model);
+    lar_energy e;
+    double start = body_energy(s, &e), highest = start, error = 0, lowest = 0;
+    while (lar_simulation_time(s) < 0.3) {
+        advance(s, 5);
+        double now = body_energy(s, &e);
+        highest = fmax(highest, now - e.external);
+        error = fmax(error, fabs(now + e.contact - e.external - start));
+        lowest = fmin(lowest, node_u(s, first)[2]);
+    }
+    print_message(
+        "slid off: energy at most %.6f of the start, account %.1e of it; fell by %.3f m\n",
+        highest / start, error / start, -lowest);
+    assert_below(highest, 1.001 * start);
+    assert_below(error, 2e-3 * start);
+    assert_below(0.01, -lowest);
+    finish(s, model);
+}
+
+static void it_has_the_same_bits(void **unused) {
+    (void)unused;
+    static const halves run = {90, 260}; /* in the middle of parting */
+    int32_t first;
+    lar_model *model = sliding(&first);
+    for (int rough = 0; rough < 2; rough++) {
+        model->contact[0].friction = rough ? 0.2 : 0;
+        lar_simulation *s = start(model);
+        lar_error error;
+        advance(s, run.half_way);
+        assert_int_equal(lar_simulation_save(s, "flush.checkpoint", &error), LAR_OK);
+        advance(s, run.end - run.half_way);
+        uint64_t hash = lar_simulation_hash(s);
+        lar_simulation_destroy(s);
+        has_the_same_bits(model, "flush.checkpoint", run, hash);
+    }
+    lar_model_destroy(model);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_pressed_edge_bears),
+        cmocka_unit_test(who_slides_off_gains_nothing),
+        cmocka_unit_test(it_has_the_same_bits),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
