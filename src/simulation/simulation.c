@@ -93,6 +93,11 @@ void lar_simulation_settle(lar_simulation *simulation) {
     lar_burden_take(&simulation->domain, &simulation->tools.heavier, NULL);
 }
 
+void lar_simulation_set(lar_simulation *simulation) {
+    lar_division_watch(&simulation->tools.division);
+    if (simulation->computer) simulation->computer->tools_sent = false;
+}
+
 lar_status lar_simulation_create_state(lar_simulation *simulation, bool search_always,
                                        lar_error *error) {
     const lar_domain *domain = &simulation->domain;

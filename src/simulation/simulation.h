@@ -98,6 +98,9 @@ lar_status lar_simulation_create_state(lar_simulation *simulation, bool search_a
  * the tissues bear. */
 void lar_simulation_settle(lar_simulation *simulation);
 
+/* Something has been set: what it does is watched, and all processors hear of it. */
+void lar_simulation_set(lar_simulation *simulation);
+
 /* The steps of the whole model, and who looks at it, follow these supports from now on, or
  * nothing has changed: without memory. */
 lar_status lar_simulation_support_here(lar_simulation *simulation, const lar_supports *supports,

@@ -71,7 +71,7 @@ lar_status lar_simulation_set_gravity(lar_simulation *simulation, const double g
     double before = gravity_account(simulation, &simulation->tools.settings);
     lar_simulation_add_external(simulation, gravity_account(simulation, &wanted) - before);
     simulation->tools.settings = wanted;
-    if (simulation->computer) simulation->computer->tools_sent = false;
+    lar_simulation_set(simulation);
     return LAR_OK;
 }
 
@@ -99,7 +99,7 @@ lar_status lar_simulation_set_damping(lar_simulation *simulation, double damping
     lar_settings *settings = &simulation->tools.settings;
     settings->damping_set = damping != simulation->domain.model->damping;
     settings->damping = settings->damping_set ? damping : 0;
-    if (simulation->computer) simulation->computer->tools_sent = false;
+    lar_simulation_set(simulation);
     return LAR_OK;
 }
 
@@ -232,7 +232,7 @@ lar_status lar_simulation_change_materials(lar_simulation *simulation, const lar
     tools->division.due = 1;
     lar_simulation_settle(simulation);
     lar_simulation_add_external(simulation, work + materials_account(simulation, after));
-    if (simulation->computer) simulation->computer->tools_sent = false;
+    lar_simulation_set(simulation);
     return LAR_OK;
 }
 
@@ -281,7 +281,7 @@ static lar_status put_force(lar_simulation *simulation, const lar_force_entry *e
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "%d forces are set already; remove one, or give nodes of one force a set",
                         LAR_FORCES_MAX);
-    if (simulation->computer) simulation->computer->tools_sent = false;
+    lar_simulation_set(simulation);
     return LAR_OK;
 }
 
@@ -304,7 +304,7 @@ lar_status lar_simulation_set_force(lar_simulation *simulation, int32_t node, co
     take_force(&entry, force);
     if (!all) return put_force(simulation, &entry, error);
     simulation->tools.forces = (lar_forces){0};
-    if (simulation->computer) simulation->computer->tools_sent = false;
+    lar_simulation_set(simulation);
     return LAR_OK;
 }
 

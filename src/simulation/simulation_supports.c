@@ -51,7 +51,7 @@ lar_status lar_simulation_set_support_of(lar_simulation *simulation, int32_t of,
     status = lar_simulation_support_here(simulation, &wanted, error);
     if (status) return status;
     simulation->tools.supports = wanted;
-    if (simulation->computer) simulation->computer->tools_sent = false;
+    lar_simulation_set(simulation);
     return LAR_OK;
 }
 

@@ -171,6 +171,25 @@ static int16_t untouched_now(const lar_domain *whole, const lar_tools *tools, do
     return over ? LAR_UNTOUCHED_LONG : (int16_t)steps;
 }
 
+/* Whether a load changes by much within the interval that begins. */
+static bool jumps(const lar_domain *whole, uint64_t step) {
+    static const double MUCH = 0.25;
+    const lar_model *model = whole->model;
+    double now = (double)step * whole->time_step;
+    double then = now + (double)whole->interval * whole->time_step;
+    for (int c = 0; c < model->curve_count; c++) {
+        double before = lar_curve_value(&model->curve[c], now);
+        double after = lar_curve_value(&model->curve[c], then);
+        if (fabs(after - before) > MUCH * fmax(fabs(before), fabs(after))) return true;
+    }
+    return false;
+}
+
+/* Whether the model begins with what sets it in motion. */
+static bool starts_suddenly(const lar_domain *whole, const lar_tools *tools) {
+    return whole->model->initial_count > 0 || loaded(whole, tools, 0);
+}
+
 bool lar_interval_divide(const lar_domain *whole, uint64_t step, double seconds, lar_tools *tools) {
     /* What was needed lately counts for some time: strained tissue trembles [s]. */
     static const double MEMORY = 0.05;
@@ -181,8 +200,12 @@ bool lar_interval_divide(const lar_domain *whole, uint64_t step, double seconds,
     const double way = lar_tools_way(whole->surroundings.list, tools, step);
     const double reach = lar_division_reach(d);
     bool close = lar_division_is_close(d), let_go = lar_division_lets_go(d);
+    if (step == 0 ? starts_suddenly(whole, tools)
+                  : step % whole->interval == 0 && jumps(whole, step))
+        lar_division_watch(d);
     d->still = still_now(whole, tools, step, tool.harder);
     d->untouched = untouched_now(whole, tools, (double)step * whole->time_step, seconds);
+    d->due = d->due > 1 ? (int8_t)((d->due & ~1) - 2) : 0;
     d->lately = fmax(fmin(d->need, LAR_NEED_MAX), fading * d->lately);
     d->need = 0;
     lar_heavier_fade(fading, &tools->strained);
@@ -212,12 +235,11 @@ bool lar_interval_decide(const lar_domain *whole, uint64_t step, lar_tools *tool
     if (!list) return false;
     if (step % whole->interval != 0 && !lar_division_is_close(division) && !division->due)
         return false;
-    if (division->due) division->base = base_of(whole);
+    if (division->due & 1) division->base = base_of(whole);
     double seconds = (double)(step - division->decided) * whole->time_step;
     division->decided = step;
     const double need = division->need;
     bool changed = lar_interval_divide(whole, step, seconds, tools);
-    division->due = 0;
     changed = lar_grasp_slip(list, tools) || changed;
     return lar_tools_follow(list, tools, step, lar_interval_end(whole, division, step),
                             whole->time_step, lar_division_beside(division, need),

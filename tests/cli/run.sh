@@ -131,7 +131,7 @@ mesh: beam.vtk
 duration: 0.2
 materials: [{ cells: all, law: neo-hookean, density: 1000, shear_modulus: 2.0e3, bulk_modulus: 4.0e4 }]
 fix: [{ nodes: { plane: { point: [0, 0, 0], normal: [1, 0, 0] } }, axes: xyz }]
-load: [{ nodes: { nearest: [1, 0, 0] }, force: [0, 0, 0.12] }]
+initial: [{ nodes: { nearest: [1, 0, 0] }, velocity: [0, 0, 10] }]
 END
 expect 0 "$LARIAT" run "$SCRATCH/hit.yaml"
 says '^account  *OPEN by .* --time-step 0.0002'

@@ -114,7 +114,7 @@ static void forged_files_are_refused(void **unused) {
         {DIVISION + 32, 8, NAN, "tool"},
         {DIVISION + 40, 8, 1e300, "tool"},  /* when decided */
         {DIVISION + 48, 4, 0, "tool"},      /* parts of stiffer materials */
-        {DIVISION + 52, 4, 2, "tool"},      /* due */
+        {DIVISION + 52, 4, 34, "tool"},      /* due */
         {DIVISION + 52, 4, 0x2100, "tool"}, /* still for 33 decisions */
         {SETTINGS, 4, 2, "tool"},           /* whether gravity is set */
         {SETTINGS + 4, 4, -1, "tool"},      /* and damping */

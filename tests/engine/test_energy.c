@@ -219,9 +219,9 @@ static void a_blow_keeps_the_account(void **unused) {
     }
 }
 
-/* A cube that is pulled faster than its steps can follow: the barriers of its corners give energy,
- * and nothing that touches does, so nobody says that a surface is folded. */
-static void what_touches_nothing_is_not_stopped(void **unused) {
+/* A cube that is pulled by a third within six steps: what is sudden is watched, so barriers are
+ * there in time and take what they give. */
+static void what_is_sudden_keeps_the_account(void **unused) {
     (void)unused;
     brick b = {{3, 3, 3}, 0.01 / 3, 0, LAR_LAW_neo_hookean, 1e3, 2e4, 1050};
     lar_model *model = brick_model(&b);
@@ -231,11 +231,52 @@ static void what_touches_nothing_is_not_stopped(void **unused) {
     model->damping = 300;
     lar_simulation *simulation = start(model);
     lar_energy e;
-    while (lar_simulation_time(simulation) < 0.05) advance(simulation, 10);
+    double least = 0, start;
     lar_simulation_energy(simulation, &e);
-    print_message("barriers gave %.2g of %.2g J\n", -e.contact, e.external);
-    assert_true(e.contact < 0);
+    start = total(&e);
+    for (int step = 0; step < 140; step++) {
+        advance(simulation, 1);
+        lar_simulation_energy(simulation, &e);
+        least = fmin(least, e.contact);
+    }
+    double open = total(&e) + e.damping + e.contact - e.external - start;
+    print_message("pulled at once: %.2g of %.2g J open, barriers gave %.2g\n", open, e.external,
+                  -least);
+    assert_true(least == 0);
+    assert_below(fabs(open), 0.05 * e.external);
+
+    /* Had they given all the same, nothing touches, and nobody says that a surface is folded. */
+    simulation->state.contact -= e.external;
+    advance(simulation, 140);
     finish(simulation, model);
+}
+
+/* Pressed at once with twice the shear modulus, at the automatic step: the cube is as flat as with
+ * a step of a quarter, and has not gone through itself. */
+static void sudden_loads_end_where_small_steps_do(void **unused) {
+    (void)unused;
+    static const double always[2][2] = {{0, 1}, {1, 1}};
+    double at[2];
+    for (int way = 0; way < 2; way++) {
+        brick b = {{2, 2, 2}, 0.01, 0, LAR_LAW_neo_hookean, 3846, 8333, 1000};
+        lar_model *model = brick_model(&b);
+        fix_nodes(model, brick_side(&b, 2, 0), LAR_AXIS_ALL);
+        int curve = add_table(model, LAR_CURVE_LINEAR, 2, always);
+        for (int i = 0; i <= 2; i++)
+            for (int j = 0; j <= 2; j++) {
+                double share = (i == 1 ? 2 : 1) * (j == 1 ? 2 : 1) / 16.0;
+                load_nodes(model, single_node(brick_node(&b, i, j, 2)), 0, 0, -2 * share, curve);
+            }
+        model->damping = 60;
+        lar_options options = lar_options_default();
+        options.time_step = way ? 4e-4 : 0;
+        lar_simulation *simulation = start_with(model, options);
+        while (lar_simulation_time(simulation) < 1) advance(simulation, 50);
+        at[way] = node_u(simulation, brick_node(&b, 0, 0, 2))[2];
+        finish(simulation, model);
+    }
+    print_message("pressed at once: %.5f m, with a quarter of the step %.5f m\n", at[0], at[1]);
+    assert_below(fabs(at[0] - at[1]), 1e-4 * fabs(at[1]));
 }
 
 int main(void) {
@@ -245,7 +286,8 @@ int main(void) {
         cmocka_unit_test(divided_steps_keep_the_account),
         cmocka_unit_test(long_corners_keep_the_account),
         cmocka_unit_test(a_blow_keeps_the_account),
-        cmocka_unit_test(what_touches_nothing_is_not_stopped),
+        cmocka_unit_test(what_is_sudden_keeps_the_account),
+        cmocka_unit_test(sudden_loads_end_where_small_steps_do),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
