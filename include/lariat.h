@@ -1088,7 +1088,8 @@ typedef struct lar_rest {
     double since;   /* no load or prescribed value changes after that time [s] */
     double kinetic, strain; /* when last looked, strain with the hourglass energy [J] */
     double left;            /* largest kinetic energy lately and what damping will still take, as a
-                               share of the strain energy */
+                               share of the strain energy; where that is next to nothing, of one
+                               at which this share is rounding */
     double share;           /* at rest `left` is at most that */
     /* The rest is its own. */
     uint64_t since_step, every;

@@ -290,8 +290,8 @@ static int advance(run *r) {
 static int complain_restless(const run *r) {
     double damping = lar_model_damping(r->model), time = lar_simulation_time(r->simulation);
     char left[64] = "its motion could not be judged yet";
-    if (r->rest.looked && isinf(r->rest.left))
-        snprintf(left, sizeof left, "it moves, and nothing strains it");
+    if (r->rest.looked && r->rest.kinetic > 1e6 * fabs(r->rest.strain))
+        snprintf(left, sizeof left, "it moves, and next to nothing strains it");
     else if (r->rest.looked)
         snprintf(left, sizeof left, "its motion is still %.1e of the strain energy", r->rest.left);
     return cli_complain(&cli_run, CLI_RESTLESS,

@@ -101,7 +101,7 @@ static void write_rest(lar_json *json, const run_report *report) {
         lar_json_number(json, "limit", step * (double)rest->limit);
         if (rest->strain > 0)
             lar_json_number(json, "kinetic_over_strain", rest->kinetic / rest->strain);
-        if (rest->looked && isfinite(rest->left)) lar_json_number(json, "left", rest->left);
+        if (rest->looked) lar_json_number(json, "left", rest->left);
     }
     lar_json_close(json);
 }
@@ -205,7 +205,7 @@ static void print_rest(const run_report *report, FILE *out) {
             rest->since);
     if (rest->strain > 0)
         fprintf(out, ", kinetic over strain energy %.2g", rest->kinetic / rest->strain);
-    if (rest->looked && isfinite(rest->left))
+    if (rest->looked)
         fprintf(out, ", motion to come %.2g (at rest: %.0e)", rest->left, rest->share);
     fputc('\n', out);
 }
