@@ -137,6 +137,55 @@ expect 0 "$LARIAT" run "$SCRATCH/hit.yaml"
 says '^account  *OPEN by .* --time-step 0.0002'
 expect 0 "$LARIAT" run "$SCRATCH/hit.yaml" --time-step 2e-5
 ! grep -q '^account' "$SCRATCH/out" || fail "$(grep '^account' "$SCRATCH/out")"
+expect 0 "$LARIAT" run "$SCRATCH/hit.yaml" --json
+has_keys --numbers account.open account.share
+value_of account.share | awk '{ exit !($1 > 0.01 && $1 < 1) }' || fail "share $(value_of account.share)"
+
+# A muscle that shortens has a strain energy below zero, and all that is in the account sums up to
+# about nothing: a share is one of what goes in and out.
+cat >"$SCRATCH/cube.inp" <<'END'
+*NODE
+1, 0, 0, 0
+2, 0.01, 0, 0
+3, 0.01, 0.01, 0
+4, 0, 0.01, 0
+5, 0, 0, 0.01
+6, 0.01, 0, 0.01
+7, 0.01, 0.01, 0.01
+8, 0, 0.01, 0.01
+*ELEMENT, TYPE=C3D8, ELSET=E
+1, 1, 2, 3, 4, 5, 6, 7, 8
+*NSET, NSET=x
+1, 4, 5, 8
+END
+cat >"$SCRATCH/muscle.yaml" <<'END'
+lariat: 1
+mesh: cube.inp
+damping: 30
+duration: 1
+materials: [{ cells: all, law: mooney-rivlin, density: 1000, c1: 500, c2: 0, bulk_modulus: 1.0e5,
+  fibres: { direction: {axis: [1, 0, 0]}, active: {along: 1.0e3} } }]
+fix: [{ nodes: x, axes: xyz }]
+END
+expect 0 "$LARIAT" run "$SCRATCH/muscle.yaml"
+! grep -q '^account' "$SCRATCH/out" || fail "muscle: $(grep '^account' "$SCRATCH/out")"
+expect 0 "$LARIAT" run "$SCRATCH/muscle.yaml" --json
+value_of account.share | awk '{ exit !($1 < 1e-3) }' || fail "muscle: $(value_of account.share)"
+
+# A run goes on to the scene's duration, and no farther.
+for every in "" "output: {every: 0.02}"; do
+    sed -e 's/duration: 1/duration: 0.05/' -e '$a\' -e "$every" "$SCRATCH/muscle.yaml" >"$SCRATCH/short.yaml"
+    expect 0 "$LARIAT" run "$SCRATCH/short.yaml" --time 0.04 --save "$SCRATCH/short.checkpoint"
+    expect 0 "$LARIAT" run "$SCRATCH/short.yaml" --resume "$SCRATCH/short.checkpoint" --json \
+        --save "$SCRATCH/short.checkpoint"
+    value_of time | awk '{ exit !($1 > 0.049 && $1 < 0.051) }' || fail "resumed to $(value_of time)"
+    steps=$(value_of steps) hash=$(value_of state_hash)
+    expect 0 "$LARIAT" run "$SCRATCH/short.yaml" --resume "$SCRATCH/short.checkpoint" --json
+    [ "$(value_of steps)$(value_of state_hash)" = "$steps$hash" ] || fail "went beyond its duration"
+    complains 'note: .*short.checkpoint: 0.0[45][0-9]* s are simulated already, the scene.s duration'
+    expect 0 "$LARIAT" run "$SCRATCH/short.yaml" --resume "$SCRATCH/short.checkpoint" --steps 7 --json
+    [ "$(value_of steps)" = $((steps + 7)) ] || fail "--steps beyond the duration"
+done
 
 # Slips of units, and a time that is no number of steps, are doubted.
 sed 's/density: 1000/density: 1.0e-6/' "$SCRATCH/hit.yaml" >"$SCRATCH/light.yaml"
