@@ -182,7 +182,8 @@ typedef struct lar_mass_scaling {
                               (lar_heavier); 0: none */
 } lar_mass_scaling;
 
-/* What `lariat info` prints. */
+/* Counts and measures of the mesh and its time step: the beginning of what `lariat info` prints,
+ * which tells materials, sets and speed as well. */
 typedef struct lar_model_info {
     const char *title;         /* lives as long as the model */
     int32_t nodes, elements;   /* counts */

@@ -54,8 +54,8 @@ static double unit_energy(const lar_domain *domain) {
     return sum;
 }
 
-/* The ratio of what is left to the strain energy, which what is active makes negative; where nothing
- * is strained, to one of which rounding is no more than the share at rest. */
+/* The ratio of what is left to the strain energy, which what is active makes negative; where
+ * nothing is strained, to one of which rounding is no more than the share at rest. */
 static double share_of(const lar_rest *rest, const lar_domain *domain, double energy) {
     double rounding = ROUNDING * (double)rest->every * unit_energy(domain);
     return energy == 0.0 ? 0.0 : energy / fmax(fabs(rest->strain), rounding / REST_SHARE);

@@ -13,8 +13,8 @@
  *
  *     R = 2 c M T (q + q^2 + ...) = 2 c M T q / (1 - q)
  *
- * before it. The body rests when largest K + R is below 1e-10 of the strain energy: the displacements
- * are then within about the root of that, 1e-5, of those at rest.
+ * before it. The body rests when largest K + R is below 1e-10 of the strain energy: the
+ * displacements are then within about the root of that, 1e-5, of those at rest.
  *
  * A body that comes back to its own shape has no strain energy at rest: that fades as the motion
  * does, and what both end in is rounding. Forces are whole units, one of which makes a node faster

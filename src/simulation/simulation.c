@@ -64,11 +64,13 @@ static void set_initial_velocities(lar_simulation *simulation) {
 static lar_status check_damping(const lar_domain *domain, lar_error *error) {
     const lar_model *model = domain->model;
     if (domain->leapfrog.keep > 0) return LAR_OK;
-    return lar_fail(error, LAR_ERROR_MODEL,
-                    "%s: damping %g 1/s stops a node within less than one time step of %.3g s; use "
-                    "a damping below %.3g 1/s or a time_step below %.3g s",
-                    lar_model_source(model), model->damping, domain->time_step,
-                    2 / domain->time_step, 2 / model->damping);
+    char line[LAR_LINE_TEXT];
+    return lar_fail(
+        error, LAR_ERROR_MODEL,
+        "%s%s: damping %g 1/s stops a node within less than one time step of %.3g s; use "
+        "a damping below %.3g 1/s or a time_step below %.3g s",
+        lar_model_source(model), lar_line_text(model->damping_line, line), model->damping,
+        domain->time_step, 2 / domain->time_step, 2 / model->damping);
 }
 
 static lar_status check_options(const lar_options *options, lar_error *error) {
@@ -306,8 +308,8 @@ static bool advance_alone(lar_simulation *simulation, uint64_t end, bool first,
 enum { STEPS_BETWEEN_LOOKS = 32 }; /* at what contact has given */
 _Static_assert(STEPS_BETWEEN_LOOKS % LAR_INTERVAL_MAX == 0, "nobody stops only for a look");
 
-/* Without anything to touch it is the barriers of corners that give: what a load does that is faster
- * than the steps, which the account of energy tells. */
+/* Without anything to touch it is the barriers of corners that give: what a load does that is
+ * faster than the steps, which the account of energy tells. */
 static bool may_touch(const lar_simulation *simulation) {
     const lar_domain *domain = &simulation->domain;
     return domain->model->contact_count > 0 ||

@@ -114,6 +114,25 @@ expect 0 "$LARIAT" run "$scene" --steps 2 --element hex8-matrix --json
 [ "$(value_of element)" = '"hex8-matrix"' ] || fail "element"
 expect 1 "$LARIAT" run "$scene" --steps 1 --time-step 1
 complains 'above the stable step'
+expect 2 "$LARIAT" run "$scene" --steps 1 --time-step 1e-16
+
+# Values of a scene that only show when it is compiled are named with their line; what the command
+# line says is not.
+refused() {
+    printf '%s\n' "lariat: 1" "mesh: beam.vtk" "$1" \
+        'materials: [{ cells: all, law: neo-hookean, density: 1000, shear_modulus: 2.0e3, bulk_modulus: 4.0e4 }]' \
+        >"$SCRATCH/refused.yaml"
+    expect 1 "$LARIAT" run "$SCRATCH/refused.yaml" --steps 1
+    complains "refused.yaml:3$2"
+}
+cp "$SOURCE/examples/beam.vtk" "$SCRATCH/"
+refused "time_step: 1.0e-16" ":12: time_step is 1.0e-16; it must be 1e-15 s at least, or auto"
+refused "time_step: 0.1" ": time step 0.1 s is above the stable step"
+refused "damping: 1.0e6" ": damping 1e+06 1/s stops a node within less than one time step"
+refused "load: [{nodes: {nearest: [1, 0, 0]}, force: [0, 0, 1.0e30]}]" ": a nodal force of 1e+30 N is far"
+sed 's/^load.*/time_step: 1.0e-5/' "$SCRATCH/refused.yaml" >"$SCRATCH/right.yaml"
+expect 1 "$LARIAT" run "$SCRATCH/right.yaml" --steps 1 --time-step 0.1
+complains "right.yaml: time step 0.1 s is above"
 expect 0 "$LARIAT" run "$scene" --time 0.001 --time-step 5e-5 --json
 [ "$(value_of steps)" = 20 ] || fail "0.001 s in steps of 5e-5 s are $(value_of steps) steps"
 
