@@ -201,14 +201,14 @@ lar_status lar_material_check(const lar_material *material, const char *where, l
     double shear = lar_material_shear(material), bulk = lar_material_bulk(material);
     if (!(shear > 0.0 && shear < MODULUS_MAX))
         return lar_fail(error, LAR_ERROR_MODEL,
-                        "%s: the shear modulus is %g Pa; it must be positive and below %g", where,
-                        shear, MODULUS_MAX);
+                        "%s: the shear modulus is %g Pa; it must be positive and below 1e+100",
+                        where, shear);
     if (!(bulk > 0.0 && bulk < MODULUS_MAX))
         return lar_fail(
             error, LAR_ERROR_MODEL,
-            "%s: the bulk modulus is %g Pa; it must be positive and below %g (Poisson's ratio "
+            "%s: the bulk modulus is %g Pa; it must be positive and below 1e+100 (Poisson's ratio "
             "between -1 and 0.5, exclusive)",
-            where, bulk, MODULUS_MAX);
+            where, bulk);
     status = check_fibres(material, where, error);
     return status ? status : check_constants(material, where, bulk + 4.0 * shear / 3.0, error);
 }

@@ -428,8 +428,9 @@ static int line_of_force(const lar_model *model) {
     for (int i = 0; i < model->load_count; i++) {
         const double *force = model->load[i].force;
         double square = lar_dot(force, force);
-        if (square > most) line = model->load[i].line;
-        most = fmax(most, square);
+        if (!(square > most)) continue;
+        most = square;
+        line = model->load[i].line;
     }
     return line;
 }

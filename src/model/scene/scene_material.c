@@ -104,11 +104,9 @@ static lar_status read_numbers(const lar_scene *scene, const lar_yaml *node,
         lar_law_value kind = form->key[i].value;
         value[i] = 0;
         if (!number && kind == LAR_VALUE_POWER && value[i - 1] != 0)
-            return lar_scene_fail(scene, lar_yaml_get(node, form->key[i - 1].name),
-                                  LAR_ERROR_FORMAT,
-                                  "%s is missing, the power of the term of %s: add it, for "
-                                  "example %s: 2",
-                                  form->key[i].name, form->key[i - 1].name, form->key[i].name);
+            return lar_scene_fail(scene, node, LAR_ERROR_FORMAT,
+                                  "%s is missing, the power of the term of %s; add it",
+                                  form->key[i].name, form->key[i - 1].name);
         if (!number) continue;
         status = kind == LAR_VALUE_MODULUS || kind == LAR_VALUE_NUMBER
                      ? lar_scene_positive(scene, number, what, &value[i])
