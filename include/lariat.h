@@ -182,7 +182,8 @@ typedef struct lar_mass_scaling {
                               (lar_heavier); 0: none */
 } lar_mass_scaling;
 
-/* What `lariat info` prints. */
+/* Counts and measures of the mesh and its time step: the beginning of what `lariat info` prints,
+ * which tells materials, sets and speed as well. */
 typedef struct lar_model_info {
     const char *title;         /* lives as long as the model */
     int32_t nodes, elements;   /* counts */
@@ -1088,7 +1089,8 @@ typedef struct lar_rest {
     double since;   /* no load or prescribed value changes after that time [s] */
     double kinetic, strain; /* when last looked, strain with the hourglass energy [J] */
     double left;            /* largest kinetic energy lately and what damping will still take, as a
-                               share of the strain energy */
+                               share of the strain energy; where that is next to nothing, of one
+                               at which this share is rounding */
     double share;           /* at rest `left` is at most that */
     /* The rest is its own. */
     uint64_t since_step, every;

@@ -275,7 +275,8 @@ static PyGetSetDef model_properties[] = {
      "Simulated time between the frames that the scene asks for [s]; 0: it does not say.", NULL},
     {"damping", get_damping, NULL, "Damping in proportion to mass [1/s].", NULL},
     {"info", get_info, NULL,
-     "dict: what `lariat info` prints. Counts, bounding box [m], volume [m^3], mass [kg], quality, "
+     "dict: the beginning of what `lariat info` prints, which tells materials, sets and\nspeed as "
+     "well. Counts, bounding box [m], volume [m^3], mass [kg], quality, "
      "largest stable step and time step [s]. Goes through all elements.",
      NULL},
     {"materials", get_materials, NULL,

@@ -2,6 +2,8 @@
  *
  * The library says when to look (lar_rest): here are the advances between, Ctrl-C and the callback.
  */
+#include <math.h>
+
 #include "module.h"
 
 static PyObject *rest_dict(const lar_rest *rest, unsigned long long steps) {
@@ -46,7 +48,9 @@ static bool run(python_simulation *self, lar_rest *rest, unsigned long long last
 /* A body that swings on has no static answer: that is an error and not a number. */
 static PyObject *restless(const lar_rest *rest, double time) {
     char left[64] = "nothing is known yet of its motion";
-    if (rest->looked)
+    if (rest->looked && rest->kinetic > 1e6 * fabs(rest->strain))
+        snprintf(left, sizeof left, "it moves, and next to nothing strains it");
+    else if (rest->looked)
         snprintf(left, sizeof left, "its motion is still %.1e of the strain energy", rest->left);
     lar_error error = {.status = LAR_ERROR_MODEL};
     snprintf(error.message, sizeof error.message,

@@ -205,6 +205,11 @@ static int parse_option(const cli_command *command, const cli_option *options, i
     if (*at >= argc)
         return cli_complain(command, CLI_USAGE, "%s needs a value: %s %s", name, name,
                             option->placeholder);
+    if (strncmp(argv[*at], "--", 2) == 0)
+        return cli_complain(command, CLI_USAGE,
+                            "%s needs a value, and %s looks like an option; write %s %s, or "
+                            "%s=%s if that is meant",
+                            name, argv[*at], name, option->placeholder, name, argv[*at]);
     return parse_value(command, option, argv[(*at)++]);
 }
 

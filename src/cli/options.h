@@ -7,7 +7,7 @@
  *
  * The table parses, checks ranges, and makes the help, the man pages and the completion scripts
  * (help.h): an option cannot exist without being documented. Values may stand behind a space or an
- * equals sign; `--` ends the options.
+ * equals sign, such as begin with `--` behind an equals sign only; `--` ends the options.
  */
 #ifndef LAR_CLI_OPTIONS_H
 #define LAR_CLI_OPTIONS_H

@@ -290,8 +290,8 @@ static int advance(run *r) {
 static int complain_restless(const run *r) {
     double damping = lar_model_damping(r->model), time = lar_simulation_time(r->simulation);
     char left[64] = "its motion could not be judged yet";
-    if (r->rest.looked && isinf(r->rest.left))
-        snprintf(left, sizeof left, "it moves, and nothing strains it");
+    if (r->rest.looked && r->rest.kinetic > 1e6 * fabs(r->rest.strain))
+        snprintf(left, sizeof left, "it moves, and next to nothing strains it");
     else if (r->rest.looked)
         snprintf(left, sizeof left, "its motion is still %.1e of the strain energy", r->rest.left);
     return cli_complain(&cli_run, CLI_RESTLESS,
@@ -304,12 +304,23 @@ static int complain_restless(const run *r) {
                                       "scene a damping");
 }
 
+/* Of the scene's duration, at least one output interval in all; a scene without one is open. */
+static double time_left(const run *r) {
+    double duration = lar_model_duration(r->model);
+    if (duration > 0) return fmax(duration, r->interval) - lar_simulation_time(r->simulation);
+    return r->interval > 0 ? r->interval : 1;
+}
+
 /* The step nearest to its time, as for frames. */
 static int choose_time(run *r) {
-    double time = r->settings.time, begin = lar_simulation_time(r->simulation);
-    if (time <= 0) time = fmax(lar_model_duration(r->model) - begin, r->interval);
-    if (time <= 0) time = 1;
+    double time = r->settings.time;
+    if (time <= 0) time = time_left(r);
     double steps = round(time / lar_simulation_time_step(r->simulation));
+    if (r->first_step > 0 && steps < 1 && r->settings.time <= 0)
+        return cli_complain(&cli_run, CLI_DONE,
+                            "note: %s: %g s are simulated already, the scene's duration: nothing "
+                            "is left to do; --time or --steps say how long to go on",
+                            r->settings.resume, lar_simulation_time(r->simulation));
     if (steps > 1e15)
         return cli_complain(&cli_run, CLI_FAILED,
                             "%g s take %.3g steps of %.3g s; give a smaller --time or --steps",

@@ -177,6 +177,9 @@ static lar_status check_fibres(const lar_material *material, const char *where, 
     return lar_fail(error, LAR_ERROR_MODEL, "%s: fibres: %s", where, wrong);
 }
 
+/* Frequencies of stiffer elements are no numbers. */
+static const double MODULUS_MAX = 1e100;
+
 lar_status lar_material_check(const lar_material *material, const char *where, lar_error *error) {
     if (!((unsigned)material->law < LAR_LAW_COUNT))
         return lar_fail(error, LAR_ERROR_MODEL, "%s: material law number %d does not exist", where,
@@ -196,14 +199,16 @@ lar_status lar_material_check(const lar_material *material, const char *where, l
     if (!status) status = check_viscosity(material, where, error);
     if (status) return status;
     double shear = lar_material_shear(material), bulk = lar_material_bulk(material);
-    if (!(shear > 0.0) || !isfinite(shear))
+    if (!(shear > 0.0 && shear < MODULUS_MAX))
         return lar_fail(error, LAR_ERROR_MODEL,
-                        "%s: the shear modulus is %g Pa; it must be positive", where, shear);
-    if (!(bulk > 0.0) || !isfinite(bulk))
-        return lar_fail(error, LAR_ERROR_MODEL,
-                        "%s: the bulk modulus is %g Pa; it must be positive (Poisson's ratio "
-                        "between -1 and 0.5, exclusive)",
-                        where, bulk);
+                        "%s: the shear modulus is %g Pa; it must be positive and below 1e+100",
+                        where, shear);
+    if (!(bulk > 0.0 && bulk < MODULUS_MAX))
+        return lar_fail(
+            error, LAR_ERROR_MODEL,
+            "%s: the bulk modulus is %g Pa; it must be positive and below 1e+100 (Poisson's ratio "
+            "between -1 and 0.5, exclusive)",
+            where, bulk);
     status = check_fibres(material, where, error);
     return status ? status : check_constants(material, where, bulk + 4.0 * shear / 3.0, error);
 }

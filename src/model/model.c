@@ -366,6 +366,11 @@ static lar_status check_conflicts(const lar_model *model, lar_error *error) {
     return status;
 }
 
+const char *lar_line_text(int line, char text[LAR_LINE_TEXT]) {
+    snprintf(text, LAR_LINE_TEXT, line > 0 ? ":%d" : "", line);
+    return text;
+}
+
 static lar_status check_numbers(const lar_model *model, lar_error *error) {
     const char *wrong = NULL;
     if (!finite3(model->gravity)) wrong = "gravity must be three finite numbers in m/s^2";

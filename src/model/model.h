@@ -37,6 +37,7 @@ typedef struct lar_nodal_load {
     lar_node_list nodes;
     double force[3];
     int curve;
+    int line; /* of the file that says so, for messages; 0: unknown */
 } lar_nodal_load;
 
 /* A pressure (pascal, positive pushes on the body) that follows the deformed faces. */
@@ -126,6 +127,8 @@ struct lar_model {
     int gravity_curve[3];
     double damping;        /* 1/s, mass-proportional */
     double time_step;      /* seconds, 0: automatic */
+    int damping_line;      /* of the file that says so, for messages; 0: unknown */
+    int time_step_line;    /* likewise */
     double mass_step;      /* seconds that all elements' steps shall be stable up to, with more mass
                               where they need it (step/mass_scaling.h); 0: nothing is added */
     double mass_share;     /* at most so much, as a part of the model's mass */
@@ -169,6 +172,14 @@ lar_model *lar_model_create(void);
 void *lar_model_append(void **array, int *count, size_t size);
 #define LAR_MODEL_APPEND(model, name)                                                              \
     lar_model_append((void **)&(model)->name, &(model)->name##_count, sizeof *(model)->name)
+
+/* The shortest step, and tick of a host, that can be asked for [s]: no matter is so fast, and in
+ * steps of 1e-320 s nothing moves. */
+#define LAR_STEP_MIN 1e-15
+
+/* ":LINE" for behind a file's name in a message; nothing where the line is 0. Returns `text`. */
+enum { LAR_LINE_TEXT = 16 };
+const char *lar_line_text(int line, char text[LAR_LINE_TEXT]);
 
 /* The first material that is viscous; NULL: none is. */
 static inline const lar_material *lar_model_viscous(const lar_model *model) {

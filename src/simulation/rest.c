@@ -7,6 +7,8 @@
 
 /* Of the strain energy. */
 static const double REST_SHARE = 1e-10;
+/* Of the motion that rounding makes between two looks: Q n of rest.h. */
+static const double ROUNDING = 1e4;
 /* The slow period is an estimate for compact bodies; a slender beam creeps for hundreds of them. */
 static const double PERIODS_MAX = 1000;
 
@@ -44,11 +46,19 @@ void lar_rest_begin(lar_rest *rest, const lar_simulation *simulation) {
     open_window(rest, rest->since_step);
 }
 
-/* The ratio of what is left to the strain energy, which what is active makes negative; a body that
- * nothing strains or moves has none. */
-static double share_of(double energy, double strain) {
-    if (energy == 0.0) return 0.0;
-    return strain != 0.0 ? energy / fabs(strain) : INFINITY;
+/* Q of rest.h: the kinetic energy that one unit of force on every node makes in a step. */
+static double unit_energy(const lar_domain *domain) {
+    double sum = 0.0;
+    for (int32_t node = 0; node < domain->layout.node_count; node++)
+        sum += 0.5 * domain->mass[node] * domain->push[node] * domain->push[node];
+    return sum;
+}
+
+/* The ratio of what is left to the strain energy, which what is active makes negative; where
+ * nothing is strained, to one of which rounding is no more than the share at rest. */
+static double share_of(const lar_rest *rest, const lar_domain *domain, double energy) {
+    double rounding = ROUNDING * (double)rest->every * unit_energy(domain);
+    return energy == 0.0 ? 0.0 : energy / fmax(fabs(rest->strain), rounding / REST_SHARE);
 }
 
 /* What damping will still take: R of rest.h. */
@@ -76,7 +86,7 @@ int lar_rest_look(lar_rest *rest, const lar_simulation *simulation) {
     double mean = window->sum / window->looks;
     double left = window->largest;
     if (mean > 0.0) left += energy_ahead(rest, simulation, mean);
-    rest->left = share_of(left, rest->strain);
+    rest->left = share_of(rest, &simulation->domain, left);
     rest->looked = 1;
     rest->mean_before = mean;
     rest->reached = rest->left <= REST_SHARE;

@@ -13,8 +13,19 @@
  *
  *     R = 2 c M T (q + q^2 + ...) = 2 c M T q / (1 - q)
  *
- * before it. The body rests when largest K + R is below LAR_REST_SHARE of the strain energy: the
+ * before it. The body rests when largest K + R is below 1e-10 of the strain energy: the
  * displacements are then within about the root of that, 1e-5, of those at rest.
+ *
+ * A body that comes back to its own shape has no strain energy at rest: that fades as the motion
+ * does, and what both end in is rounding. Forces are whole units, one of which makes a node faster
+ * by `push` in a step; from one look to the next such errors add up to a kinetic energy of about
+ *
+ *     Q n,   Q = sum of m push^2 / 2 over the nodes,   n: steps between two looks
+ *
+ * So the body rests as well when largest K + R is below 1e4 Q n, whatever the strain energy: two
+ * orders above what trembles with a hundredth of the critical damping, and displacements within
+ * about 1e-11 of the size of its elements. A body that swings through its own shape has its energy
+ * in K.
  *
  * Energies are summed in the order of the mesh from the whole state, whose bits do not depend on
  * the division, with functions of our own: every grid and instruction set ends in the same step.

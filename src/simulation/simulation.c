@@ -22,11 +22,13 @@ lar_options lar_options_default(void) {
 static lar_status check_damping(const lar_domain *domain, lar_error *error) {
     const lar_model *model = domain->model;
     if (domain->leapfrog.keep > 0) return LAR_OK;
-    return lar_fail(error, LAR_ERROR_MODEL,
-                    "%s: damping %g 1/s stops a node within less than one time step of %.3g s; use "
-                    "a damping below %.3g 1/s or a time_step below %.3g s",
-                    lar_model_source(model), model->damping, domain->time_step,
-                    2 / domain->time_step, 2 / model->damping);
+    char line[LAR_LINE_TEXT];
+    return lar_fail(
+        error, LAR_ERROR_MODEL,
+        "%s%s: damping %g 1/s stops a node within less than one time step of %.3g s; use "
+        "a damping below %.3g 1/s or a time_step below %.3g s",
+        lar_model_source(model), lar_line_text(model->damping_line, line), model->damping,
+        domain->time_step, 2 / domain->time_step, 2 / model->damping);
 }
 
 static lar_status check_options(const lar_options *options, lar_error *error) {

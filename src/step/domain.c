@@ -6,6 +6,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "base/vector.h"
 #include "contact/tool_body.h"
 #include "mechanics/hex8_full.h"
 #include "mechanics/hex8_guard.h"
@@ -14,15 +15,11 @@
 #include "step/materials.h"
 #include "step/viscous_history.h"
 
-/* Of a step, and of a host's tick [s]. No matter is so fast, and in steps of 1e-320 s nothing
- * moves. */
-static const double SHORTEST = 1e-15;
-
 /* Steps that fit into ticks of the host's clock: the longest that are not longer. */
 static lar_status fit_tick(lar_domain *domain, double tick, bool may_shorten, lar_error *error) {
     static const double ROUNDING = 1e-9;
     if (tick == 0) return LAR_OK;
-    if (!(tick >= SHORTEST) || !isfinite(tick))
+    if (!(tick >= LAR_STEP_MIN) || !isfinite(tick))
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "%s: a tick must be 1e-15 s at least, or 0 for none",
                         lar_model_source(domain->model));
@@ -48,20 +45,23 @@ static lar_status choose_step(lar_domain *domain, const lar_options *options, la
     domain->stable_worst = bound.worst;
     domain->adds = bound.step > bound.without;
     memcpy(domain->fastest, bound.fastest, sizeof domain->fastest);
+    char line[LAR_LINE_TEXT];
     double wanted = options->time_step != 0 ? options->time_step : model->time_step;
     if (wanted == 0) {
         domain->time_step = lar_auto_step(model, domain->stable_step);
         return fit_tick(domain, options->tick, true, error);
     }
-    if (!(wanted >= SHORTEST) || !isfinite(wanted))
+    if (!(wanted >= LAR_STEP_MIN) || !isfinite(wanted))
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "%s: the time step must be 1e-15 s at least, or auto",
                         lar_model_source(model));
     if (wanted > domain->stable_step)
         return lar_fail(error, LAR_ERROR_MODEL,
-                        "%s: time step %g s is above the stable step %.4g s (set by element "
+                        "%s%s: time step %g s is above the stable step %.4g s (set by element "
                         "%lld); use time_step: auto, a smaller step, larger or softer elements",
-                        lar_model_source(model), wanted, domain->stable_step,
+                        lar_model_source(model),
+                        lar_line_text(options->time_step != 0 ? 0 : model->time_step_line, line),
+                        wanted, domain->stable_step,
                         (long long)model->mesh.element_id[domain->stable_worst]);
     domain->time_step = wanted;
     return fit_tick(domain, options->tick, false, error);
@@ -421,6 +421,20 @@ static void prepare_motion(lar_domain *domain) {
     domain->leapfrog.speed = 256 * shortest / dt;
 }
 
+/* Where the largest nodal force of the model stands. */
+static int line_of_force(const lar_model *model) {
+    double most = 0;
+    int line = 0;
+    for (int i = 0; i < model->load_count; i++) {
+        const double *force = model->load[i].force;
+        double square = lar_dot(force, force);
+        if (!(square > most)) continue;
+        most = square;
+        line = model->load[i].line;
+    }
+    return line;
+}
+
 lar_status lar_domain_create(const lar_model *model, const lar_options *options, lar_domain *domain,
                              lar_error *error) {
     return lar_domain_create_styled(model, options, LAR_LAYOUT_ROWS, domain, error);
@@ -451,11 +465,14 @@ lar_status lar_domain_create_styled(const lar_model *model, const lar_options *o
         status = lar_conditions_create(model, domain->layout.local, NULL,
                                        &domain->surroundings.conditions, error);
     double largest = status ? 0 : lar_conditions_largest(&domain->surroundings.conditions);
-    if (!status && largest * domain->scale > 0x1p58)
-        status = lar_fail(error, LAR_ERROR_MODEL,
-                          "%s: a nodal force of %g N is far beyond what this material can bear; "
-                          "check its unit",
-                          lar_model_source(model), largest);
+    if (!status && largest * domain->scale > 0x1p58) {
+        char line[LAR_LINE_TEXT];
+        status =
+            lar_fail(error, LAR_ERROR_MODEL,
+                     "%s%s: a nodal force of %g N is far beyond what this material can bear; "
+                     "check its unit",
+                     lar_model_source(model), lar_line_text(line_of_force(model), line), largest);
+    }
     if (status) lar_domain_destroy(domain);
     return status;
 }

@@ -114,6 +114,25 @@ expect 0 "$LARIAT" run "$scene" --steps 2 --element hex8-matrix --json
 [ "$(value_of element)" = '"hex8-matrix"' ] || fail "element"
 expect 1 "$LARIAT" run "$scene" --steps 1 --time-step 1
 complains 'above the stable step'
+expect 2 "$LARIAT" run "$scene" --steps 1 --time-step 1e-16
+
+# Values of a scene that only show when it is compiled are named with their line; what the command
+# line says is not.
+refused() {
+    printf '%s\n' "lariat: 1" "mesh: beam.vtk" "$1" \
+        'materials: [{ cells: all, law: neo-hookean, density: 1000, shear_modulus: 2.0e3, bulk_modulus: 4.0e4 }]' \
+        >"$SCRATCH/refused.yaml"
+    expect 1 "$LARIAT" run "$SCRATCH/refused.yaml" --steps 1
+    complains "refused.yaml:3$2"
+}
+cp "$SOURCE/examples/beam.vtk" "$SCRATCH/"
+refused "time_step: 1.0e-16" ":12: time_step: expected auto, or 1e-15 s at least"
+refused "time_step: 0.1" ": time step 0.1 s is above the stable step"
+refused "damping: 1.0e6" ": damping 1e+06 1/s stops a node within less than one time step"
+refused "load: [{nodes: {nearest: [1, 0, 0]}, force: [0, 0, 1.0e30]}]" ": a nodal force of 1e+30 N is far"
+sed 's/^load.*/time_step: 1.0e-5/' "$SCRATCH/refused.yaml" >"$SCRATCH/right.yaml"
+expect 1 "$LARIAT" run "$SCRATCH/right.yaml" --steps 1 --time-step 0.1
+complains "right.yaml: time step 0.1 s is above"
 expect 0 "$LARIAT" run "$scene" --time 0.001 --time-step 5e-5 --json
 [ "$(value_of steps)" = 20 ] || fail "0.001 s in steps of 5e-5 s are $(value_of steps) steps"
 
@@ -137,6 +156,55 @@ expect 0 "$LARIAT" run "$SCRATCH/hit.yaml"
 says '^account  *OPEN by .* --time-step 0.0002'
 expect 0 "$LARIAT" run "$SCRATCH/hit.yaml" --time-step 2e-5
 ! grep -q '^account' "$SCRATCH/out" || fail "$(grep '^account' "$SCRATCH/out")"
+expect 0 "$LARIAT" run "$SCRATCH/hit.yaml" --json
+has_keys --numbers account.open account.share
+value_of account.share | awk '{ exit !($1 > 0.01 && $1 < 1) }' || fail "share $(value_of account.share)"
+
+# A muscle that shortens has a strain energy below zero, and all that is in the account sums up to
+# about nothing: a share is one of what goes in and out.
+cat >"$SCRATCH/cube.inp" <<'END'
+*NODE
+1, 0, 0, 0
+2, 0.01, 0, 0
+3, 0.01, 0.01, 0
+4, 0, 0.01, 0
+5, 0, 0, 0.01
+6, 0.01, 0, 0.01
+7, 0.01, 0.01, 0.01
+8, 0, 0.01, 0.01
+*ELEMENT, TYPE=C3D8, ELSET=E
+1, 1, 2, 3, 4, 5, 6, 7, 8
+*NSET, NSET=x
+1, 4, 5, 8
+END
+cat >"$SCRATCH/muscle.yaml" <<'END'
+lariat: 1
+mesh: cube.inp
+damping: 30
+duration: 1
+materials: [{ cells: all, law: mooney-rivlin, density: 1000, c1: 500, c2: 0, bulk_modulus: 1.0e5,
+  fibres: { direction: {axis: [1, 0, 0]}, active: {along: 1.0e3} } }]
+fix: [{ nodes: x, axes: xyz }]
+END
+expect 0 "$LARIAT" run "$SCRATCH/muscle.yaml"
+! grep -q '^account' "$SCRATCH/out" || fail "muscle: $(grep '^account' "$SCRATCH/out")"
+expect 0 "$LARIAT" run "$SCRATCH/muscle.yaml" --json
+value_of account.share | awk '{ exit !($1 < 1e-3) }' || fail "muscle: $(value_of account.share)"
+
+# A run goes on to the scene's duration, and no farther.
+for every in "" "output: {every: 0.02}"; do
+    sed -e 's/duration: 1/duration: 0.05/' -e '$a\' -e "$every" "$SCRATCH/muscle.yaml" >"$SCRATCH/short.yaml"
+    expect 0 "$LARIAT" run "$SCRATCH/short.yaml" --time 0.04 --save "$SCRATCH/short.checkpoint"
+    expect 0 "$LARIAT" run "$SCRATCH/short.yaml" --resume "$SCRATCH/short.checkpoint" --json \
+        --save "$SCRATCH/short.checkpoint"
+    value_of time | awk '{ exit !($1 > 0.049 && $1 < 0.051) }' || fail "resumed to $(value_of time)"
+    steps=$(value_of steps) hash=$(value_of state_hash)
+    expect 0 "$LARIAT" run "$SCRATCH/short.yaml" --resume "$SCRATCH/short.checkpoint" --json
+    [ "$(value_of steps)$(value_of state_hash)" = "$steps$hash" ] || fail "went beyond its duration"
+    complains 'note: .*short.checkpoint: 0.0[45][0-9]* s are simulated already, the scene.s duration'
+    expect 0 "$LARIAT" run "$SCRATCH/short.yaml" --resume "$SCRATCH/short.checkpoint" --steps 7 --json
+    [ "$(value_of steps)" = $((steps + 7)) ] || fail "--steps beyond the duration"
+done
 
 # Slips of units, and a time that is no number of steps, are doubted.
 sed 's/density: 1000/density: 1.0e-6/' "$SCRATCH/hit.yaml" >"$SCRATCH/light.yaml"

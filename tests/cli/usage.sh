@@ -45,6 +45,9 @@ expect 2 "$LARIAT" run "$beam" --jsno
 complains 'did you mean --json?'
 expect 2 "$LARIAT" run "$beam" --time
 complains '--time needs a value'
+expect 2 "$LARIAT" run x.yaml --out --json
+complains '^lariat run: --out needs a value, and --json looks like an option; write --out DIR, or --out=--json'
+[ ! -e ./--json ] || fail "a folder --json was made"
 expect 2 "$LARIAT" run "$beam" --json=yes
 complains '--json takes no value'
 for wrong in '--time -1' '--time 0' '--time nan' '--time inf' '--time 1s' '--steps 0' \

@@ -128,7 +128,7 @@ TEST_UNUSED static void move_nodes(lar_model *model, lar_node_list nodes, unsign
 
 TEST_UNUSED static void load_nodes(lar_model *model, lar_node_list nodes, double x, double y,
                                    double z, int curve) {
-    *(lar_nodal_load *)LAR_MODEL_APPEND(model, load) = (lar_nodal_load){nodes, {x, y, z}, curve};
+    *(lar_nodal_load *)LAR_MODEL_APPEND(model, load) = (lar_nodal_load){nodes, {x, y, z}, curve, 0};
 }
 
 /* Pressure on the whole boundary, or on local face `face` of the boundary. */

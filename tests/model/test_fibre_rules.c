@@ -361,7 +361,10 @@ static void scenes_say_what_is_wrong(void **state) {
         {SCENE("pipe.vtu", WALL TURN ", path: {from: inner, to: outer}}"),
          "the path goes straight through the wall"},
         {SCENE("brick.vtu", "wall: {inner: bottom, outer: lid, axis: [0, 0, 2], " TURN "}"),
-         "in element 101 the axis goes straight through the wall"},
+         "in element 101 the axis goes straight through the wall, so that no angle can count from "
+         "it; take another one, or give that part a material with a direction of its own"},
+        {SCENE("brick.vtu", "wall: {outer: lid, axis: [0, 0, 2], " TURN "}"),
+         "take another one, or name faces as outer that leave out the ends"},
         {SCENE("pipe.vtu", "wall: {outer: outside, axis: [0, 0, 1], " TURN "}"),
          "the set \"outside\" is unknown"},
         {SCENE("brick.vtu", "path: {from: bottom, to: lid}") MORE("2", "axis: [1, 0, 0]"),

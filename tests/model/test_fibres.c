@@ -205,7 +205,7 @@ static void scenes_say_what_is_wrong(void **state) {
         {SCENE(HGO "direction: {axis: [1, 0, 0]}, second: {axis: [0, 0, 0]}"), "axis"},
         {SCENE(HGO "direction: {axis: [1, 0, 0]}, second: {around: {point: [0.005, 0.005, 0], "
                    "axis: [0, 0, 1]}}"),
-         "element 101 has a second family of fibres and their direction is 0, 0, 0"},
+         "the centre of element 101 lies on the axis, and nothing leads around it there"},
         {SCENE("active: {along: 1}, direction: mesh, second: mesh"),
          "only fibres of the law hgo can have a second family"},
         {SCENE(POW "direction: {axis: [1, 0, 0]}, second: {axis: [0, 1, 0]}"),
@@ -216,7 +216,7 @@ static void scenes_say_what_is_wrong(void **state) {
         {SCENE(POW "direction: {axis: [1, 0]}"), "axis"},
         {SCENE(POW "direction: {axis: [.nan, 0, 1]}"), "not a finite number"},
         {SCENE(POW "direction: {around: {point: [0.005, 0.005, 0], axis: [0, 0, 1]}}"),
-         "element 101 has fibres and their direction is 0, 0, 0"},
+         "the centre of element 101 lies on the axis, and nothing leads around it there"},
         {SCENE("law: exp-pow, part: whole, ksi: 300, alpha: 1, beta: 1.5, direction: {axis: [1, 0, "
                "0]}"),
          "beta must be between 2 and 20"},

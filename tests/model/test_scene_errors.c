@@ -48,6 +48,7 @@ static void test_root(void **state) {
         {"gravity: [0, 1e999, 0]\n", "4:14", "\"1e999\" is not a finite number"},
         {"time_step: fast\n", "4:12", "time_step: expected auto, or a number in seconds"},
         {"time_step: -1.0e-4\n", "4:12", "more than zero"},
+        {"time_step: 1.0e-16\n", "4:12", "time_step: expected auto, or 1e-15 s at least"},
         {"damping: -2\n", "4:10", "damping is -2; it must not be negative"},
         {"damping: {}\n", "4:10", "found a mapping"},
         {"duration: 0\n", "4:11", "more than zero"},
@@ -112,8 +113,13 @@ static void test_materials(void **state) {
         {"  - {cells: all, law: ogden, density: 1}\n", "4:5",
          "or c1, m1 and bulk_modulus (c2, m2, c3 and m3 may be left out), and nothing besides"},
         {"  - {cells: all, law: ogden, density: 1, c1: 4, m1: 2, c2: 3, bulk_modulus: 9}\n", "4:5",
-         "m2 of the law ogden is 0; it is the power of the term of c2 and must be between 0.01 "
+         "m2 is missing, the power of the term of c2; add it"},
+        {"  - {cells: all, law: ogden, density: 1, c1: 4, m1: 0, bulk_modulus: 9}\n", "4:5",
+         "m1 of the law ogden is 0; it is the power of the term of c1 and must be between 0.01 "
          "and 100, or between -0.01 and -100"},
+        {"  - {cells: all, law: neo-hookean, density: 1, youngs_modulus: 1.0e300, "
+         "poisson_ratio: 0.3}\n",
+         "4:5", "the shear modulus is 3.84615e+299 Pa; it must be positive and below 1e+100"},
         {"  - {cells: all, law: ogden, density: 1, c1: 4, m1: 1e5, bulk_modulus: 9}\n", "4:5",
          "m1 of the law ogden is 100000"},
         {"  - {cells: all, law: ogden, density: 1, c1: 4, m1: .inf, bulk_modulus: 9}\n", "4:53",

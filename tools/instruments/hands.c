@@ -223,9 +223,10 @@ static lar_status turn_gravity(lar_hands *h, lar_error *error) {
 static void account(lar_hands *h) {
     lar_energy e;
     lar_simulation_energy(h->simulation, &e);
-    double error = fabs(e.kinetic + e.strain + e.hourglass + e.damping + e.contact - e.external);
-    h->turnover =
-        fmax(h->turnover, e.kinetic + e.strain + e.hourglass + e.damping + fabs(e.contact));
+    double error =
+        fabs(e.kinetic + e.strain + e.hourglass + e.damping + e.contact + e.viscous - e.external);
+    h->turnover = fmax(h->turnover, fabs(e.kinetic) + fabs(e.strain) + fabs(e.hourglass) +
+                                        fabs(e.damping) + fabs(e.contact) + fabs(e.viscous));
     h->out.energy = fmax(h->out.energy, error);
     /* Less than a millijoule is nothing to take parts of. */
     h->out.energy_part = fmax(h->out.energy_part, 100 * error / fmax(1e-3, h->turnover));

@@ -32,7 +32,11 @@ static lar_status check_root(const lar_scene *scene) {
 static lar_status read_time_step(lar_scene *scene, const lar_yaml *node) {
     const char *const expected = "auto, or a number in seconds (SI units), for example 1.0e-4";
     if (lar_scene_is_word(node, "auto")) return LAR_OK;
-    return lar_scene_positive(scene, node, expected, &scene->model->time_step);
+    scene->model->time_step_line = node->line;
+    lar_status status = lar_scene_positive(scene, node, expected, &scene->model->time_step);
+    if (status || scene->model->time_step >= LAR_STEP_MIN) return status;
+    return lar_scene_fail(scene, node, LAR_ERROR_MODEL,
+                          "time_step: expected auto, or 1e-15 s at least");
 }
 
 /* More than a second is no step, and more mass than a body has is another body. */
@@ -127,9 +131,11 @@ static lar_status read_plain_values(lar_scene *scene, double *scale) {
     if (!status && (value = lar_yaml_get(root, "gravity")))
         status = lar_scene_vector(scene, value, LAR_IN_GRAVITY, model->gravity);
     if (!status && (value = lar_yaml_get(root, "time_step"))) status = read_time_step(scene, value);
-    if (!status && (value = lar_yaml_get(root, "damping")))
+    if (!status && (value = lar_yaml_get(root, "damping"))) {
+        model->damping_line = value->line;
         status = lar_scene_not_negative(scene, value, "a number in 1/s, for example 2.0",
                                         &model->damping);
+    }
     if (!status && (value = lar_yaml_get(root, "duration"))) status = read_duration(scene, value);
     if (!status && (value = lar_yaml_get(root, "mass_scaling")))
         status = read_mass_scaling(scene, value);

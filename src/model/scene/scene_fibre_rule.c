@@ -376,9 +376,10 @@ static lar_status turn_in_wall(const rule *r, const wall *w, const field *throug
     if (!make_unit(t, 1e-6))
         return lar_scene_fail(r->scene, w->axis ? w->axis : w->path, LAR_ERROR_MODEL,
                               "in element %lld the %.4s goes straight through the wall, so that no "
-                              "angle can count from it; take another one, or name faces as outer "
-                              "that leave out the ends",
-                              id_of(r, i), w->axis ? "axis" : "path");
+                              "angle can count from it; take another one, or %s",
+                              id_of(r, i), w->axis ? "axis" : "path",
+                              w->inner ? "give that part a material with a direction of its own"
+                                       : "name faces as outer that leave out the ends");
     lar_cross(n, t, beside);
     turn_of((1 - far) * w->angle[0] + far * w->angle[1], &cosine, &sine);
     for (int k = 0; k < 3; k++) t[k] = cosine * t[k] + sine * beside[k];
@@ -424,6 +425,12 @@ static lar_status lay(const rule *r, const lar_yaml *node, double (*fibre)[3]) {
             memcpy(own, path ? way.gradient[i] : along, sizeof along);
         else
             turn_around(&r->scene->model->mesh, &round, r->scene->size, r->element[i], own);
+        if (lar_dot(own, own) == 0)
+            status = lar_scene_fail(r->scene, node, LAR_ERROR_MODEL,
+                                    "the centre of element %lld lies on the axis, and nothing "
+                                    "leads around it there; move point aside, or give that "
+                                    "element a material with a direction of its own",
+                                    id_of(r, i));
     }
     field_clear(&way);
     return status;
@@ -498,12 +505,6 @@ static lar_status lay_all(lar_scene *scene, const int32_t *material, int materia
     memcpy(model->element_material, material, size);
     for (int m = 0; m < materials && !status; m++)
         status = lar_scene_lay_fibres(scene, scene->root, m);
-    for (int32_t e = 0; e < model->mesh.element_count && !status; e++)
-        if (material[e] >= 0 && lar_length(model->mesh.fibre[e]) == 0)
-            status = lar_scene_fail(scene, scene->root, LAR_ERROR_MODEL,
-                                    "the rule gives element %lld no direction; move its line out "
-                                    "of the elements' centres",
-                                    (long long)model->mesh.element_id[e]);
     return status;
 }
 

@@ -103,6 +103,10 @@ static lar_status read_numbers(const lar_scene *scene, const lar_yaml *node,
                                : "a number without a unit, for example 5";
         lar_law_value kind = form->key[i].value;
         value[i] = 0;
+        if (!number && kind == LAR_VALUE_POWER && value[i - 1] != 0)
+            return lar_scene_fail(scene, node, LAR_ERROR_FORMAT,
+                                  "%s is missing, the power of the term of %s; add it",
+                                  form->key[i].name, form->key[i - 1].name);
         if (!number) continue;
         status = kind == LAR_VALUE_MODULUS || kind == LAR_VALUE_NUMBER
                      ? lar_scene_positive(scene, number, what, &value[i])

@@ -196,6 +196,7 @@ static lar_status read_force(lar_scene *scene, const lar_yaml *entry, const lar_
                               "equally, or force_per_node, for example force: [0, 0, -0.1]");
     lar_nodal_load *load = LAR_MODEL_APPEND(scene->model, load);
     if (!load) return lar_scene_no_memory(scene, sizeof *load);
+    load->line = (total ? total : each)->line;
     lar_status status = lar_scene_vector(scene, total ? total : each, LAR_IN_NEWTON, load->force);
     if (!status) status = lar_scene_read_course(scene, entry, false, &load->curve);
     if (!status) status = lar_scene_select_nodes(scene, nodes, &load->nodes);

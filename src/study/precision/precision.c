@@ -22,7 +22,8 @@ static void end_run(run *r) {
 }
 
 static double all_energy(const lar_energy *e) {
-    return e->kinetic + e->strain + e->hourglass + e->damping + e->contact - e->external;
+    return e->kinetic + e->strain + e->hourglass + e->damping + e->contact + e->viscous -
+           e->external;
 }
 
 static lar_status begin_run(const lar_model *model, lar_precision_case what, lar_precision way,
