@@ -55,7 +55,7 @@ static PyObject *restless(const lar_rest *rest, double time) {
     lar_error error = {.status = LAR_ERROR_MODEL};
     snprintf(error.message, sizeof error.message,
              "rest: not at rest after %.4g s: %s, and at rest that is %.0e; give the scene more "
-             "`damping`, or a time to end after (seconds=)",
+             "`damping` where it swings, less where it creeps, or a time to end after (seconds=)",
              time, left, rest->share);
     return python_raise(&error);
 }

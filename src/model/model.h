@@ -126,6 +126,7 @@ struct lar_model {
     double gravity[3]; /* m/s^2, times gravity_curve[axis] where that is >= 0 */
     int gravity_curve[3];
     double damping;        /* 1/s, mass-proportional */
+    bool damps_itself;     /* that is a guess, since nobody gave one for a body that is to rest */
     double time_step;      /* seconds, 0: automatic */
     int damping_line;      /* of the file that says so, for messages; 0: unknown */
     int time_step_line;    /* likewise */
@@ -237,7 +238,9 @@ lar_status lar_model_notice(lar_model *model, lar_error *error, const char *form
  * that make sense. Builds the surface. The last step of every reader. */
 lar_status lar_model_check(lar_model *model, lar_error *error);
 
-/* The readers of whole models; lar_model_open chooses by extension. */
+/* The readers of whole models; the first chooses by extension (lar_model_open goes on from what it
+ * has read: simulation/rest.c). */
+lar_status lar_model_read(const char *path, lar_model **model, lar_error *error);
 lar_status lar_scene_read(const char *path, lar_model **model, lar_error *error);
 lar_status lar_feb_read(const char *path, lar_model **model, lar_error *error);
 /* Abaqus and CalculiX. */

@@ -97,7 +97,7 @@ lar_status lar_inp_read(const char *path, lar_model **model, lar_error *error) {
 
 /* ---- by extension ------------------------------------------------------------------------- */
 
-lar_status lar_model_open(const char *path, lar_model **model, lar_error *error) {
+lar_status lar_model_read(const char *path, lar_model **model, lar_error *error) {
     static const struct {
         const char *extension;
         lar_status (*read)(const char *path, lar_model **model, lar_error *error);

@@ -44,14 +44,14 @@ lar_rest_words lar_model_follow_static(lar_model *model, const char *what) {
     if (model->until_rest) period = fmin(fmax(lar_model_slow_period(model), end / MANY), end / FEW);
     if (end > 0) lar_model_slow_to(model, period);
     model->damping = lar_model_rest_damping(model);
+    model->damps_itself = model->until_rest;
     for (int i = 0; end > 0 && i < model->curve_count; i++)
         lar_curve_hold_from(&model->curve[i], end);
     if (model->until_rest) {
-        snprintf(
-            words.text, sizeof words.text,
-            "the %s is static: Lariat follows it in time, with a damping of %.3g 1/s, until it "
-            "is at rest",
-            what, model->damping);
+        snprintf(words.text, sizeof words.text,
+                 "the %s is static: Lariat follows it in time, with a damping of at most %.3g 1/s, "
+                 "until it is at rest",
+                 what, model->damping);
         return words;
     }
     model->damping *= VISCOUS_DAMPING;

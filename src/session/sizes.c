@@ -12,6 +12,7 @@
 #include <string.h>
 
 #include "base/error.h"
+#include "simulation/rest.h"
 
 static lar_status take(void *all, size_t known, const void *given, size_t size, const char *what,
                        lar_error *error) {
@@ -39,7 +40,8 @@ lar_status lar_model_from_arrays_sized(const lar_mesh_arrays *mesh, size_t size,
     lar_mesh_arrays known = {0};
     if (take(&known, sizeof known, mesh, size, "lar_mesh_arrays", error))
         return LAR_ERROR_UNSUPPORTED;
-    return lar_model_from_arrays(mesh ? &known : NULL, scene, model, error);
+    lar_status status = lar_model_from_arrays(mesh ? &known : NULL, scene, model, error);
+    return status ? status : lar_model_damp_itself(model, error);
 }
 
 lar_status lar_model_inspect_sized(const lar_model *model, lar_model_info *info, size_t size,

@@ -24,6 +24,7 @@
 #include "model/rest.h"
 #include "model/scene/scene.h"
 #include "model/triangles/surface_tree.h"
+#include "simulation/rest.h"
 #include "simulation/simulation.h"
 
 /* clang-format off */
@@ -35,9 +36,9 @@
     X(lar_host_realloc) X(lar_json_boolean) X(lar_json_close) X(lar_json_end) X(lar_json_integer) \
     X(lar_json_number) X(lar_json_open) X(lar_json_text) X(lar_json_to) X(lar_json_vector) \
     X(lar_law_table) X(lar_material_check) X(lar_material_from_shear_bulk) \
-    X(lar_material_from_young) X(lar_measure_reaction) X(lar_model_rest_damping) \
-    X(lar_model_slow_period) X(lar_parallel_for) X(lar_part_close) X(lar_part_open) \
-    X(lar_path_beside) X(lar_scene_direction) X(lar_scene_fail) X(lar_scene_integer) \
+    X(lar_material_from_young) X(lar_measure_reaction) X(lar_model_slow_period) \
+    X(lar_parallel_for) X(lar_part_close) X(lar_part_open) X(lar_path_beside) X(lar_rest_damping) \
+    X(lar_scene_direction) X(lar_scene_fail) X(lar_scene_integer) \
     X(lar_scene_is_integer) X(lar_scene_is_word) X(lar_scene_keys) X(lar_scene_list) \
     X(lar_scene_need) X(lar_scene_no_memory) X(lar_scene_number) X(lar_scene_positive) \
     X(lar_scene_text) X(lar_scene_unknown) X(lar_scene_vector) X(lar_simulation_state) \

@@ -2,14 +2,15 @@
 
 #include <math.h>
 
-#include "step/measure.h"
+#include "meshing/starter/slowest.h"
 #include "model/rest.h"
+#include "step/measure.h"
 
 /* Of the strain energy. */
 static const double REST_SHARE = 1e-10;
 /* Of the motion that rounding makes between two looks: Q n of rest.h. */
 static const double ROUNDING = 1e4;
-/* The slow period is an estimate for compact bodies; a slender beam creeps for hundreds of them. */
+/* The slow period is an estimate for compact bodies; a slender beam takes many of them. */
 static const double PERIODS_MAX = 1000;
 
 enum { LOOKS_PER_PERIOD = 16, MIN_LOOKS = LOOKS_PER_PERIOD / 2 /* of a window */ };
@@ -105,4 +106,38 @@ void lar_rest_energies(const lar_domain *domain, const lar_state *state, double 
     }
     for (lar_gid e = 0; e < domain->model->mesh.element_count; e++)
         *strain += lar_measure_element_energy(domain, state, e);
+}
+
+/* ---- models that damp themselves ------------------------------------------------------------- */
+
+/* Rayleigh's quotient is never below what it stands for, and a little below 2 is faster than 2: a
+ * body that swings once comes to rest sooner than one that creeps. */
+static const double PART = 1.8;
+/* Of the guess; what is slower still is not held, but for bodies a thousand times as long as thick.
+ */
+static const double LEAST = 1e-3;
+
+double lar_rest_damping(const lar_model *model) {
+    double guess = lar_model_rest_damping(model);
+    double damping = PART * lar_slowest_motion(model);
+    return damping > LEAST * guess ? fmin(damping, guess) : guess;
+}
+
+lar_status lar_model_damp_itself(lar_model **opened, lar_error *error) {
+    lar_model *model = *opened;
+    double damping = model->damps_itself ? lar_rest_damping(model) : model->damping;
+    if (damping == model->damping) return LAR_OK;
+    model->damping = damping;
+    lar_status status = lar_model_notice(
+        model, error, "%s: the body's slowest motion has %.3g 1/s: its damping is %.3g 1/s",
+        lar_model_source(model), damping / PART, damping);
+    if (!status) return LAR_OK;
+    lar_model_destroy(model);
+    *opened = NULL;
+    return status;
+}
+
+lar_status lar_model_open(const char *path, lar_model **model, lar_error *error) {
+    lar_status status = lar_model_read(path, model, error);
+    return status ? status : lar_model_damp_itself(model, error);
 }

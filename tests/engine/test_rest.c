@@ -217,6 +217,44 @@ static void the_same_step_on_every_grid(void **state) {
     finish(alone, model);
 }
 
+/* Twenty times as long as thick, clamped at one end: 3.516 sqrt(EI / m) / L^2. Where a plane of
+ * symmetry cuts it, half of it has the same motion. */
+static void a_slender_body_is_damped_by_its_bending(void **state) {
+    (void)state;
+    const double young = 9 * 2e4 * 2e3 / (3 * 2e4 + 2e3);
+    const double slowest = 3.516 * sqrt(young / 1000) * 0.01 / sqrt(12) / (0.2 * 0.2);
+    for (int half = 0; half < 2; half++) {
+        const brick slender = {
+            {40, half ? 1 : 2, 2}, 0.005, 0, LAR_LAW_neo_hookean, 2e3, 2e4, 1000};
+        lar_model *model = brick_model(&slender);
+        fix_nodes(model, brick_side(&slender, 0, 0), LAR_AXIS_ALL);
+        if (half) fix_nodes(model, brick_side(&slender, 1, 0), LAR_AXIS_Y);
+        model->gravity[2] = -0.005;
+        model->damping = lar_model_rest_damping(model);
+        assert_int_equal(lar_model_damp_itself(&model, NULL), LAR_OK);
+        assert_true(model->damping == lar_model_rest_damping(model)); /* as somebody said */
+        model->damps_itself = true;
+        assert_int_equal(lar_model_damp_itself(&model, NULL), LAR_OK);
+        assert_below(fabs(model->damping / (1.8 * slowest) - 1), 0.05);
+        assert_int_equal(model->notice_count, 1);
+        lar_simulation *simulation = start(model);
+        assert_int_equal(follow(simulation, 200000).reached, 1);
+        assert_below(lar_simulation_time(simulation) * slowest, 25);
+        finish(simulation, model);
+    }
+}
+
+/* What is not held, or can still turn about a node, has no slowest motion to go by. */
+static void loose_bodies_are_damped_as_by_their_length(void **state) {
+    (void)state;
+    for (int pinned = 0; pinned < 2; pinned++) {
+        lar_model *model = brick_model(&soft_brick);
+        if (pinned) fix_nodes(model, single_node(0), LAR_AXIS_ALL);
+        assert_true(lar_rest_damping(model) == lar_model_rest_damping(model));
+        lar_model_destroy(model);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(rest_is_rest_at_any_damping),
@@ -226,6 +264,8 @@ int main(void) {
         cmocka_unit_test(back_in_its_own_shape),
         cmocka_unit_test(swinging_through_its_own_shape),
         cmocka_unit_test(the_same_step_on_every_grid),
+        cmocka_unit_test(a_slender_body_is_damped_by_its_bending),
+        cmocka_unit_test(loose_bodies_are_damped_as_by_their_length),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -62,6 +62,12 @@ static void write_times(lar_json *json, const lar_step_clock *clock) {
     lar_json_close(json);
 }
 
+/* Of what strains the body: how much of it the mean strains do not see. */
+static double hourglass_share(const lar_energy *energy) {
+    double whole = fabs(energy->strain) + energy->hourglass;
+    return whole > 0 ? energy->hourglass / whole : 0;
+}
+
 static void write_energy(lar_json *json, const lar_simulation *simulation) {
     lar_energy energy;
     lar_simulation_energy(simulation, &energy);
@@ -69,6 +75,7 @@ static void write_energy(lar_json *json, const lar_simulation *simulation) {
     lar_json_number(json, "kinetic", energy.kinetic);
     lar_json_number(json, "strain", energy.strain);
     lar_json_number(json, "hourglass", energy.hourglass);
+    lar_json_number(json, "hourglass_share", hourglass_share(&energy));
     lar_json_number(json, "external", energy.external);
     lar_json_number(json, "damping", energy.damping);
     lar_json_number(json, "contact", energy.contact);
@@ -257,6 +264,16 @@ static void print_open_account(const run_report *report, FILE *out) {
             "account", now.open, 100 * now.share, shorter * time_step);
 }
 
+/* Where hourglass modes bear much, the mesh answers and not the tissue. */
+static void print_hourglass(const lar_energy *energy, FILE *out) {
+    static const double MUCH = 0.1;
+    if (!(hourglass_share(energy) > MUCH)) return;
+    fprintf(out,
+            "%-17s%.3g %% of the strain energy: what bends is too soft, the mesh too coarse; give "
+            "it two or more elements through the thickness, or --element hex8-full\n",
+            "hourglass", 100 * hourglass_share(energy));
+}
+
 static void print_body(const run_report *report, FILE *out) {
     lar_energy energy;
     lar_simulation_energy(report->simulation, &energy);
@@ -265,6 +282,7 @@ static void print_body(const run_report *report, FILE *out) {
     if (energy.contact != 0) fprintf(out, ", contact %.4g", energy.contact);
     if (energy.viscous != 0) fprintf(out, ", viscous %.4g", energy.viscous);
     fprintf(out, "; external %.4g\n", energy.external);
+    print_hourglass(&energy, out);
     print_open_account(report, out);
     print_contact(report->simulation, out);
     print_tools(report->simulation, out);

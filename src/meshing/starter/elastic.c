@@ -28,35 +28,21 @@ static inline void to_modes(const double *const node[8], int n, double *modal) {
     }
 }
 
-/* V and its derivatives V B_m, by the terms of hex8.h. */
-static void prepare_gradients(lar_elastic_element *e, const double X[7][3]) {
-    memset(e->gradient, 0, sizeof e->gradient);
-    e->volume = 0;
-    for (int m = 0; m < LAR_HEX8_GRADIENTS; m++)
-        for (int t = 0; t < 2; t++) {
-            double area[3];
-            lar_cross(X[LAR_HEX8_VOLUME_TERM[m][t].left], X[LAR_HEX8_VOLUME_TERM[m][t].right],
-                      area);
-            for (int i = 0; i < 3; i++)
-                e->gradient[m][i] += LAR_HEX8_VOLUME_TERM[m][t].factor / 64 * area[i];
-        }
-    for (int m = 0; m < 6; m++) e->volume += lar_dot(e->gradient[m], X[m]) / 3;
-    for (int m = 0; m < 6; m++)
-        for (int i = 0; i < 3; i++) e->gradient[m][i] /= e->volume;
-}
-
 static void prepare(lar_elastic_element *e, const double corner[8][3],
                     const lar_elastic_material *material) {
     static const double FACTOR = LAR_HOURGLASS_FACTOR / 64;
-    const double *node[8];
-    double X[7][3];
-    for (int a = 0; a < 8; a++) node[a] = corner[a];
-    to_modes(node, 3, X[0]);
-    prepare_gradients(e, X);
-    memcpy(e->shape, X[3], sizeof e->shape);
+    lar_material made = {.law = LAR_LAW_neo_hookean};
+    lar_hex8 hex8;
+    lar_material_from_shear_bulk(&made, material->shear, material->bulk);
+    lar_hex8_prepare(corner, &made, &hex8);
+    memcpy(e->gradient, hex8.gradient, sizeof e->gradient);
+    memcpy(e->shape, hex8.shape, sizeof e->shape);
+    e->volume = hex8.volume;
     double edge = cbrt(e->volume);
     for (int k = 0; k < 4; k++)
-        e->spring[k] = FACTOR * material->shear * edge * (k < 3 ? 4 : 8. / 3) / 3;
+        e->spring[k] = material->own_springs
+                           ? hex8.stiffness[k]
+                           : FACTOR * material->shear * edge * (k < 3 ? 4 : 8. / 3) / 3;
     e->shear = material->shear * e->volume;
     e->pressure = (material->bulk - 2 * material->shear / 3) * e->volume;
 }
@@ -139,42 +125,25 @@ void lar_elastic_forces(const lar_elastic *elastic, const lar_load_vectors *u,
         modal_forces(e, U, G);
         add_from_modes(G, to);
     }
-    for (int32_t n = 0; n < elastic->node_count; n++)
-        if (elastic->still[n]) memset(f[n], 0, sizeof f[n]);
-}
-
-/* h_m(a). */
-static double node_sign(int mode, int a) {
-    const int8_t *s = lar_node_sign[a];
-    static const int8_t in[7] = {1, 2, 4, 6, 5, 3, 7};
-    return ((in[mode] & 1) ? s[0] : 1) * ((in[mode] & 2) ? s[1] : 1) * ((in[mode] & 4) ? s[2] : 1);
 }
 
 void lar_elastic_diagonal(const lar_elastic *elastic, double (*diagonal)[3]) {
     for (int32_t k = 0; k < elastic->element_count; k++) {
-        const lar_elastic_element *e = &elastic->element[k];
-        for (int a = 0; a < 8; a++) {
-            double b[3] = {0}, hourglass = 0, *d = diagonal[e->node[a]];
-            for (int m = 0; m < 6; m++)
-                for (int i = 0; i < 3; i++) b[i] += node_sign(m, a) * e->gradient[m][i];
-            for (int m = 0; m < 4; m++) {
-                double q = node_sign(3 + m, a) - lar_dot(b, e->shape[m]);
-                hourglass += e->spring[m] * q * q;
-            }
-            for (int i = 0; i < 3; i++)
-                d[i] += e->shear * (lar_dot(b, b) + b[i] * b[i]) + e->pressure * b[i] * b[i] +
-                        hourglass;
-        }
+        double K[24][24];
+        lar_elastic_element_matrix(&elastic->element[k], K);
+        for (int row = 0; row < 24; row++)
+            diagonal[elastic->element[k].node[row / 3]][row % 3] += K[row][row];
     }
     for (int32_t n = 0; n < elastic->node_count; n++)
-        if (elastic->still[n]) memset(diagonal[n], 0, sizeof diagonal[n]);
+        for (int i = 0; i < 3; i++)
+            if (elastic->still[n] >> i & 1) diagonal[n][i] = 0;
 }
 
 /* ---- the body ------------------------------------------------------------------------------- */
 
-/* Marks what is held, and what hangs together with nothing that is. */
+/* Marks what hangs together with nothing that is held. */
 static lar_status find_still(const lar_mesh *mesh, const lar_elastic_material *material,
-                             const bool *held, bool *still, lar_error *error) {
+                             uint8_t *still, lar_error *error) {
     size_t nodes = (size_t)mesh->node_count;
     int32_t *parent = lar_calloc(nodes, sizeof *parent);
     bool *anchored = lar_calloc(nodes, sizeof *anchored);
@@ -184,9 +153,9 @@ static lar_status find_still(const lar_mesh *mesh, const lar_elastic_material *m
         for (int a = 1; a < 8 && material[e].shear > 0; a++)
             lar_union_join(parent, mesh->element[e][0], mesh->element[e][a]);
     for (int32_t n = 0; ready && n < mesh->node_count; n++)
-        if (held[n]) anchored[lar_union_root(parent, n)] = true;
+        if (still[n] == LAR_AXIS_ALL) anchored[lar_union_root(parent, n)] = true;
     for (int32_t n = 0; ready && n < mesh->node_count; n++)
-        still[n] = held[n] || !anchored[lar_union_root(parent, n)];
+        if (!anchored[lar_union_root(parent, n)]) still[n] = LAR_AXIS_ALL;
     free(parent);
     free(anchored);
     return ready ? LAR_OK : lar_fail_memory(error, 5 * nodes, "the body's pieces");
@@ -194,20 +163,20 @@ static lar_status find_still(const lar_mesh *mesh, const lar_elastic_material *m
 
 static bool moves(const lar_elastic *elastic, const int32_t node[8]) {
     for (int a = 0; a < 8; a++)
-        if (!elastic->still[node[a]]) return true;
+        if (elastic->still[node[a]] != LAR_AXIS_ALL) return true;
     return false;
 }
 
 lar_status lar_elastic_create(const lar_mesh *mesh, const lar_elastic_material *material,
-                              const bool *held, lar_elastic *elastic, lar_error *error) {
-    size_t nodes = (size_t)mesh->node_count, elements = (size_t)mesh->element_count;
-    *elastic = (lar_elastic){.mesh = mesh, .node_count = mesh->node_count};
-    elastic->still = lar_calloc(nodes, sizeof *elastic->still);
-    elastic->element = lar_calloc(elements, sizeof *elastic->element);
-    lar_status status = LAR_OK;
-    if (!elastic->still || !elastic->element)
-        status = lar_fail_memory(error, elements * sizeof *elastic->element, "a static estimate");
-    if (!status) status = find_still(mesh, material, held, elastic->still, error);
+                              uint8_t *still, lar_elastic *elastic, lar_error *error) {
+    size_t elements = (size_t)mesh->element_count;
+    *elastic = (lar_elastic){.mesh = mesh,
+                             .node_count = mesh->node_count,
+                             .element = lar_calloc(elements, sizeof *elastic->element),
+                             .still = still};
+    if (!elastic->element)
+        return lar_fail_memory(error, elements * sizeof *elastic->element, "a static estimate");
+    lar_status status = find_still(mesh, material, still, error);
     for (int32_t e = 0; !status && e < mesh->element_count; e++) {
         if (!(material[e].shear > 0) || !moves(elastic, mesh->element[e])) continue;
         lar_elastic_element *element = &elastic->element[elastic->element_count++];
@@ -216,12 +185,5 @@ lar_status lar_elastic_create(const lar_mesh *mesh, const lar_elastic_material *
         memcpy(element->node, mesh->element[e], sizeof element->node);
         prepare(element, corner, &material[e]);
     }
-    if (status) lar_elastic_clear(elastic);
     return status;
-}
-
-void lar_elastic_clear(lar_elastic *elastic) {
-    free(elastic->element);
-    free(elastic->still);
-    *elastic = (lar_elastic){0};
 }

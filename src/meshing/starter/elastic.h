@@ -28,6 +28,7 @@ typedef lar_loads lar_load_vectors[3];
 /* What an element is made of; shear 0: rigid, or left out. */
 typedef struct lar_elastic_material {
     double shear, bulk; /* [Pa] */
+    bool own_springs;   /* hourglass springs are the element's own, not a cube's */
 } lar_elastic_material;
 
 typedef struct lar_elastic_element {
@@ -42,24 +43,24 @@ typedef struct lar_elastic {
     const lar_mesh *mesh;
     int32_t node_count, element_count;
     lar_elastic_element *element;
-    bool *still; /* [nodes] held, or of nothing elastic */
+    const uint8_t *still;         /* [nodes] LAR_AXIS bits */
     bool (*goes_on)(void *asker); /* asked in every step of solving; NULL: it does */
     void *asker;
 } lar_elastic;
 
-/* material: [elements]; held: [nodes]. What hangs together with nothing that is held is left out:
- * its nodes are still. */
+/* material: [elements]; still: [nodes] LAR_AXIS bits of what is held, which stay the caller's, as
+ * long as this. Of what hangs together with no node that is held along all axes all is still then:
+ * it is left out. The caller frees the elements. */
 lar_status lar_elastic_create(const lar_mesh *mesh, const lar_elastic_material *material,
-                              const bool *held, lar_elastic *elastic, lar_error *error);
-void lar_elastic_clear(lar_elastic *elastic);
+                              uint8_t *still, lar_elastic *elastic, lar_error *error);
 
 /* Forces at the nodes, row 3 a + i for axis i of node a, by their displacements [N/m]. */
 void lar_elastic_element_matrix(const lar_elastic_element *element, double K[24][24]);
 
-/* [nodes] the diagonal of K, added to what is there; 0 on still nodes. */
+/* [nodes] the diagonal of K, added to what is there; 0 where still. */
 void lar_elastic_diagonal(const lar_elastic *elastic, double (*diagonal)[3]);
 
-/* Forces [N] of the body at displacements u [m]; those on still nodes are 0. */
+/* Forces [N] of the body at displacements u [m], and of what holds it. */
 void lar_elastic_forces(const lar_elastic *elastic, const lar_load_vectors *u, lar_load_vectors *f);
 
 /* Displacements under the forces f, and the work f . u of each load [J], within a hundredth. */

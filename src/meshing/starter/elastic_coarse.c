@@ -27,11 +27,12 @@ static bool same_box(const double a[3], const double b[3], double box) {
 static void number_groups(lar_coarse *coarse, const lar_elastic *elastic, int32_t *parent) {
     const int32_t nodes = elastic->node_count;
     for (int32_t n = 0; n < nodes; n++) {
-        const bool first = !elastic->still[n] && lar_union_root(parent, n) == n;
+        const bool first = elastic->still[n] != LAR_AXIS_ALL && lar_union_root(parent, n) == n;
         coarse->group[n] = first ? coarse->group_count++ : -1;
     }
     for (int32_t n = 0; n < nodes; n++)
-        if (!elastic->still[n]) coarse->group[n] = coarse->group[lar_union_root(parent, n)];
+        if (elastic->still[n] != LAR_AXIS_ALL)
+            coarse->group[n] = coarse->group[lar_union_root(parent, n)];
 }
 
 static lar_status find_groups(lar_coarse *coarse, const lar_elastic *elastic, double box,
@@ -45,7 +46,8 @@ static lar_status find_groups(lar_coarse *coarse, const lar_elastic *elastic, do
         const int32_t *node = elastic->element[k].node;
         for (int a = 0; a < 8; a++)
             for (int b = 0; b < a; b++)
-                if (!elastic->still[node[a]] && !elastic->still[node[b]] &&
+                if (elastic->still[node[a]] != LAR_AXIS_ALL &&
+                    elastic->still[node[b]] != LAR_AXIS_ALL &&
                     same_box(mesh->position[node[a]], mesh->position[node[b]], box))
                     lar_union_join(parent, node[a], node[b]);
     }
@@ -75,8 +77,11 @@ static lar_status find_arms(lar_coarse *coarse, const lar_mesh *mesh, double box
 
 /* ---- the matrix ----------------------------------------------------------------------------- */
 
-/* How axis i of a node moves with its group's motion d: translations, then rotations. */
-static double share(const double arm[3], int i, int d) {
+/* How axis i of a node moves with its group's motion d: translations, then rotations; 0 where it is
+ * held. */
+static double share(const lar_coarse *coarse, int32_t n, int i, int d) {
+    const double *arm = coarse->arm[n];
+    if (coarse->still[n] >> i & 1) return 0;
     if (d < 3) return i == d;
     d -= 3;
     if (i == d) return 0;
@@ -126,11 +131,11 @@ static void add_pair(lar_coarse *coarse, const int32_t *node, double K[24][24], 
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++)
             for (int d = 0; d < LAR_RIGID; d++)
-                KP[i][d] += K[3 * a + i][3 * b + j] * share(coarse->arm[node[b]], j, d);
+                KP[i][d] += K[3 * a + i][3 * b + j] * share(coarse, node[b], j, d);
     for (int c = 0; c < LAR_RIGID; c++)
         for (int d = 0; d < LAR_RIGID; d++) {
             double sum = 0;
-            for (int i = 0; i < 3; i++) sum += share(coarse->arm[node[a]], i, c) * KP[i][d];
+            for (int i = 0; i < 3; i++) sum += share(coarse, node[a], i, c) * KP[i][d];
             (*block)[c][d] += sum;
         }
 }
@@ -150,6 +155,7 @@ lar_status lar_coarse_create(const lar_elastic *elastic, lar_coarse *coarse, lar
     size_t nodes = (size_t)elastic->node_count;
     double box = box_size(elastic);
     *coarse = (lar_coarse){.node_count = elastic->node_count,
+                           .still = elastic->still,
                            .group = lar_calloc(nodes, sizeof *coarse->group),
                            .arm = lar_calloc(nodes, sizeof *coarse->arm)};
     lar_status status = coarse->group && coarse->arm
@@ -185,7 +191,7 @@ void lar_coarse_add(lar_coarse *coarse, const lar_load_vectors *r, lar_load_vect
         if (coarse->group[n] < 0) continue;
         for (int d = 0; d < LAR_RIGID; d++)
             for (int i = 0; i < 3; i++) {
-                const double part = share(coarse->arm[n], i, d);
+                const double part = share(coarse, n, i, d);
                 if (part != 0) coarse->load[LAR_RIGID * coarse->group[n] + d] += part * r[n][i];
             }
     }
@@ -194,7 +200,7 @@ void lar_coarse_add(lar_coarse *coarse, const lar_load_vectors *r, lar_load_vect
         if (coarse->group[n] < 0) continue;
         for (int d = 0; d < LAR_RIGID; d++)
             for (int i = 0; i < 3; i++) {
-                const double part = share(coarse->arm[n], i, d);
+                const double part = share(coarse, n, i, d);
                 if (part != 0) z[n][i] += part * coarse->load[LAR_RIGID * coarse->group[n] + d];
             }
     }

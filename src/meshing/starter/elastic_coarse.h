@@ -17,10 +17,11 @@ enum { LAR_RIGID = LAR_FACTOR_BLOCK }; /* motions of a group */
 
 typedef struct lar_coarse {
     int32_t node_count, group_count;
-    int32_t *group;    /* [nodes] -1: still */
-    double (*arm)[3];  /* [nodes] from the group's centre, in boxes */
-    lar_factor factor; /* of P^T K P */
-    lar_loads *load;   /* [6 groups] on the way */
+    int32_t *group;       /* [nodes] -1: still */
+    const uint8_t *still; /* of the body, which must stay */
+    double (*arm)[3];     /* [nodes] from the group's centre, in boxes */
+    lar_factor factor;    /* of P^T K P */
+    lar_loads *load;      /* [6 groups] on the way */
 } lar_coarse;
 
 lar_status lar_coarse_create(const lar_elastic *elastic, lar_coarse *coarse, lar_error *error);

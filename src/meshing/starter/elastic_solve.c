@@ -100,11 +100,10 @@ lar_status lar_elastic_solve(const lar_elastic *elastic, const lar_load_vectors 
     search s;
     LAR_EACH_LOAD work[l] = 0;
     lar_status status = begin(&s, elastic, error);
-    for (int32_t n = 0; !status && n < elastic->node_count; n++) {
-        memset(u[n], 0, sizeof u[n]);
-        if (!elastic->still[n]) memcpy(s.r[n], f[n], sizeof f[n]);
-    }
-    if (!status) {
+    if (!status) { /* what r has where nothing moves does no work: z is 0 there */
+        size_t bytes = (size_t)elastic->node_count * sizeof *f;
+        memset(u, 0, bytes);
+        memcpy(s.r, f, bytes);
         precondition(&s, s.rz);
         turn(&s, none);
     }

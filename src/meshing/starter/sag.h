@@ -1,11 +1,8 @@
 /* How a meshed body will move, from its stiffness at rest: enough to choose what carries it, a
  * damping, a pull that it bears and how long to watch.
  *
- * One solution for four loads: the weight along each axis, and the pull. Under its weight a body
- * takes a shape u much like its slowest motions, and Rayleigh's quotient of that shape,
- *     w^2 = u K u / u M u,
- * is never below the slowest motion's and mostly a tenth or two above it (Rayleigh 1877; Temple and
- * Bickley 1933). The least of the four is taken. */
+ * One solution for four loads: the weight along each axis, and the pull. The least of their four
+ * Rayleigh quotients is taken for the slowest motion's (slowest.h). */
 #ifndef LAR_MESHING_STARTER_SAG_H
 #define LAR_MESHING_STARTER_SAG_H
 

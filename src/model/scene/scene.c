@@ -99,10 +99,12 @@ static lar_status damp_to_rest(lar_scene *scene) {
     lar_model *model = scene->model;
     if (!model->until_rest || lar_yaml_get(scene->root, "damping")) return LAR_OK;
     model->damping = lar_model_rest_damping(model);
-    return lar_model_notice(model, scene->error,
-                            "%s: duration: rest without a damping: it is %.3g 1/s, with which "
-                            "the slowest motion dies out; the key damping says otherwise",
-                            scene->path, model->damping);
+    model->damps_itself = true;
+    return lar_model_notice(
+        model, scene->error,
+        "%s: duration: rest without a damping: it is at most %.3g 1/s, "
+        "with which the slowest motion dies out; the key damping says otherwise",
+        scene->path, model->damping);
 }
 
 static lar_status read_title(lar_scene *scene, const lar_yaml *node) {

@@ -7,6 +7,7 @@
 #include "base/vector.h"
 #include "model/rest.h"
 #include "model/triangles/surface_tree.h"
+#include "simulation/rest.h"
 #include "simulation/simulation.h"
 #include "study/inverse/aspiration.h"
 #include "study/inverse/parameters.h"
@@ -76,7 +77,7 @@ static lar_status copy_model(forward *f, const lar_inverse_problem *problem, con
         lar_status status = lar_material_check(&m->material[i], f->e->scene, f->error);
         if (status) return status;
     }
-    if (!f->e->in_time) m->damping = lar_model_rest_damping(m);
+    if (!f->e->in_time) m->damping = lar_rest_damping(m);
     f->ramp = 0.5 * lar_model_slow_period(m);
     return drive(f);
 }
