@@ -1260,8 +1260,10 @@ LAR_SIZED lar_status lar_session_tool_force(const lar_session *session, int32_t 
 
 /* What a hand feels that leads a tool by lar_session_tool_move, of the last tick: what a driver in
  * this process gives to its device. Spring and damper of the coupling between hand and tool, not
- * the tissue itself: bounded, and passive (docs/devices.md). 0 while nobody leads the tool. Either
- * may be NULL. */
+ * the tissue itself: bounded, and passive for a device that holds it until the next tick. Counted
+ * so, a hand gets 0.5 mJ and 1 mW more than was put in at most, and so much again by turning; only
+ * a jump farther than any of the last ticks may take one tick's force besides, once
+ * (docs/devices.md). 0 while nobody leads the tool. Either may be NULL. */
 LAR_API lar_status lar_session_tool_felt(const lar_session *session, int32_t tool, double force[3],
                                          double torque[3], lar_error *error);
 
