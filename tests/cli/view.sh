@@ -50,10 +50,10 @@ expect 0 "$LARIAT" view $scene --port 0 --seconds 0.3 --json --paused --device p
 [ "$(value_of steps)" -eq 0 ] || fail "it did not wait for play"
 [ "$(value_of state)" = '"paused"' ] || fail "the state is $(value_of state)"
 
-# A short session: all of its ticks are in the percentiles, so their bins have as many as there were.
+# A short session: all of its ticks are in the percentiles, not the first one alone.
 expect 0 "$LARIAT" view $scene --port 0 --seconds 0.05 --json --pace 0
-awk "BEGIN { exit !($(value_of wall_per_tick_us.p50) < $(value_of wall_per_tick_us.max)) }" ||
-    fail "the median is the longest tick: $(value_of wall_per_tick_us.p50) us"
+awk "BEGIN { exit !($(value_of wall_per_tick_us.p50) < $(value_of wall_per_tick_us.p999)) }" ||
+    fail "the median is as long as the longest: $(value_of wall_per_tick_us.p50) us"
 [ "$(value_of state)" = '"playing"' ] || fail "at the end the state is $(value_of state)"
 
 # Slow motion: which of the two it is and what would help, and what is late in it is no miss.
