@@ -384,7 +384,8 @@ typedef struct lar_tool_force {
     double torque[3];   /* about the tip [N m], likewise */
     int32_t touching;   /* surface points that it touched in the last step */
     int32_t held;       /* surface points that it has hold of */
-    double limit;       /* what it bears before it stays behind its hand [N]; 0 for hands: none */
+    double limit;       /* beyond it stays behind its hand [N]; 0 for hands: none. It may do so with
+                           less, too: half its radius deep, or where elements need shorter steps */
     double depth;       /* the deepest tissue point in it in the last advance [m]; 0: none */
     double apart;       /* from its tip to where its hand asks the tip to be, now [m] */
     int32_t limited;    /* 1 while tissue keeps it from following its hand, which includes its way
@@ -655,7 +656,7 @@ LAR_API void lar_simulation_destroy(lar_simulation *simulation);
  * with lar_simulation_load_from. Model, options and what was compiled of the model are the same
  * and there once, whichever is destroyed first; the two may belong to different threads then. Some
  * ten times as fast as lar_simulation_create. LAR_ERROR_UNSUPPORTED for one of several processors
- * or threads; LAR_ERROR_UNSTABLE as lar_simulation_save_to. */
+ * or threads (a grid of one with one thread is none, and its clone has no grid); LAR_ERROR_UNSTABLE as lar_simulation_save_to. */
 LAR_API lar_status lar_simulation_clone(lar_simulation *simulation, lar_simulation **clone,
                                         lar_error *error);
 
@@ -893,11 +894,11 @@ LAR_API lar_status lar_simulation_tool_move(lar_simulation *simulation, int32_t 
  * says how many surface points it has got, 0 when there was nothing within its reach, and then it
  * is open. A grasper closes its jaws where it is within `steps` steps, as far as what is between
  * them lets it (the force of jaws is bounded, and less the more they strain), and takes that when
- * they begin; `point` counts for hands only, who need one. */
+ * they begin; `point` counts for hands only, who need one. 0 steps: as many as the jaws need. */
 LAR_API lar_status lar_simulation_grasp(lar_simulation *simulation, int32_t tool,
                                         const double point[3], uint64_t steps, int32_t *held,
                                         lar_error *error);
-/* Lets go: a hand at once, a grasper by opening its jaws within `steps` steps. */
+/* Lets go: a hand at once, a grasper by opening its jaws within `steps` steps; 0: as above. */
 LAR_API lar_status lar_simulation_release(lar_simulation *simulation, int32_t tool, uint64_t steps,
                                           lar_error *error);
 /* Where it is now, which may be short of where it was asked to be. Jaws that hold something are
@@ -1262,8 +1263,10 @@ LAR_SIZED lar_status lar_session_tool_force(const lar_session *session, int32_t 
 
 /* What a hand feels that leads a tool by lar_session_tool_move, of the last tick: what a driver in
  * this process gives to its device. Spring and damper of the coupling between hand and tool, not
- * the tissue itself: bounded, and passive (docs/devices.md). 0 while nobody leads the tool. Either
- * may be NULL. */
+ * the tissue itself: bounded, and passive for a device that holds it until the next tick. Counted
+ * so, a hand gets 0.5 mJ and 1 mW more than was put in at most, and so much again by turning; only
+ * a jump farther than any of the last ticks may take one tick's force besides, once
+ * (docs/devices.md). 0 while nobody leads the tool. Either may be NULL. */
 LAR_API lar_status lar_session_tool_felt(const lar_session *session, int32_t tool, double force[3],
                                          double torque[3], lar_error *error);
 

@@ -474,13 +474,13 @@ class Simulation : public detail::Handle<lar_simulation, lar_simulation_destroy>
         detail::call(lar_simulation_tool_move, get(), tool, &pose, steps);
     }
     /* A hand needs a point. How many points of the surface it has got. */
-    std::int32_t grasp(std::int32_t tool, const Vec3 &point, std::uint64_t steps = 1) {
+    std::int32_t grasp(std::int32_t tool, const Vec3 &point, std::uint64_t steps = 0) {
         return detail::ask<std::int32_t>(lar_simulation_grasp, get(), tool, point.data(), steps);
     }
     std::int32_t grasp(std::int32_t tool, std::uint64_t steps) {
         return detail::ask<std::int32_t>(lar_simulation_grasp, get(), tool, nullptr, steps);
     }
-    void release(std::int32_t tool, std::uint64_t steps = 1) {
+    void release(std::int32_t tool, std::uint64_t steps = 0) {
         detail::call(lar_simulation_release, get(), tool, steps);
     }
     lar_tool_pose tool_pose(std::int32_t tool) const {

@@ -244,7 +244,9 @@ PyMethodDef python_session_tool_methods[] = {
     {"felt", felt, METH_O,
      "felt($self, tool)\n--\n\nWhat the hand feels that leads the tool by tool_move: force [N] and "
      "torque [N m] of the coupling between both in the last tick, six floats. It is bounded and "
-     "passive: what a haptic device in this process is given."},
+     "passive for a device that holds it until the next tick (docs/devices.md says what is "
+     "counted): "
+     "what a haptic device in this process is given."},
     {"wrench", wrench, METH_O,
      "wrench($self, tool)\n--\n\nForce [N] and torque [N m] of the last tick, six floats."},
     {"tool_touches", tool_touches, METH_O,

@@ -502,7 +502,7 @@ static PyMethodDef simulation_methods[] = {
      "UnstableError names element, place, time and cause; reset() or load() take it up again."},
     {"clone", simulation_clone, METH_NOARGS,
      "clone($self)\n--\n\nAnother Simulation in this one's state, some ten times as fast as a new "
-     "one: what never changes\nis there once. Not for grid and threads."},
+     "one: what never changes\nis there once. Not for several processors or threads."},
     {"close", simulation_close, METH_NOARGS,
      "close($self)\n--\n\nFrees it. Nothing else may be asked of it then; closing twice is fine."},
     {"__enter__", simulation_enter, METH_NOARGS, NULL},

@@ -283,5 +283,8 @@ PyMethodDef python_state_methods[] = {
     {"load", FUNCTION(load), METH_VARARGS | METH_KEYWORDS,
      "load($self, source)\n--\n\nTakes up a Saved or a checkpoint at a path: from then on "
      "everything is as if it had never stopped, on any grid. One of another model is refused, with "
-     "what differs."},
+     "what differs. What tool_move keeps where it is not said, opening and orientation, a Saved "
+     "has as "
+     "asked for last; a file has not: they are then what they are, and jaws that tissue keeps open "
+     "must be told again to close (opening=0)."},
     {NULL, NULL, 0, NULL}};

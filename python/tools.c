@@ -54,7 +54,7 @@ static PyObject *tool_move(PyObject *me, PyObject *args, PyObject *keywords) {
 static PyObject *grasp(PyObject *me, PyObject *args, PyObject *keywords) {
     static char *names[] = {"tool", "point", "steps", NULL};
     PyObject *tool, *point = Py_None, *steps = NULL;
-    unsigned long long count = 1;
+    unsigned long long count = 0;
     int32_t index, held = 0;
     double place[3] = {0};
     if (!PyArg_ParseTupleAndKeywords(args, keywords, "O|OO:grasp", names, &tool, &point, &steps) ||
@@ -76,7 +76,7 @@ static PyObject *grasp(PyObject *me, PyObject *args, PyObject *keywords) {
 static PyObject *release(PyObject *me, PyObject *args, PyObject *keywords) {
     static char *names[] = {"tool", "steps", NULL};
     PyObject *tool, *steps = NULL;
-    unsigned long long count = 1;
+    unsigned long long count = 0;
     int32_t index;
     lar_error error;
     if (!PyArg_ParseTupleAndKeywords(args, keywords, "O|O:release", names, &tool, &steps) ||
@@ -170,10 +170,13 @@ PyMethodDef python_tool_methods[] = {
      "the tip [m]; orientation: unit quaternion w, x, y, z; opening: 0 closed to 1 open. No "
      "faster than half its radius in a step."},
     {"grasp", FUNCTION(grasp), METH_VARARGS | METH_KEYWORDS,
-     "grasp($self, tool, point=None, steps=1)\n--\n\nTakes hold: a hand at `point` [m], at once, "
-     "and returns how many surface points it has; a grasper closes its jaws within `steps`."},
+     "grasp($self, tool, point=None, steps=0)\n--\n\nTakes hold: a hand at `point` [m], at once, "
+     "and returns how many surface points it has; a grasper closes its jaws within `steps`; 0: as "
+     "many as they need."},
     {"release", FUNCTION(release), METH_VARARGS | METH_KEYWORDS,
-     "release($self, tool, steps=1)\n--\n\nLets go: a hand at once, a grasper within `steps`."},
+     "release($self, tool, steps=0)\n--\n\nLets go: a hand at once, a grasper within `steps`; 0: "
+     "as many "
+     "as its jaws need."},
     {"tool_pose", tool_pose, METH_O,
      "tool_pose($self, tool)\n--\n\ndict: position [m], orientation (w, x, y, z), opening; now."},
     {"tool_force", tool_force, METH_O,

@@ -6,12 +6,11 @@
 #include "base/error.h"
 #include "base/quaternion.h"
 
-static const double FARTHEST = 1e9;              /* [m] */
 static const double GIVEN = 0.02, NORMAL = 1e-9; /* what the square of the length may be off */
 
 static bool good_position(const double x[3]) {
     bool good = true;
-    for (int i = 0; i < 3; i++) good = good && fabs(x[i]) <= FARTHEST;
+    for (int i = 0; i < 3; i++) good = good && fabs(x[i]) <= LAR_POSE_FARTHEST;
     return good;
 }
 
@@ -36,7 +35,8 @@ lar_status lar_pose_normalise(lar_tool_pose *pose, const char *whose, lar_error 
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "%sthe position %g %g %g; it is three finite numbers, in metres, none "
                         "beyond %g",
-                        head, pose->position[0], pose->position[1], pose->position[2], FARTHEST);
+                        head, pose->position[0], pose->position[1], pose->position[2],
+                        LAR_POSE_FARTHEST);
     if (!(fabs(square - 1) <= GIVEN))
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "%sthe orientation has length %.9g; it is a quaternion w, x, y, z of "

@@ -51,4 +51,15 @@ static inline double lar_quaternion_angle(const double a[4], const double b[4]) 
     return 2 * atan2(sine, fabs(difference[0]));
 }
 
+/* The turn from a to b on the shorter way: its axis, as long as its angle [rad]. */
+static inline void lar_quaternion_turn(const double a[4], const double b[4], double out[3]) {
+    double difference[4], inverse[4];
+    lar_quaternion_inverse(a, inverse);
+    lar_quaternion_product(b, inverse, difference);
+    double sine = sqrt(difference[1] * difference[1] + difference[2] * difference[2] +
+                       difference[3] * difference[3]);
+    double angle = 2 * atan2(difference[0] < 0 ? -sine : sine, fabs(difference[0]));
+    for (int i = 0; i < 3; i++) out[i] = sine > 0 ? angle / sine * difference[i + 1] : 0;
+}
+
 #endif

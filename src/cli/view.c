@@ -330,6 +330,21 @@ static bool is_over(const view *v, double begin, double at) {
            (v->failure == LAR_ERROR_PEER && at >= v->lost_at + TELL);
 }
 
+/* How it stands at the end. Times are summed up now and then only: all of them, when it rests. */
+static void look_last(view *v) {
+    const struct timespec nap = {0, 1000000};
+    enum { NAPS = 1000 };
+    lar_session_status *status = &v->report.status;
+    lar_session_status_get(v->session, status);
+    lar_session_state state = status->state;
+    lar_session_pause(v->session);
+    for (int i = 0; i < NAPS && status->state == LAR_SESSION_PLAYING; i++) {
+        nanosleep(&nap, NULL);
+        lar_session_status_get(v->session, status);
+    }
+    if (status->state == LAR_SESSION_PAUSED) status->state = state;
+}
+
 static void look_after(view *v) {
     const struct timespec nap = {0, 50000000};
     double begin = now();
@@ -347,7 +362,7 @@ static void look_after(view *v) {
     }
     clear_progress(v);
     v->report.elapsed = now() - begin;
-    lar_session_status_get(v->session, &v->report.status);
+    look_last(v);
     note_tools(v);
     note_devices(v);
 }

@@ -163,7 +163,9 @@ const char *lar_tool_size_problem(const lar_tool *tool) {
         return tool->shape == LAR_TOOL_GRASPER
                    ? "the spread must be more than zero and less than 180 degrees"
                    : "only a grasper has a spread";
-    if (!finite3(tool->rest.position)) return "its place must be finite";
+    for (int i = 0; i < 3; i++)
+        if (!(fabs(tool->rest.position[i]) <= LAR_POSE_FARTHEST))
+            return "its place must be finite and within 1e9 m";
     if (!(tool->rest.opening >= 0 && tool->rest.opening <= 1))
         return "its opening must be between 0 and 1";
     if (!lar_pose_is_normal(&tool->rest))

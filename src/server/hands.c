@@ -28,7 +28,27 @@ void lar_hands_create(lar_hands *hands, lar_session *session, lar_hand_news *tel
     }
 }
 
-/* The run was put somewhere else: instruments are where its state has them, and nobody's. */
+/* ---- hands ---------------------------------------------------------------------------------- */
+
+static void put(lar_hands *hands, const lar_hand *hand, double opening) {
+    lar_tool_pose pose = {.orientation = {1, 0, 0, 0}, .opening = opening};
+    memcpy(pose.position, hand->to, sizeof pose.position);
+    lar_session_tool_move(hands->session, hand->tool, &pose, NULL);
+}
+
+/* In the order of what was asked for; where that is too much already, by its newest place. */
+static void let_go(lar_hands *hands, lar_hand *hand) {
+    if (lar_session_ask_release(hands->session, hand->tool, NULL)) put(hands, hand, 1);
+    hand->state = LAR_HAND_FREE;
+    hand->viewer = 0;
+}
+
+static void tell(lar_hands *hands, const lar_hand *hand, const char *state) {
+    hands->tell(hands->context, hand->viewer, hand->number, hand->tool, state);
+}
+
+/* The run was put somewhere else: instruments are where its state has them, and nobody's;
+ * hands let go, also of what that state has them hold. */
 static void look_where_it_is(lar_hands *hands, const lar_session_status *status, int64_t now) {
     if (status->placed == hands->placed) return;
     hands->placed = status->placed;
@@ -37,6 +57,11 @@ static void look_where_it_is(lar_hands *hands, const lar_session_status *status,
         if (owner->viewer == 0) continue;
         *owner = (lar_owner){
             .serial = owner->serial, .deaf_to = owner->viewer, .deaf_until = now + ON_ITS_WAY};
+    }
+    for (int32_t i = 0; i < hands->count; i++) {
+        if (hands->hand[i].state != LAR_HAND_HOLDING) continue;
+        tell(hands, &hands->hand[i], "lost");
+        let_go(hands, &hands->hand[i]);
     }
 }
 
@@ -55,25 +80,6 @@ static void look_again(lar_hands *hands, int64_t now) {
     lar_session_status_get(hands->session, &status);
     look_where_it_is(hands, &status, now);
     look_at_tools(hands);
-}
-
-/* ---- hands ---------------------------------------------------------------------------------- */
-
-static void put(lar_hands *hands, const lar_hand *hand, double opening) {
-    lar_tool_pose pose = {.orientation = {1, 0, 0, 0}, .opening = opening};
-    memcpy(pose.position, hand->to, sizeof pose.position);
-    lar_session_tool_move(hands->session, hand->tool, &pose, NULL);
-}
-
-/* In the order of what was asked for; where that is too much already, by its newest place. */
-static void let_go(lar_hands *hands, lar_hand *hand) {
-    if (lar_session_ask_release(hands->session, hand->tool, NULL)) put(hands, hand, 1);
-    hand->state = LAR_HAND_FREE;
-    hand->viewer = 0;
-}
-
-static void tell(lar_hands *hands, const lar_hand *hand, const char *state) {
-    hands->tell(hands->context, hand->viewer, hand->number, hand->tool, state);
 }
 
 static lar_hand *find(lar_hands *hands, uint64_t viewer, int32_t number) {
@@ -204,7 +210,10 @@ lar_status lar_hands_move(lar_hands *hands, uint64_t viewer, const lar_command *
     if (info.shape == LAR_TOOL_HAND)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "%s is a hand; take hold of the surface with grab", info.name);
-    if (info.shape == LAR_TOOL_NONE) return LAR_OK; /* it was removed by somebody else just now */
+    if (info.shape == LAR_TOOL_NONE)
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "place %ld has no tool: none was added there, or it was removed",
+                        (long)command->tool);
     look_again(hands, now);
     if (owner->deaf_to == viewer && now < owner->deaf_until) return LAR_OK;
     lar_tool_pose pose;

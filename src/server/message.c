@@ -198,13 +198,19 @@ static bool read_value(reader *r, key_id key) {
     }
 }
 
+/* Others' words may hold anything: what is no word like ours is not repeated. */
+static const char *plain(const char *word) {
+    enum { LONGEST = 20 };
+    size_t length = strspn(word, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789");
+    return length > 0 && length <= LONGEST && word[length] == '\0' ? word : "of that name";
+}
+
 static bool read_member(reader *r) {
     char name[LAR_NAME_MAX + 1];
     if (!read_string(r, name)) return refuse(r, LAR_CLOSE_POLICY, "a key must be a string");
     key_id key = 0;
     while (key < KEYS && strcmp(key_table[key].name, name) != 0) key++;
-    /* Names of others are not repeated: they may hold anything. */
-    if (key == KEYS) return refuse(r, LAR_CLOSE_POLICY, "there is a key that is none of ours");
+    if (key == KEYS) return refuse(r, LAR_CLOSE_POLICY, "there is no key %s", plain(name));
     if (r->seen & 1u << key)
         return refuse(r, LAR_CLOSE_POLICY, "the key %s is there twice", key_table[key].name);
     r->seen |= 1u << key;
@@ -234,7 +240,7 @@ static bool check_keys(reader *r, lar_command_kind *kind) {
     int found = 0;
     while (found < COMMANDS && strcmp(command_table[found].name, r->text[KEY_DO]) != 0) found++;
     if (found == COMMANDS)
-        return refuse(r, LAR_CLOSE_POLICY, "do has a value that is none of ours");
+        return refuse(r, LAR_CLOSE_POLICY, "do: there is no message %s", plain(r->text[KEY_DO]));
     *kind = (lar_command_kind)found;
     uint32_t needed = command_table[found].needed, given = r->seen & ~BIT(DO);
     for (int key = 0; key < KEYS; key++) {
@@ -256,7 +262,10 @@ static bool set_field(reader *r, lar_command *command) {
             command->field = lar_field_names[i].field;
             return true;
         }
-    return refuse(r, LAR_CLOSE_POLICY, "field has a value that is none of ours");
+    return refuse(
+        r, LAR_CLOSE_POLICY,
+        "there is no field %s: none, displacement, von_mises, pressure, energy or processor",
+        plain(r->text[KEY_FIELD]));
 }
 
 static bool set_shape(reader *r, lar_command *command) {
@@ -268,7 +277,8 @@ static bool set_shape(reader *r, lar_command *command) {
             command->shape = (lar_tool_shape)i;
             return true;
         }
-    return refuse(r, LAR_CLOSE_POLICY, "shape has a value that is none of ours");
+    return refuse(r, LAR_CLOSE_POLICY, "there is no shape %s: sphere, capsule or grasper",
+                  plain(r->text[KEY_SHAPE]));
 }
 
 static bool set_tool(reader *r, int32_t tools, lar_command *command) {

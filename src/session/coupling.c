@@ -13,9 +13,11 @@ static const double TURN_MAX = 20;                 /* [rad/s] */
 static const double LEVER_MIN = 0.05;              /* [m] */
 static const double ACCELERATION = 100;            /* of a hand, at most [m/s^2] */
 static const double SMOOTH = 0.004;                /* of the hand's velocity [s] */
-static const double JUMP = 0.005;                  /* no hand goes so far in a tick [m] */
+static const double REMEMBER = 0.1;                /* how far the hand went in a tick [s] */
+static const double JUMP = 2;                      /* no hand goes so fast [m/s] */
 static const double FORGET = 0.05;                 /* how stiff the tissue was [s] */
 static const double CREDIT = 5e-4, REFILL = 1e-3;  /* [J] [W] */
+static const double PAID_MAX = 0.1;                /* that a hand has put in, at most [J] */
 static const double STIFFEST = 1e5;                /* [N/m] */
 static const double REACH = 0.5; /* of its radius, a tool's way in a step (lariat.h) */
 static const double CLOSES = 0.25;
@@ -71,29 +73,47 @@ void lar_coupling_reset(lar_coupling *c, const lar_tool_pose *pose) {
     c->hand = c->tool = *pose;
     c->begun = false;
     c->held = 0;
-    c->energy = c->credit;
+    c->energy = c->paid = c->turn_paid = c->credit;
     c->share = 1;
-    c->given = c->tissue_stiffness = c->held_back = 0;
+    c->given = c->tissue_stiffness = c->held_back[0] = c->held_back[1] = 0;
+    c->steps = c->turns = (lar_coupling_ways){.last = {0}};
     for (int i = 0; i < 3; i++)
         c->hand_velocity[i] = c->tool_velocity[i] = c->tissue[i] = c->way[i] = c->spring[i] =
-            c->felt[i] = c->turned[i] = c->step[i] = 0;
+            c->felt[i] = c->turned[i] = 0;
 }
 
 /* ---- where the tool goes --------------------------------------------------------------------- */
 
-/* The hand has moved: what it has put in, and how fast it is. */
-static void move_hand(lar_coupling *c, const lar_tool_pose *hand) {
-    double share = c->seconds / (SMOOTH + c->seconds), change[3];
+/* The hand goes so far in this tick; the farthest of the last time, to both sides of each axis. */
+static void remember(const lar_coupling *c, lar_coupling_ways *ways, const double step[3],
+                     double jump) {
+    double keep = 1 - c->seconds / (REMEMBER + c->seconds);
     for (int i = 0; i < 3; i++) {
-        c->step[i] = c->begun ? hand->position[i] - c->hand.position[i] : 0;
-        change[i] = share * (c->step[i] / c->seconds - c->hand_velocity[i]);
+        double back = fabs(step[i]) > jump ? -step[i] : 0; /* it may jump back */
+        ways->last[i] = step[i];
+        ways->most[i] = fmax(fmax(step[i], back), ways->most[i] * keep);
+        ways->least[i] = fmin(fmin(step[i], back), ways->least[i] * keep);
     }
+}
+
+/* The hand has moved, with the force that it was given before, and still holds: what it has put in,
+ * and how fast it is. */
+static void move_hand(lar_coupling *c, const lar_tool_pose *hand) {
+    double share = c->seconds / (SMOOTH + c->seconds), change[3], step[3] = {0}, turn[3] = {0};
+    if (c->begun) {
+        lar_quaternion_turn(c->hand.orientation, hand->orientation, turn);
+        for (int i = 0; i < 3; i++) step[i] = hand->position[i] - c->hand.position[i];
+    }
+    for (int i = 0; i < 3; i++) change[i] = share * (step[i] / c->seconds - c->hand_velocity[i]);
     /* Positions that come late come in bunches: that is a jump, not a blow. */
     shorten(change, ACCELERATION * c->seconds);
     for (int i = 0; i < 3; i++) c->hand_velocity[i] += change[i];
-    if (length_of(c->step) > JUMP)
-        for (int i = 0; i < 3; i++) c->step[i] = 0;
-    c->energy -= dot(c->felt, c->step);
+    remember(c, &c->steps, step, JUMP * c->seconds);
+    remember(c, &c->turns, turn, JUMP * c->seconds / c->lever);
+    double work = dot(c->felt, step);
+    c->energy -= work;
+    c->paid -= work;
+    c->turn_paid -= dot(c->turned, turn);
     c->hand = *hand;
     c->begun = true;
 }
@@ -170,12 +190,6 @@ static void see_stiffness(lar_coupling *c, const double force[3]) {
     c->tissue_stiffness = fmin(c->tissue_stiffness, STIFFEST);
 }
 
-/* What the hand puts in at least in the next tick, if it feels this force: it goes on as in the
- * last one, but for what a hand's strength may change. */
-static double income(const lar_coupling *c, const double felt[3]) {
-    return -dot(felt, c->step) - length_of(felt) * ACCELERATION * c->seconds * c->seconds;
-}
-
 /* The tissue has done this work on the tool, or the tool on the tissue. What the hand has felt only
  * a share of, it has paid only that share of; the rest was given, and comes back to nobody. */
 static void settle(lar_coupling *c, double work) {
@@ -187,20 +201,39 @@ static void settle(lar_coupling *c, double work) {
         c->given -= back;
         c->energy += work - back;
     }
-    c->given *= 1 - c->seconds / (FORGET + c->seconds); /* tissue damps */
+}
+
+static double refill(const lar_coupling *c, double account, double max) {
+    if (account < c->credit) account += REFILL * c->seconds;
+    return fmin(account, max);
+}
+
+/* Shortens a force or torque to what an account bears when the hand goes on with it as far as in
+ * any tick of the last time, or as in the last one and what a hand's strength may change. Returns
+ * the share that is lost: all while the account is overdrawn. */
+static double hold_back(double felt[3], double account, const lar_coupling_ways *ways,
+                        double change) {
+    double far = 0, share = 1;
+    double next = dot(felt, ways->last) + length_of(felt) * change;
+    for (int i = 0; i < 3; i++) far += fmax(felt[i] * ways->most[i], felt[i] * ways->least[i]);
+    far = fmax(far, next);
+    if (account < far) share = fmax(0, account / far);
+    for (int i = 0; i < 3; i++) felt[i] *= share;
+    return 1 - share;
 }
 
 /* No more than what the hand and the tissue have put in: see the head of coupling.h. */
 static void pay(lar_coupling *c) {
     double stored = 0.5 * dot(c->spring, c->spring) / c->stiffness +
                     0.5 * c->mass * dot(c->tool_velocity, c->tool_velocity);
-    if (c->energy < c->credit) c->energy += REFILL * c->seconds;
-    c->energy = fmax(-c->credit, fmin(c->energy, stored + c->credit));
-    /* A force that the hand works against pays for itself. */
-    double earned = income(c, c->felt);
-    double share = earned >= 0 ? 1 : fmax(0, fmin(1, c->energy / -earned));
-    c->held_back = 1 - share;
-    for (int i = 0; i < 3; i++) c->felt[i] *= share;
+    double change = ACCELERATION * c->seconds * c->seconds;
+    c->paid = refill(c, c->paid, PAID_MAX);
+    c->turn_paid = refill(c, c->turn_paid, PAID_MAX);
+    c->energy = refill(c, c->energy, stored + c->credit);
+    /* An overdraft is forgiven to a hand that has not got more than it gave all the same. */
+    c->energy = fmax(c->energy, fmin(0, c->paid));
+    c->held_back[0] = hold_back(c->felt, c->energy, &c->steps, change);
+    c->held_back[1] = hold_back(c->turned, c->turn_paid, &c->turns, change / c->lever);
 }
 
 void lar_coupling_approach(double felt[3], const double wanted[3], double max) {
@@ -225,12 +258,12 @@ void lar_coupling_feel(lar_coupling *coupling, const lar_tool_force *force, doub
     for (int i = 0; i < 3; i++) wanted[i] = -c->spring[i];
     shorten(wanted, c->feel);
     lar_coupling_approach(c->felt, wanted, max);
-    pay(c);
-    double all = length_of(wanted);
-    c->share = all > 0 ? fmin(1, length_of(c->felt) / all) : 1;
     memcpy(torque, force->torque, sizeof torque);
     shorten(torque, c->feel_torque);
     lar_coupling_approach(c->turned, torque, LAR_COUPLING_RATE_LEVER * max);
+    pay(c);
+    double all = length_of(wanted);
+    c->share = all > 0 ? fmin(1, length_of(c->felt) / all) : 1;
     *felt = *force;
     memcpy(felt->force, c->felt, sizeof felt->force);
     memcpy(felt->torque, c->turned, sizeof felt->torque);

@@ -23,11 +23,17 @@
  * Passivity. A force that is held for a tick works on a hand that meanwhile moves on: a sampled
  * spring gives back more than it got, k (v T)^2 / 2 a tick, and a damper of samples feeds a
  * tremble. The damper makes up for it as long as the hand moves smoothly. For all others the energy
- * that went in at both ends is counted (Hannaford and Ryu 2002), what the damper ate is struck off,
- * and the hand gets only as much force as the rest pays for in the next tick, for a hand that
- * changes its speed by no more than ACCELERATION (Franken and others 2011). There is a credit of
- * CREDIT, which refills by REFILL, so that positions that come a little early and late, as on every
- * network, do not use it up.
+ * that went in at both ends is counted (Hannaford and Ryu 2002): at the hand's with the force that
+ * it holds while it goes, the last one (Ryu, Kim and Hannaford 2004), and what the damper ate is
+ * struck off. No force is given while the account is overdrawn. Else it is held back so far that
+ * the rest pays for it when the hand goes on with it as far as in any tick of the last tenth of a
+ * second or so, jumps back as far as it has jumped, or changes its speed by no more than
+ * ACCELERATION (Franken and others 2011). So only a hand that jumps farther than it did before
+ * overdraws, by one tick's force times that way, and once: until that is paid there is no force.
+ * What a hand has paid for alone, by its own count, is kept besides, since it may have been lost
+ * in the tissue: an overdraft is forgiven as long as that lasts. Turns have an account of their
+ * own, of what turning has put in. There is a credit of CREDIT in each, which refills by REFILL, so
+ * that positions that come a little early and late, as on every network, do not use it up.
  */
 #ifndef LAR_SESSION_COUPLING_H
 #define LAR_SESSION_COUPLING_H
@@ -45,6 +51,11 @@ typedef struct lar_coupling_limits {
     double seconds;    /* of a tick */
     double time_step;  /* of the engine [s]: no tool goes farther in a step than it may */
 } lar_coupling_limits;
+
+/* What a hand did in single ticks, along each axis. */
+typedef struct lar_coupling_ways {
+    double last[3], least[3], most[3]; /* in the last tick; of the last time, both around 0 */
+} lar_coupling_ways;
 
 typedef struct lar_coupling {
     lar_tool_shape shape;
@@ -64,15 +75,16 @@ typedef struct lar_coupling {
     double tissue_stiffness;                   /* as seen lately [N/m] */
     double way[3];                             /* of the tool in the last tick [m] */
     double spring[3];                          /* what pulls the tool to the hand [N] */
-    double step[3];                            /* of the hand in the last tick [m] */
+    lar_coupling_ways steps, turns;            /* of the hand [m] [rad] */
     int32_t held;
-    double felt[3];        /* what the hand feels now [N] */
-    double turned[3];      /* the torque that it feels [N m] */
-    double credit, energy; /* at the beginning; that went in and was not given back [J] */
-    double share;          /* of the spring that the hand feels, 0..1 */
-    double held_back;      /* share of what it would feel that nobody paid for, last, 0..1 */
-    double given;          /* to the tissue, and paid by nobody [J] */
-    bool begun;            /* the hand has been seen since the reset */
+    double felt[3];         /* what the hand feels now [N] */
+    double turned[3];       /* the torque that it feels [N m] */
+    double credit, energy;  /* at the beginning; that went in and was not given back [J] */
+    double share;           /* of the spring that the hand feels, 0..1 */
+    double paid, turn_paid; /* by the hand alone and not given back, by its way and its turn [J] */
+    double held_back[2];    /* shares of force and torque that nobody paid for, last, 0..1 */
+    double given;           /* to the tissue, and paid by nobody [J] */
+    bool begun;             /* the hand has been seen since the reset */
 } lar_coupling;
 
 /* At rest with the tool. */

@@ -193,7 +193,7 @@ static void tell_devices(lar_session *session) {
         lar_session_tool *tool = &session->tool[i];
         if (!tool->device) continue;
         lar_device_tick now = tick_of(session); /* each by the clock when it is told */
-        now.held_back = now.paused ? 0 : tool->coupling.held_back;
+        if (!now.paused) memcpy(now.held_back, tool->coupling.held_back, sizeof now.held_back);
         lar_device_feel(tool->device, &now, &tool->felt, &tool->place);
         lar_device_told(tool->device, (uint64_t)lar_clock_ns());
     }

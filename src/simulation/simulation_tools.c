@@ -106,15 +106,31 @@ void lar_simulation_tool_asked(const lar_simulation *simulation, int32_t tool,
 /* Beyond this a step could not be told from the next as a number. */
 static const double STEPS_MAX = 0x1p53;
 
-/* Contact is looked for once in a step: what goes farther could pass through a surface. */
-static lar_status check_speed(const lar_tool *tool, const lar_tool_pose *now,
-                              const lar_tool_pose *pose, uint64_t steps, double time_step,
-                              lar_error *error) {
+/* How far the end goes that goes farthest. */
+static double way_of(const lar_tool *tool, const lar_tool_pose *now, const lar_tool_pose *pose) {
     lar_tool_body body;
     lar_segment from[2], to[2];
     lar_tool_place(tool, now, &body, from);
     lar_tool_place(tool, pose, &body, to);
-    double way = lar_tool_way(from, to, body.count), max = 0.5 * tool->radius * (double)steps;
+    return lar_tool_way(from, to, body.count);
+}
+
+/* 0 steps: as many as its jaws need. */
+static uint64_t steps_for(const lar_simulation *simulation, int32_t index,
+                          const lar_tool_pose *pose, uint64_t steps) {
+    const lar_tool *tool = &simulation->list.tool[index];
+    lar_tool_pose now;
+    if (steps > 0 || tool->shape == LAR_TOOL_HAND) return steps > 0 ? steps : 1;
+    lar_tool_at(&simulation->tools.follower[index].hand, lar_simulation_steps(simulation),
+                simulation->domain.time_step, &now, NULL);
+    return 1 + (uint64_t)(2 * way_of(tool, &now, pose) / tool->radius);
+}
+
+/* Contact is looked for once in a step: what goes farther could pass through a surface. */
+static lar_status check_speed(const lar_tool *tool, const lar_tool_pose *now,
+                              const lar_tool_pose *pose, uint64_t steps, double time_step,
+                              lar_error *error) {
+    double way = way_of(tool, now, pose), max = 0.5 * tool->radius * (double)steps;
     if (way <= max) return LAR_OK;
     return lar_fail(
         error, LAR_ERROR_ARGUMENT,
@@ -176,7 +192,8 @@ lar_status lar_tool_check_grasp(const lar_tool *tool, const double point[3], lar
                         "tool %s is no hand and no grasper: it cannot take hold", tool->name);
     if (!point)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
-                        "hand %s needs the point where it shall take hold", tool->name);
+                        "tool %s is a hand: it needs the point where it shall take hold",
+                        tool->name);
     for (int i = 0; i < 3; i++)
         if (!isfinite(point[i]))
             return lar_fail(error, LAR_ERROR_ARGUMENT,
@@ -194,6 +211,7 @@ lar_status lar_simulation_release(lar_simulation *simulation, int32_t index, uin
     if (status) return status;
     lar_simulation_tool_asked(simulation, index, &pose);
     pose.opening = 1;
+    steps = steps_for(simulation, index, &pose, steps);
     return lar_simulation_tool_move(simulation, index, &pose, steps, error);
 }
 
@@ -210,6 +228,7 @@ lar_status lar_simulation_grasp(lar_simulation *simulation, int32_t index, const
     lar_simulation_tool_asked(simulation, index, &pose);
     if (hand) memcpy(pose.position, point, sizeof pose.position);
     pose.opening = 0;
+    if (!hand) steps = steps_for(simulation, index, &pose, steps);
     status = lar_simulation_tool_move(simulation, index, &pose, hand ? 1 : steps, error);
     int32_t count = lar_grasp_count(&simulation->tools, index);
     if (held) *held = status ? 0 : count;

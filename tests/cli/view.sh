@@ -50,6 +50,12 @@ expect 0 "$LARIAT" view $scene --port 0 --seconds 0.3 --json --paused --device p
 [ "$(value_of steps)" -eq 0 ] || fail "it did not wait for play"
 [ "$(value_of state)" = '"paused"' ] || fail "the state is $(value_of state)"
 
+# A short session: all of its ticks are in the percentiles, not the first one alone.
+expect 0 "$LARIAT" view $scene --port 0 --seconds 0.05 --json --pace 0
+awk "BEGIN { exit !($(value_of wall_per_tick_us.p50) < $(value_of wall_per_tick_us.p999)) }" ||
+    fail "the median is as long as the longest: $(value_of wall_per_tick_us.p50) us"
+[ "$(value_of state)" = '"playing"' ] || fail "at the end the state is $(value_of state)"
+
 # Slow motion: which of the two it is and what would help, and what is late in it is no miss.
 expect 0 "$LARIAT" view $scene --port 0 --seconds 3 --pace 90
 complains 'note: slow motion, [0-9.]* times real time: a step takes [0-9.]* us and stands for [0-9.]* us of the clock; what would hold: .*a mesh of about [0-9]* elements, or a slower pace'

@@ -189,6 +189,25 @@ static void clones_compute_in_threads_of_their_own(void **unused) {
     finish(first, model);
 }
 
+/* A grid of one processor with one thread is one whole: its clone has the same bits. */
+static void one_processor_clones(void **unused) {
+    (void)unused;
+    lar_model *model = tool_model();
+    lar_options options = with_tools();
+    lar_error error;
+    options.grid = "1x1x1";
+    options.threads = 1;
+    lar_simulation *divided = start_with(model, options);
+    assert_int_equal(lar_simulation_advance(divided, 50, &error), LAR_OK);
+    lar_simulation *clone = clone_of(divided);
+    assert_int_equal(lar_simulation_hash(clone), lar_simulation_hash(divided));
+    assert_int_equal(lar_simulation_advance(clone, 50, &error), LAR_OK);
+    assert_int_equal(lar_simulation_advance(divided, 50, &error), LAR_OK);
+    assert_int_equal(lar_simulation_hash(clone), lar_simulation_hash(divided));
+    lar_simulation_destroy(clone);
+    finish(divided, model);
+}
+
 static void what_cannot_be_cloned(void **unused) {
     (void)unused;
     lar_model *model = tool_model();
@@ -221,6 +240,7 @@ int main(void) {
         cmocka_unit_test(bodies_that_rub),
         cmocka_unit_test(what_is_changed_in_one_is_not_in_the_other),
         cmocka_unit_test(clones_compute_in_threads_of_their_own),
+        cmocka_unit_test(one_processor_clones),
         cmocka_unit_test(what_cannot_be_cloned),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

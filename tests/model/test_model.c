@@ -164,6 +164,8 @@ static void test_tools(void **state) {
     REFUSED(tool->shape = LAR_TOOL_CAPSULE, "only a grasper has a spread");
     REFUSED(tool->shape = LAR_TOOL_HAND, "the shape must be a sphere, a capsule or a grasper");
     REFUSED(tool->rest.position[1] = NAN, "its place must be finite");
+    REFUSED(tool->rest.position[0] = 1e300, "its place must be finite and within 1e9 m");
+    REFUSED(tool->rest.position[0] = 2e9, "its place must be finite and within 1e9 m");
     REFUSED(tool->rest.orientation[1] = 1, "its orientation must be a quaternion of length one");
     REFUSED(tool->rest.opening = 1.5, "its opening must be between 0 and 1");
     REFUSED(tool->rest.position[2] = 0.02, "the tool would begin");

@@ -56,6 +56,19 @@ class Bits(unittest.TestCase):
                 self.assertEqual(sim.advance(20, callback=lambda s: answer, every=5), steps)
             self.assertFalse(sim.rest(callback=lambda s: numpy.bool_(False))["reached"])
 
+    def test_jaws_take_the_steps_that_they_need(self):
+        grasper = {"name": "g", "shape": "grasper", "radius": 0.002, "length": 0.015, "spread": 60,
+                   "at": [-0.05, 0, 0.1], "towards": [1, 0, 0]}
+        with lariat.Simulation(block(tools=[grasper])) as sim:
+            sim.grasp("g")
+            sim.advance(100)
+            self.assertEqual(sim.tool_pose("g")["opening"], 0)
+            sim.release("g")
+            sim.advance(100)
+            self.assertEqual(sim.tool_pose("g")["opening"], 1)
+            with self.assertRaisesRegex(ValueError, "take .* steps"):
+                sim.grasp("g", steps=1)
+
     def pull_and_stiffen(self, model, grip, to, grids):
         ends = set()
         for grid in grids:

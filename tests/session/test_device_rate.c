@@ -63,10 +63,12 @@ static void take_answers(void) {
     }
 }
 
-/* Sends a thousand positions a second, `depth` below the ball's rest, and hears the answers. */
-static void push(double seconds, double depth) {
-    int64_t next = lar_clock_ns(), end = next + (int64_t)(1e9 * seconds);
+/* Sends a thousand positions a second, evenly between two depths below the ball's rest, and hears
+ * the answers. */
+static void push_on(double seconds, double from, double to) {
+    int64_t begin = lar_clock_ns(), next = begin, end = begin + (int64_t)(1e9 * seconds);
     for (; next < end; next += 1000000) {
+        double depth = from + (to - from) * (double)(next - begin) / (double)(end - begin);
         unsigned char bytes[LAR_PACKET_BYTES];
         lar_position_packet packet = {.sequence = ++him.sequence,
                                       .buttons = him.word,
@@ -76,6 +78,10 @@ static void push(double seconds, double depth) {
         lar_clock_sleep_until(next + 1000000);
         take_answers();
     }
+}
+
+static void push(double seconds, double depth) {
+    push_on(seconds, depth, depth);
 }
 
 static double size_of(const heard *h) {
@@ -157,7 +163,7 @@ static void test_rate_while_the_pace_changes(void **state) {
     bench b = open_pushed(hanging_block(), 1, "udp:127.0.0.1:0,rate=100");
     lar_session_play(b.session);
     assert_int_equal(pthread_create(&thread, NULL, hold_up, &b), 0);
-    for (int i = 0; i < 10; i++) push(0.1, i % 2 ? 0.04 : 0);
+    for (int i = 0; i < 10; i++) push_on(0.1, i % 2 ? 0 : 0.04, i % 2 ? 0.04 : 0);
     pthread_join(thread, NULL);
     double max = check_rate(0, 100, false);
     assert_true(max > 1);

@@ -57,8 +57,12 @@ static void test_unknown_devices_are_refused(void **state) {
     (void)state;
     assert_refused("phantom:0", LAR_ERROR_ARGUMENT,
                    "use script:FILE.csv, udp:HOST:PORT or gamepad:N");
-    assert_refused("script", LAR_ERROR_ARGUMENT, "no such kind of device");
-    assert_refused("script:", LAR_ERROR_ARGUMENT, "no such kind of device");
+    assert_refused("skript:a.csv", LAR_ERROR_ARGUMENT, "no such kind of device");
+    assert_refused("script", LAR_ERROR_ARGUMENT, "does not say which; use script:FILE.csv");
+    assert_refused("script:", LAR_ERROR_ARGUMENT, "does not say which; use script:FILE.csv");
+    assert_refused("udp:,scale=2", LAR_ERROR_ARGUMENT, "does not say which; use udp:HOST:PORT");
+    assert_refused("script:s.csv,trocar=0:0:0,scale=2,trocar=1:1:1", LAR_ERROR_ARGUMENT,
+                   "trocar is there twice");
     assert_refused("udp:127.0.0.1:0,color=red", LAR_ERROR_ARGUMENT,
                    "there are at axes scale trocar token rate to write");
     assert_refused("udp:127.0.0.1:0,", LAR_ERROR_ARGUMENT, "no option");

@@ -106,20 +106,23 @@ static void everything_else_is_refused(void **unused) {
         {LAR_CLOSE_POLICY, "{\"do\":\"play\"}}", "behind"},
         {LAR_CLOSE_POLICY, "{\"do\":\"play\"} {\"do\":\"play\"}", "behind"},
         {LAR_CLOSE_POLICY, "{\"do\":\"play\",\"do\":\"play\"}", "twice"},
-        {LAR_CLOSE_POLICY, "{\"do\":\"play\",\"x\":1}", "none of ours"},
+        {LAR_CLOSE_POLICY, "{\"do\":\"play\",\"x\":1}", "no key x"},
+        {LAR_CLOSE_POLICY, "{\"do\":\"play\",\"<b>\":1}", "no key of that name"},
+        {LAR_CLOSE_POLICY, "{\"do\":\"frame\",\"field\":\"nix\"}", "no field nix: none, disp"},
+        {LAR_CLOSE_POLICY, "{\"do\":\"add_tool\",\"shape\":\"hand\",\"radius\":1}",
+         "no shape hand: sphere"},
         {LAR_CLOSE_POLICY, "{\"do\":\"play\",\"steps\":1}", "play has no key steps"},
-        {LAR_CLOSE_POLICY, "{\"do\":\"Play\"}", "do has a value"},
-        {LAR_CLOSE_POLICY, "{\"do\":\"play \"}", "do has a value"},
-        {LAR_CLOSE_POLICY, "{\"do\":\"play\\u0000\"}", "do has a value"},
+        {LAR_CLOSE_POLICY, "{\"do\":\"Play\"}", "no message Play"},
+        {LAR_CLOSE_POLICY, "{\"do\":\"play \"}", "no message of that name"},
+        {LAR_CLOSE_POLICY, "{\"do\":\"play\\u0000\"}", "no message of that name"},
         {LAR_CLOSE_POLICY, "{\"do\":\"pl\\x61y\"}", "do must be a string"},
         {LAR_CLOSE_POLICY, "{\"do\":\"pl\\u00zzy\"}", "do must be a string"},
         {LAR_CLOSE_POLICY, "{\"do\":\"play\n\"}", "do must be a string"},
         {LAR_CLOSE_POLICY, "{\"do\":1}", "do must be a string"},
-        {LAR_CLOSE_POLICY, "{\"do\":\"frame\",\"field\":\"velocity\"}", "field has a value"},
+        {LAR_CLOSE_POLICY, "{\"do\":\"frame\",\"field\":\"velocity\"}", "no field velocity"},
         {LAR_CLOSE_POLICY, "{\"do\":\"frame\",\"field\":null}", "field must be a string"},
         {LAR_CLOSE_POLICY, "{\"do\":\"add_tool\",\"shape\":\"sphere\"}", "needs the key radius"},
         {LAR_CLOSE_POLICY, "{\"do\":\"add_tool\",\"radius\":1}", "needs the key shape"},
-        {LAR_CLOSE_POLICY, "{\"do\":\"add_tool\",\"shape\":\"hand\",\"radius\":1}", "shape has a"},
         {LAR_CLOSE_POLICY, "{\"do\":\"add_tool\",\"shape\":\"sphere\",\"radius\":2000}", "between"},
         {LAR_CLOSE_POLICY, "{\"do\":\"remove_tool\",\"tool\":5}", "there are 5 tools"},
         {LAR_CLOSE_POLICY, "{\"do\":\"step\"}", "step needs the key steps"},
@@ -170,7 +173,7 @@ static void everything_else_is_refused(void **unused) {
         {LAR_CLOSE_TEXT, "{\"do\":\"\xed\xa0\x80\"}", "UTF-8"},     /* a surrogate */
         {LAR_CLOSE_TEXT, "{\"do\":\"\xf4\x90\x80\x80\"}", "UTF-8"}, /* beyond the last */
         {LAR_CLOSE_TEXT, "{\"do\":\"\xe2\x82", "UTF-8"},            /* cut */
-        {LAR_CLOSE_POLICY, "{\"do\":\"\xe2\x82\xac\"}", "none of ours"}};
+        {LAR_CLOSE_POLICY, "{\"do\":\"\xe2\x82\xac\"}", "no message of that name"}};
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
         lar_command command = {.kind = LAR_COMMAND_LOAD, .steps = 77};
         char reason[LAR_REASON_BYTES] = "";

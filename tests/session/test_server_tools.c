@@ -53,8 +53,9 @@ static void everybody_sees_them(void **unused) {
     assert_true(fabs(pose.position[0] - 0.2) < 1e-4 && fabs(pose.position[2] - 0.3) < 1e-4);
     say(&other, "{\"do\":\"remove_tool\",\"tool\":4}");
     await_status(&one, "\"name\":\"\",\"shape\":\"none\"");
-    /* A late move of it is nobody's fault. Another one in its place belongs to nobody. */
+    /* A late move of it is answered. Another one in its place belongs to nobody. */
     say(&other, "{\"do\":\"tool\",\"tool\":4,\"position\":[0.2,0.1,0.3]}");
+    assert_non_null(strstr(await_text(&other, "note"), "place 4 has no tool"));
     say(&one, SPHERE);
     assert_true(number_of(await_text(&one, "added"), "tool") == FIRST);
     await_status(&one, "\"name\":\"sphere 1\"");
@@ -126,11 +127,44 @@ static void who_may_only_watch_adds_and_removes_none(void **unused) {
     end_serving(&s);
 }
 
+/* The first point of the surface, where it is now; true when it is held. */
+static bool grab_first(client *c) {
+    char text[160];
+    ask_frame(c, "none");
+    const float *at = positions_of(c);
+    snprintf(text, sizeof text, "{\"do\":\"grab\",\"hand\":0,\"point\":[%.6f,%.6f,%.6f]}",
+             (double)at[0], (double)at[1], (double)at[2]);
+    say(c, text);
+    return strstr(await_text(c, "hand"), "\"state\":\"holding\"") != NULL;
+}
+
+/* A state that was saved in the middle of a hold is taken up, by whom holds in it and by another
+ * one: hands let go, each time. */
+static void loading_lets_go(void **unused) {
+    (void)unused;
+    char folder[256];
+    snprintf(folder, sizeof folder, "%s/server-holds-%d", LAR_TEST_BUILD, (int)getpid());
+    served s = serve_spares(0, &(lar_server_options){.save_folder = folder});
+    client one = open_client(s.port), other = open_client(s.port);
+    assert_true(grab_first(&one));
+    say(&one, "{\"do\":\"save\"}");
+    await_text(&one, "saved");
+    for (int i = 0; i < 8; i++) {
+        if (i > 0) assert_true(grab_first(&one));
+        say(i % 2 ? &other : &one, "{\"do\":\"load\"}");
+        assert_non_null(strstr(await_text(&one, "hand"), "\"state\":\"lost\""));
+    }
+    close_client(&one);
+    close_client(&other);
+    end_serving(&s);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(everybody_sees_them),
         cmocka_unit_test(what_cannot_be_is_said),
         cmocka_unit_test(who_may_only_watch_adds_and_removes_none),
+        cmocka_unit_test(loading_lets_go),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -46,6 +46,14 @@ static lar_status bad_kind(const char *text, lar_error *error) {
                     forms);
 }
 
+static const lar_device_backend *find_kind(const char *text) {
+    size_t length = strcspn(text, ":,");
+    for (int i = 0; i < KINDS; i++)
+        if (strlen(backends[i]->name) == length && !strncmp(backends[i]->name, text, length))
+            return backends[i];
+    return NULL;
+}
+
 static bool read_point(lar_span value, double point[3]) {
     lar_span part, rest = value;
     for (int i = 0; i < 3; i++) {
@@ -93,6 +101,13 @@ static bool read_axes(lar_span value, double q[4]) {
     return lar_quaternion_normalise(q);
 }
 
+static bool is_twice(const char *text, lar_span name) {
+    char option[32];
+    snprintf(option, sizeof option, ",%.*s=", (int)name.length, name.at);
+    const char *first = strstr(text, option);
+    return first && strstr(first + 1, option);
+}
+
 static lar_status read_option(const lar_device_backend *backend, char *option,
                               lar_device_spec *spec, lar_error *error) {
     lar_span name, value;
@@ -106,6 +121,10 @@ static lar_status read_option(const lar_device_backend *backend, char *option,
             "device '%s': '%s' is no option of it; there are%s%sto write as name=value, "
             "each behind a comma",
             spec->text, option, COMMON_OPTIONS, backend->options + 1);
+    if (is_twice(spec->text, name))
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "device '%s': %.*s is there twice; leave one out", spec->text,
+                        (int)name.length, name.at);
     const char *wanted = NULL;
     if (lar_span_equal(name, "at")) {
         spec->at_given = true;
@@ -139,12 +158,11 @@ static lar_status read_option(const lar_device_backend *backend, char *option,
 static lar_status read_spec(char *text, lar_device_spec *spec, const lar_device_backend **backend,
                             lar_error *error) {
     char *colon = strchr(text, ':');
-    *backend = NULL;
-    for (int i = 0; i < KINDS && colon; i++)
-        if (strlen(backends[i]->name) == (size_t)(colon - text) &&
-            !strncmp(backends[i]->name, text, (size_t)(colon - text)))
-            *backend = backends[i];
-    if (!*backend || colon[1] == '\0' || colon[1] == ',') return bad_kind(spec->text, error);
+    *backend = find_kind(text);
+    if (!*backend) return bad_kind(spec->text, error);
+    if (!colon || colon[1] == '\0' || colon[1] == ',')
+        return lar_fail(error, LAR_ERROR_ARGUMENT, "device '%s': it does not say which; use %s",
+                        spec->text, (*backend)->form);
     spec->argument = colon + 1;
     char *comma = strchr(text, ',');
     while (comma) {

@@ -20,12 +20,13 @@
 
 /* One exchange with the engine. */
 typedef struct lar_device_tick {
-    uint64_t step;    /* steps done */
-    double time;      /* simulated, since the start or the last reset [s] */
-    double seconds;   /* length of a tick [s] */
-    uint64_t now;     /* CLOCK_MONOTONIC [ns] */
-    bool paused;      /* nothing moves: devices may be answered, scripts stand still */
-    double held_back; /* to feel: share of the force that nobody paid for, which falls at once */
+    uint64_t step;  /* steps done */
+    double time;    /* simulated, since the start or the last reset [s] */
+    double seconds; /* length of a tick [s] */
+    uint64_t now;   /* CLOCK_MONOTONIC [ns] */
+    bool paused;    /* nothing moves: devices may be answered, scripts stand still */
+    /* To feel: shares of force and torque that nobody paid for, which fall at once. */
+    double held_back[2];
 } lar_device_tick;
 
 typedef struct lar_device lar_device;

@@ -128,11 +128,12 @@ bool lar_link_advance(lar_link *link, bool paused, uint64_t now) {
 }
 
 void lar_link_feel(lar_link *link, const double force[3], const double torque[3],
-                   double held_back) {
+                   const double held_back[2]) {
     for (int i = 0; i < 3; i++) {
         link->wanted[i] = link->strength * force[i] + link->left * link->left_force[i];
         link->wanted_torque[i] = link->strength * torque[i] + link->left * link->left_torque[i];
-        link->force[i] *= 1 - held_back;
+        link->force[i] *= 1 - held_back[0];
+        link->torque[i] *= 1 - held_back[1];
     }
 }
 

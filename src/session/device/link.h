@@ -79,9 +79,10 @@ lar_link_verdict lar_link_take(lar_link *link, const lar_link_address *from, con
  * it stays where it was). */
 bool lar_link_advance(lar_link *link, bool paused, uint64_t now);
 
-/* What the device should get of this force and torque now. `held_back`: the share of the force
- * before that nobody has paid for, and that it loses at once. */
-void lar_link_feel(lar_link *link, const double force[3], const double torque[3], double held_back);
+/* What the device should get of this force and torque now. `held_back`: the shares of the ones
+ * before that nobody has paid for, and that they lose at once. */
+void lar_link_feel(lar_link *link, const double force[3], const double torque[3],
+                   const double held_back[2]);
 
 /* A packet leaves: what it says, link->force and ->torque, as near to that as the rate allows. */
 void lar_link_tell(lar_link *link, uint64_t now);
