@@ -7,7 +7,7 @@
 
 #include "lariat.h"
 
-enum { LAR_POSE_FARTHEST = 1000000000 }; /* from the origin, along each axis [m] */
+#define LAR_POSE_FARTHEST 1e9 /* from the origin, along each axis [m] */
 
 /* Refuses what is no pose of a tool: positions that are not finite or beyond 1e9 m, an orientation
  * whose length is off 1 by more than 1 %, an opening beyond 0 to 1. The orientation of a good one

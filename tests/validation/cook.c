@@ -15,7 +15,8 @@ static void load_right_edge(lar_model *model, int cells) {
         int32_t *node = lar_calloc(1, sizeof *node);
         assert_true(load && node);
         *node = edge.node[i];
-        *load = (lar_nodal_load){{1, node}, {0, 100.0 / (2 * cells) * (end ? 0.5 : 1), 0}, curve};
+        *load =
+            (lar_nodal_load){{1, node}, {0, 100.0 / (2 * cells) * (end ? 0.5 : 1), 0}, curve, 0};
     }
     free(edge.node);
 }
