@@ -885,7 +885,7 @@ LAR_SIZED lar_status lar_simulation_tool(const lar_simulation *simulation, int32
 
 /* From the present step on the tool moves evenly from where it is to `pose`, within `steps` (at
  * least 1) steps, and rests there: in the same steps on all processors. Taking hold and letting go
- * happen now. Neither its tip nor its other end faster than half its radius in a step
+ * happen now. Neither its tip nor its other end faster than a quarter of its radius in a step
  * (LAR_ERROR_ARGUMENT), but a hand that holds nothing may be put anywhere. */
 LAR_API lar_status lar_simulation_tool_move(lar_simulation *simulation, int32_t tool,
                                             const lar_tool_pose *pose, uint64_t steps,

@@ -244,7 +244,7 @@ static bool springs_open(const lar_tool *tool, const lar_tool_limits *limits, co
 static bool follow(const lar_tool *tool, const lar_tool_limits *limits, lar_tools *tools,
                    int32_t index, const mean_load *mean, uint64_t step, uint64_t until,
                    double time_step) {
-    /* A tool may go half its radius in a step, all its parts together (lariat.h). */
+    /* A tool may go a quarter of its radius in a step, all its parts together (lariat.h). */
     static const double SHARE = 0.15;
     static const double FASTEST = 0.5; /* [m/s]: no blows */
     lar_tool_follower *follower = &tools->follower[index];
