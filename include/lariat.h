@@ -885,8 +885,9 @@ LAR_SIZED lar_status lar_simulation_tool(const lar_simulation *simulation, int32
 
 /* From the present step on the tool moves evenly from where it is to `pose`, within `steps` (at
  * least 1) steps, and rests there: in the same steps on all processors. Taking hold and letting go
- * happen now. Neither its tip nor its other end faster than a quarter of its radius in a step
- * (LAR_ERROR_ARGUMENT), but a hand that holds nothing may be put anywhere. */
+ * happen now. Neither its tip nor its other end faster than half its radius in a step
+ * (LAR_ERROR_ARGUMENT), but a hand that holds nothing may be put anywhere. Up to a quarter of it
+ * tissue keeps a tool out; what is faster may go through a wall as thin as the tool. */
 LAR_API lar_status lar_simulation_tool_move(lar_simulation *simulation, int32_t tool,
                                             const lar_tool_pose *pose, uint64_t steps,
                                             lar_error *error);

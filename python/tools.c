@@ -168,7 +168,7 @@ PyMethodDef python_tool_methods[] = {
      "tool_move($self, tool, position, steps=1, *, orientation=None, opening=None)\n--\n\nFrom "
      "now on the tool moves evenly to a pose, within so many steps, and rests there. position: of "
      "the tip [m]; orientation: unit quaternion w, x, y, z; opening: 0 closed to 1 open. No "
-     "faster than a quarter of its radius in a step."},
+     "faster than half its radius in a step; up to a quarter tissue keeps it out."},
     {"grasp", FUNCTION(grasp), METH_VARARGS | METH_KEYWORDS,
      "grasp($self, tool, point=None, steps=0)\n--\n\nTakes hold: a hand at `point` [m], at once, "
      "and returns how many surface points it has; a grasper closes its jaws within `steps`; 0: as "

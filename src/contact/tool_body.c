@@ -244,7 +244,7 @@ static bool springs_open(const lar_tool *tool, const lar_tool_limits *limits, co
 static bool follow(const lar_tool *tool, const lar_tool_limits *limits, lar_tools *tools,
                    int32_t index, const mean_load *mean, uint64_t step, uint64_t until,
                    double time_step) {
-    /* A tool may go a quarter of its radius in a step, all its parts together (lariat.h). */
+    /* A tool may go half its radius in a step, all its parts together (lariat.h). */
     static const double SHARE = 0.15;
     static const double FASTEST = 0.5; /* [m/s]: no blows */
     lar_tool_follower *follower = &tools->follower[index];
@@ -347,6 +347,17 @@ bool lar_tools_are_slow(const lar_tool_list *list, const lar_tools *tools, uint6
         slow = !tools->follower[i].lagging &&
                way_of(&list->limits[i], &tools->motion[i], step) <= speed * time_step;
     return slow;
+}
+
+bool lar_tools_are_fast(const lar_tool_list *list, const lar_tools *tools, uint64_t step,
+                        uint64_t steps) {
+    static const double FAR = 0.25; /* of its radius */
+    bool fast = false;
+    for (int32_t i = 0; i < tools->count && !fast; i++)
+        fast = lar_tool_touches(&list->tool[i]) &&
+               way_of(&list->limits[i], &tools->motion[i], step) * (double)steps >
+                   FAR * list->tool[i].radius;
+    return fast;
 }
 
 double lar_tools_way(const lar_tool_list *list, const lar_tools *tools, uint64_t step) {

@@ -65,6 +65,11 @@ double lar_tools_way(const lar_tool_list *list, const lar_tools *tools, uint64_t
 bool lar_tools_are_slow(const lar_tool_list *list, const lar_tools *tools, uint64_t step,
                         double time_step, double speed);
 
+/* Whether a tool goes so far within so many steps that it may be deep in what it meets, or through
+ * it, before anybody decides how hard that holds it. */
+bool lar_tools_are_fast(const lar_tool_list *list, const lar_tools *tools, uint64_t step,
+                        uint64_t steps);
+
 /* At the beginning of an interval that ends at step `until`: decides where tools go in it, and
  * forgets what they have felt. `need`: of elements in the interval before it (lar_step_division);
  * `unit`: newtons of a force unit. True when a tool does not go where it went before. */

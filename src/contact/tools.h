@@ -63,9 +63,6 @@ enum { LAR_PARTS_MAX = 32, LAR_HARDNESS_MAX = 64 };
 enum { LAR_NEED_MAX = LAR_PARTS_MAX * LAR_PARTS_MAX };
 enum { LAR_UNTOUCHED_LONG = INT16_MAX, LAR_STILL_LONG = 32 };
 
-/* How far a tool may go in a step, of its radius: faster ones went through walls (decision 176). */
-#define LAR_TOOL_WAY 0.25
-
 /* How steps are divided, for a while, where elements are strained or tools press hard. */
 typedef struct lar_step_division {
     int32_t parts;   /* of a step: 1, 2, 3, 4, 6, 8, 12, ... (lar_more_parts) */

@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "base/quaternion.h"
-#include "contact/tools.h"
 
 /* A device like a PHANToM (Massie and Salisbury 1994) gives 8.5 N at most and weighs 75 g. */
 static const double STIFFNESS = 1000, MASS = 0.02; /* [N/m] [kg] */
@@ -20,6 +19,7 @@ static const double FORGET = 0.05;                 /* how stiff the tissue was [
 static const double CREDIT = 5e-4, REFILL = 1e-3;  /* [J] [W] */
 static const double PAID_MAX = 0.1;                /* that a hand has put in, at most [J] */
 static const double STIFFEST = 1e5;                /* [N/m] */
+static const double REACH = 0.5; /* of its radius, a tool's way in a step (lariat.h) */
 static const double CLOSES = 0.25;
 
 static double length_of(const double v[3]) {
@@ -41,7 +41,7 @@ static bool shorten(double v[3], double max) {
 void lar_coupling_create(lar_coupling *coupling, const lar_tool_info *tool,
                          const lar_coupling_limits *limits) {
     /* Some room below what the engine refuses: the turn and the jaws take their parts too. */
-    double engine = LAR_TOOL_WAY * tool->radius / limits->time_step;
+    double engine = REACH * tool->radius / limits->time_step;
     double jaw = 0.5 * tool->length * tool->spread; /* way of a jaw's end from open to closed */
     double share = jaw > 0 ? 0.3 : 0.4;             /* of a way, a turn, and jaws */
     double pull = tool->shape == LAR_TOOL_HAND ? limits->hand_force : FEEL_MAX;

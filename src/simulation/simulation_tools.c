@@ -123,21 +123,21 @@ static uint64_t steps_for(const lar_simulation *simulation, int32_t index,
     if (steps > 0 || tool->shape == LAR_TOOL_HAND) return steps > 0 ? steps : 1;
     lar_tool_at(&simulation->tools.follower[index].hand, lar_simulation_steps(simulation),
                 simulation->domain.time_step, &now, NULL);
-    return 1 + (uint64_t)(way_of(tool, &now, pose) / (LAR_TOOL_WAY * tool->radius));
+    return 1 + (uint64_t)(2 * way_of(tool, &now, pose) / tool->radius);
 }
 
 /* Contact is looked for once in a step: what goes farther could pass through a surface. */
 static lar_status check_speed(const lar_tool *tool, const lar_tool_pose *now,
                               const lar_tool_pose *pose, uint64_t steps, double time_step,
                               lar_error *error) {
-    double way = way_of(tool, now, pose), max = LAR_TOOL_WAY * tool->radius * (double)steps;
+    double way = way_of(tool, now, pose), max = 0.5 * tool->radius * (double)steps;
     if (way <= max) return LAR_OK;
     return lar_fail(
         error, LAR_ERROR_ARGUMENT,
         "tool %s: an end or jaw that goes %.4g m in %llu steps is at %.4g m/s, more than "
-        "a quarter of its radius in a step (%.4g m/s); take %.0f steps or a smaller way",
+        "half its radius in a step (%.4g m/s); take %.0f steps or a smaller way",
         tool->name, way, (unsigned long long)steps, way / ((double)steps * time_step),
-        LAR_TOOL_WAY * tool->radius / time_step, ceil(way / (LAR_TOOL_WAY * tool->radius)));
+        0.5 * tool->radius / time_step, ceil(2 * way / tool->radius));
 }
 
 lar_status lar_simulation_tool_move(lar_simulation *simulation, int32_t index,

@@ -203,6 +203,8 @@ bool lar_interval_divide(const lar_domain *whole, uint64_t step, double seconds,
     if (step == 0 ? starts_suddenly(whole, tools)
                   : step % whole->interval == 0 && jumps(whole, step))
         lar_division_watch(d);
+    if (lar_tools_are_fast(whole->surroundings.list, tools, step, whole->interval))
+        lar_division_watch(d);
     d->still = still_now(whole, tools, step, tool.harder);
     d->untouched = untouched_now(whole, tools, (double)step * whole->time_step, seconds);
     d->due = d->due > 1 ? (int8_t)((d->due & ~1) - 2) : 0;

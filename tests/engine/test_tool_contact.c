@@ -437,11 +437,60 @@ static void a_tool_pushed_through_holds_or_stops_and_says_why(void **unused) {
     assert_true(held > 0);
 }
 
+/* A ball that is moved fast into a thin sheet, held at its rim, stays on its side: what it meets is
+ * decided about in every step. */
+static void a_fast_ball_does_not_go_through_a_sheet(void **unused) {
+    (void)unused;
+    static const double bulk[] = {1.5e4, 3e4, 3e5};
+    int through = 0;
+    for (int k = 0; k < 24; k++) {
+        brick b = {{12, 12, 1 + k / 2 % 2},
+                   k & 1 ? 0.003 : 0.004,
+                   0,
+                   LAR_LAW_coupled_neo_hookean,
+                   3e3,
+                   bulk[k % 3],
+                   1050};
+        lar_model *model = brick_model(&b);
+        const double thick = k / 4 % 2 ? 0.001 : 0.0007, radius = k / 8 ? 0.001 : 0.0004;
+        for (int32_t n = 0; n < model->mesh.node_count; n++)
+            model->mesh.position[n][2] *= thick / (b.edge * b.cells[2]);
+        for (int axis = 0; axis < 2; axis++) {
+            fix_nodes(model, brick_side(&b, axis, 0), LAR_AXIS_ALL);
+            fix_nodes(model, brick_side(&b, axis, -1), LAR_AXIS_ALL);
+        }
+        model->damping = 20;
+        *(lar_tool *)LAR_MODEL_APPEND(model, tool) = (lar_tool){
+            .name = lar_strdup("ball"),
+            .shape = LAR_TOOL_SPHERE,
+            .radius = radius,
+            .rest = {{0.0181 + 0.0003 * k, 0.0171, thick + radius + 0.0001 * (1 + k % 7)},
+                     {1, 0, 0, 0},
+                     1}};
+        lar_simulation *s = start(model);
+        lar_tool_pose pose = model->tool[0].rest;
+        pose.position[2] = -0.03;
+        uint64_t steps = (uint64_t)(0.033 / (0.34 * radius)) + 1;
+        lar_error error;
+        if (lar_simulation_tool_move(s, 0, &pose, steps, &error)) fail_msg("%s", error.message);
+        advance(s, steps + 300);
+        double lowest = 0;
+        for (int32_t n = 0; n < model->mesh.node_count; n++)
+            lowest = fmin(lowest, model->mesh.position[n][2] + node_u(s, n)[2]);
+        lar_simulation_tool_pose(s, 0, &pose, &error);
+        through += pose.position[2] < lowest - radius;
+        finish(s, model);
+    }
+    print_message("%d of 24 balls are behind the sheet\n", through);
+    assert_int_equal(through, 0);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_dropped_body_gains_no_energy),
         cmocka_unit_test(every_joule_of_a_plane_is_accounted_for),
         cmocka_unit_test(a_plane_takes_nothing_from_what_rests),
+        cmocka_unit_test(a_fast_ball_does_not_go_through_a_sheet),
         cmocka_unit_test(a_body_stands_on_a_plane_from_the_start),
         cmocka_unit_test(a_body_comes_to_rest_on_a_plane),
         cmocka_unit_test(what_tools_feel_is_what_the_body_feels),

@@ -213,23 +213,23 @@ static void senseless_motions_are_refused(void **unused) {
     refuse(simulation, TEST_BALL, pose, 10, "opening of 1.01");
     pose.opening = NAN;
     refuse(simulation, TEST_BALL, pose, 10, "opening");
-    pose = rest; /* the radius is 8 mm: 2 mm in a step */
+    pose = rest; /* the radius is 8 mm: 4 mm in a step */
     pose.position[2] += 0.041;
-    refuse(simulation, TEST_BALL, pose, 20, "a quarter of its radius");
-    assert_int_equal(lar_simulation_tool_move(simulation, TEST_BALL, &pose, 21, NULL), LAR_OK);
+    refuse(simulation, TEST_BALL, pose, 10, "half its radius");
+    assert_int_equal(lar_simulation_tool_move(simulation, TEST_BALL, &pose, 11, NULL), LAR_OK);
     lar_simulation_reset(simulation, NULL);
     /* Turned around its tip, the far end of the rod goes farther: 6 cm. */
     pose = model->tool[TEST_ROD].rest;
     pose.orientation[0] = 0;
     pose.orientation[1] = 1;
-    refuse(simulation, TEST_ROD, pose, 28, "a quarter of its radius");
-    assert_int_equal(lar_simulation_tool_move(simulation, TEST_ROD, &pose, 32, NULL), LAR_OK);
+    refuse(simulation, TEST_ROD, pose, 14, "half its radius");
+    assert_int_equal(lar_simulation_tool_move(simulation, TEST_ROD, &pose, 16, NULL), LAR_OK);
     lar_simulation_reset(simulation, NULL);
     /* Jaws that close go 9 mm at their ends; the radius is 3 mm. */
     pose = model->tool[TEST_GRASPER].rest;
     pose.opening = 0;
-    refuse(simulation, TEST_GRASPER, pose, 11, "a quarter of its radius");
-    assert_int_equal(lar_simulation_tool_move(simulation, TEST_GRASPER, &pose, 13, NULL), LAR_OK);
+    refuse(simulation, TEST_GRASPER, pose, 5, "half its radius");
+    assert_int_equal(lar_simulation_tool_move(simulation, TEST_GRASPER, &pose, 7, NULL), LAR_OK);
     /* A hand that holds nothing may be put anywhere. */
     pose = (lar_tool_pose){{100, -100, 3}, {1, 0, 0, 0}, 1};
     assert_int_equal(lar_simulation_tool_move(simulation, TEST_HAND, &pose, 1, NULL), LAR_OK);
