@@ -367,7 +367,8 @@ static lar_status check_conflicts(const lar_model *model, lar_error *error) {
 }
 
 const char *lar_line_text(int line, char text[LAR_LINE_TEXT]) {
-    snprintf(text, LAR_LINE_TEXT, line > 0 ? ":%d" : "", line);
+    text[0] = 0;
+    if (line > 0) snprintf(text, LAR_LINE_TEXT, ":%d", line);
     return text;
 }
 
