@@ -84,3 +84,22 @@ CELL_TYPES 1
 12
 END
 }
+
+# A mesh of one cube of 10 mm, written to the file: elements E, nodes x at x = 0.
+one_cube() {
+    cat >"$1" <<'END'
+*NODE
+1, 0, 0, 0
+2, 0.01, 0, 0
+3, 0.01, 0.01, 0
+4, 0, 0.01, 0
+5, 0, 0, 0.01
+6, 0.01, 0, 0.01
+7, 0.01, 0.01, 0.01
+8, 0, 0.01, 0.01
+*ELEMENT, TYPE=C3D8, ELSET=E
+1, 1, 2, 3, 4, 5, 6, 7, 8
+*NSET, NSET=x
+1, 4, 5, 8
+END
+}

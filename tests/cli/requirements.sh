@@ -52,19 +52,7 @@ time_step: 5.0e-5
 materials:
   - { cells: all, law: mooney-rivlin, density: 1050, shear_modulus: 1.0e3, bulk_modulus: 2.0e4 }
 END
-cat >cube.inp <<'END'
-*NODE
-1, 0, 0, 0
-2, 0.01, 0, 0
-3, 0.01, 0.01, 0
-4, 0, 0.01, 0
-5, 0, 0, 0.01
-6, 0.01, 0, 0.01
-7, 0.01, 0.01, 0.01
-8, 0, 0.01, 0.01
-*ELEMENT, TYPE=C3D8
-1, 1, 2, 3, 4, 5, 6, 7, 8
-END
+one_cube cube.inp
 expect 0 "$LARIAT" requirements other.yaml --no-speed
 says '^Half as stiff'
 says 'dt_ex .* 50.00'

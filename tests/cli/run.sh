@@ -162,21 +162,7 @@ value_of account.share | awk '{ exit !($1 > 0.01 && $1 < 1) }' || fail "share $(
 
 # A muscle that shortens has a strain energy below zero, and all that is in the account sums up to
 # about nothing: a share is one of what goes in and out.
-cat >"$SCRATCH/cube.inp" <<'END'
-*NODE
-1, 0, 0, 0
-2, 0.01, 0, 0
-3, 0.01, 0.01, 0
-4, 0, 0.01, 0
-5, 0, 0, 0.01
-6, 0.01, 0, 0.01
-7, 0.01, 0.01, 0.01
-8, 0, 0.01, 0.01
-*ELEMENT, TYPE=C3D8, ELSET=E
-1, 1, 2, 3, 4, 5, 6, 7, 8
-*NSET, NSET=x
-1, 4, 5, 8
-END
+one_cube "$SCRATCH/cube.inp"
 cat >"$SCRATCH/muscle.yaml" <<'END'
 lariat: 1
 mesh: cube.inp
