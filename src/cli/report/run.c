@@ -269,8 +269,9 @@ static void print_hourglass(const lar_energy *energy, FILE *out) {
     static const double MUCH = 0.1;
     if (!(hourglass_share(energy) > MUCH)) return;
     fprintf(out,
-            "%-17s%.3g %% of the strain energy: what bends is too soft, the mesh too coarse; give "
-            "it two or more elements through the thickness, or --element hex8-full\n",
+            "%-17s%.3g %% of the strain energy: the mesh is too coarse for how it is bent or "
+            "crushed; give it two or more elements through the thickness, or --element "
+            "hex8-full\n",
             "hourglass", 100 * hourglass_share(energy));
 }
 
