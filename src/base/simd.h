@@ -185,17 +185,28 @@ LAR_INLINE lar_ilane lar_lane_round(lar_lane a) {
     lar_lane rest = (a - (high - above)) + magic;
     return ((lar_ilane)high << 32) + (lar_ilane)rest;
 }
-/* Correctly rounded: both halves are exact doubles and one fused operation joins them. */
+/* Correctly rounded: as bits of doubles the lower half stands above 2^52 and the upper one, its
+ * sign turned, above 2^84; what they stand above, 2^52 and 2^84 + 2^63, goes away without a
+ * rounding, and one addition joins them. */
 LAR_INLINE lar_lane lar_ilane_to_lane(lar_ilane a) {
+    const __m256i above_low = _mm256_set1_epi64x(0x4330000000000000LL);
+    const lar_ilane above_high = (lar_ilane)lar_lane_set(0x1.000008p84);
+    __m256i low = _mm256_blend_epi32(above_low, (__m256i)a, 0x55);
+    lar_ilane high = (lar_ilane)_mm256_srli_epi64((__m256i)a, 32) ^ above_high;
+    return ((lar_lane)high - lar_lane_set(0x1.00000801p84)) + (lar_lane)low;
+}
+/* Adding 1.5 * 2^52 leaves the nearest integer in the low bits of what is below 2^51. */
+LAR_INLINE lar_ilane lar_lane_round_small(lar_lane a) {
     const lar_lane magic = lar_lane_set(0x1.8p52);
-    lar_ilane low = a & 0xffffffffLL;
-    __m256i shifted = _mm256_srli_epi64((__m256i)a, 32);
-    /* sign-extend the high half by adding and taking away 2^31 in the unsigned range */
-    __m256i high = _mm256_xor_si256(shifted, _mm256_set1_epi64x(0x80000000LL));
-    lar_lane high_d = (lar_lane)((lar_ilane)high + (lar_ilane)magic) - lar_lane_set(0x1.8p52) -
-                      lar_lane_set(0x1p31);
-    lar_lane low_d = (lar_lane)(low + (lar_ilane)magic) - magic;
-    return lar_lane_fma(high_d, lar_lane_set(0x1p32), low_d);
+    return (lar_ilane)(a + magic) - (lar_ilane)magic;
+}
+LAR_INLINE lar_lane lar_lane_upper(lar_lane a) {
+    const int64_t sign = 0x80000000LL, above = 0x4338000000000000LL;
+    lar_ilane upper = (lar_ilane)_mm256_srli_epi64((__m256i)a, 32);
+    return (lar_lane)((upper ^ sign) + (above - sign)) - lar_lane_set(0x1.8p52);
+}
+LAR_INLINE lar_lane lar_lane_from_upper(lar_lane a) {
+    return (lar_lane)((lar_ilane)(a + lar_lane_set(0x1.8p52)) << 32);
 }
 LAR_INLINE unsigned lar_lane_not_greater(lar_lane a, lar_lane b) {
     return (unsigned)_mm256_movemask_pd(_mm256_cmp_pd((__m256d)a, (__m256d)b, _CMP_NGT_UQ));
@@ -377,6 +388,17 @@ LAR_INLINE void lar_axis_add_row(int64_t *a, int64_t *b, bool half, lar_ilane le
 
 #endif
 
+#if LAR_SIMD != LAR_SIMD_AVX2
+/* The upper half of a double as a whole number, and from one, |a| < 2^31, a double with that as its
+ * upper half. */
+LAR_INLINE lar_lane lar_lane_upper(lar_lane a) {
+    return lar_ilane_to_lane(lar_lane_bits(a) >> 32);
+}
+LAR_INLINE lar_lane lar_lane_from_upper(lar_lane a) {
+    return lar_ilane_as_lane(lar_lane_round(a) << 32);
+}
+#endif
+
 /* ---- nodes, `stride` values from one axis to the next ---------------------------------------- */
 
 /* One local node of each lane. */
@@ -413,30 +435,33 @@ LAR_INLINE void lar_lane_gather_row(const double *nodes, size_t stride, const in
     }
 }
 
-/* Neighbours' forces are added before they are stored. The last node's right force is added on its
- * own: a masked store there costs as much as all the rest. */
+/* The forces along so many axes. Neighbours' forces are added before they are stored. The last
+ * node's right force is added on its own: a masked store there costs as much as all the rest. */
 LAR_INLINE void lar_ilane_scatter_row(int64_t *nodes, size_t stride, const int32_t *left_node,
-                                      const int32_t *right_node, bool half, const lar_ilane left[3],
-                                      const lar_ilane right[3]) {
+                                      const int32_t *right_node, bool half, int axes,
+                                      const lar_ilane *left, const lar_ilane *right) {
     /* Read once: what is stored between the axes might be places, for all that a compiler knows. */
     const bool halves = half && LAR_LANES == 8; /* narrower lanes take a row of four as it is */
     const int64_t a = left_node[0], b = halves ? left_node[4] : right_node[0];
-    for (int i = 0; i < 3; i++) {
+    for (int i = 0; i < axes; i++) {
         int64_t *axis = nodes + (size_t)i * stride;
         lar_axis_add_row(axis + a, axis + b, halves, left[i], right[i]);
     }
 }
 
-/* A load whose value stays in a register. Compilers like to fold a load into every instruction
- * that uses it; with two loads a cycle, three uses of 30 numbers are what a kernel waits for. */
-LAR_INLINE lar_lane lar_lane_load_once(const double *p) {
-    lar_lane a = lar_lane_load(p);
+/* A value that stays in a register once it is loaded. Compilers like to fold a load into every
+ * instruction that uses it; with two loads a cycle, three uses of 30 numbers are what a kernel
+ * waits for. */
+LAR_INLINE lar_lane lar_lane_keep(lar_lane a) {
 #if LAR_SIMD == LAR_SIMD_AVX512
     __asm__("" : "+v"(a));
 #elif LAR_SIMD == LAR_SIMD_AVX2
     __asm__("" : "+x"(a));
 #endif
     return a;
+}
+LAR_INLINE lar_lane lar_lane_load_once(const double *p) {
+    return lar_lane_keep(lar_lane_load(p));
 }
 
 #endif

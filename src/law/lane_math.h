@@ -16,9 +16,9 @@
  *     J^(-1/3) = y (1 - r)^(-1/3) = y (1 + r/3 + 2 r^2/9 + 14 r^3/81 + ...).
  * For J <= 0 or not finite the result means nothing; the caller checks J. */
 LAR_INLINE lar_lane lar_lane_rcbrt(lar_lane J) {
-    lar_lane upper = lar_ilane_to_lane(lar_lane_bits(J) >> 32);
-    lar_lane guess = lar_lane_fma(upper, lar_lane_set(-1.0 / 3), lar_lane_set(1430186164.0));
-    lar_lane y = lar_ilane_as_lane(lar_lane_round(guess) << 32);
+    lar_lane guess =
+        lar_lane_fma(lar_lane_upper(J), lar_lane_set(-1.0 / 3), lar_lane_set(1430186164.0));
+    lar_lane y = lar_lane_from_upper(guess);
     for (int i = 0; i < 2; i++) {
         lar_lane r = lar_lane_fnma(y * y, J * y, lar_lane_set(1));
         lar_lane series = lar_lane_fma(r, lar_lane_set(14.0 / 81), lar_lane_set(2.0 / 9));

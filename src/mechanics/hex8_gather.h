@@ -14,12 +14,14 @@
 #define UNROLL3
 #define UNROLL4
 #define UNROLL6
+#define UNROLL7
 #define UNROLL8
 #define UNROLL9
 #else
 #define UNROLL3 _Pragma("GCC unroll 3")
 #define UNROLL4 _Pragma("GCC unroll 4")
 #define UNROLL6 _Pragma("GCC unroll 6")
+#define UNROLL7 _Pragma("GCC unroll 7")
 #define UNROLL8 _Pragma("GCC unroll 8")
 #define UNROLL9 _Pragma("GCC unroll 9")
 #endif
@@ -34,6 +36,11 @@ typedef struct lane_record {
 typedef struct lane_strain {
     lar_lane number[LAR_STRAIN_NUMBERS];
 } lane_strain;
+
+/* How many axes of some lanes are worked on at once: modes, gradients and stresses of all three
+ * fill 32 registers, those of one 16. */
+enum { AXES = LAR_LANES == 4 ? 1 : 3 };
+#define UNROLL_AXES UNROLL3
 
 /* The phases work on a few blocks at a time. The law of one block is a long chain of dependent
  * operations, which a processor can hide only behind other blocks; in short loops their turns
@@ -105,7 +112,7 @@ __attribute__((noinline)) static void hand_out(const lar_block_head *head, int l
             lar_ilane_scatter_add(force.value, force.stride, a, corner[left]);
             lar_ilane_scatter_add(force.value, force.stride, b, corner[right]);
         } else {
-            lar_ilane_scatter_row(force.value, force.stride, a, b, rows == LAR_ROWS_FOUR,
+            lar_ilane_scatter_row(force.value, force.stride, a, b, rows == LAR_ROWS_FOUR, 3,
                                   corner[left], corner[right]);
         }
     }
@@ -145,55 +152,35 @@ LAR_INLINE lar_lane load_corner(const double *axis, const int32_t *at, bool four
     if (fours) return lar_axis_fours(axis, at);
 #endif
     (void)fours;
-    return lar_lane_load_row(axis + at[0]);
+    return lar_lane_keep(lar_lane_load_row(axis + at[0]));
 }
 
-LAR_INLINE void gather_edge(lane_corners from, int edge, bool fours, lar_lane sum[3],
-                            lar_lane difference[3]) {
-    lar_lane left[3], right[3];
-    const int32_t *at = from.at + left_node[edge] * LAR_BLOCK;
-    const int32_t *at_right = ONE_LANE ? from.at + right_node[edge] * LAR_BLOCK : at;
-    UNROLL3 for (int i = 0; i < 3; i++) {
-        left[i] = load_corner(from.left[i], at, fours);
-        right[i] = load_corner(from.right[i], at_right, fours);
+/* Modal displacements along an axis: xi, eta, zeta, eta zeta, xi zeta, xi eta, xi eta zeta. */
+LAR_INLINE void gather_axis(lane_corners from, int axis, bool fours, lar_lane U[7]) {
+    lar_lane sum[4], difference[4]; /* along xi, for (eta, zeta) = --, +-, -+, ++ */
+    UNROLL4 for (int edge = 0; edge < 4; edge++) {
+        const int32_t *at = from.at + left_node[edge] * LAR_BLOCK;
+        const int32_t *at_right = ONE_LANE ? from.at + right_node[edge] * LAR_BLOCK : at;
+        lar_lane left = load_corner(from.left[axis], at, fours);
+        lar_lane right = load_corner(from.right[axis], at_right, fours);
+        sum[edge] = right + left;
+        difference[edge] = right - left;
     }
-    UNROLL3 for (int i = 0; i < 3; i++) {
-        sum[i] = right[i] + left[i];
-        difference[i] = right[i] - left[i];
+    lar_lane lower[4], upper[4]; /* along xi and eta: ++, +-, -+, -- */
+    for (int top = 0; top < 2; top++) {
+        lar_lane *layer = top ? upper : lower;
+        layer[0] = sum[2 * top + 1] + sum[2 * top];
+        layer[1] = sum[2 * top + 1] - sum[2 * top];
+        layer[2] = difference[2 * top + 1] + difference[2 * top];
+        layer[3] = difference[2 * top + 1] - difference[2 * top];
     }
-}
-
-/* Sums and differences along xi and eta of the four nodes with one sign of zeta:
- * index 0: ++, 1: +-, 2: -+, 3: -- (xi first). */
-LAR_INLINE void gather_layer(lane_corners from, int edge, bool fours, lar_lane layer[4][3]) {
-    lar_lane s0[3], d0[3], s1[3], d1[3];
-    gather_edge(from, edge, fours, s0, d0);
-    gather_edge(from, edge + 1, fours, s1, d1);
-    UNROLL3 for (int i = 0; i < 3; i++) {
-        layer[0][i] = s1[i] + s0[i];
-        layer[1][i] = s1[i] - s0[i];
-        layer[2][i] = d1[i] + d0[i];
-        layer[3][i] = d1[i] - d0[i];
-    }
-}
-
-/* Modal displacements: xi, eta, zeta, eta zeta, xi zeta, xi eta, xi eta zeta. */
-LAR_INLINE void gather_modes(const lar_block_head *head, int lane, lar_block_rows rows, bool fours,
-                             lane_nodes u, lar_lane U[7][3]) {
-    picked_corners picked;
-    lar_lane lower[4][3], upper[4][3];
-    const lane_corners from = find_corners(head, lane, rows, fours, u, &picked);
-    gather_layer(from, 0, fours, lower);
-    gather_layer(from, 2, fours, upper);
-    UNROLL3 for (int i = 0; i < 3; i++) {
-        U[0][i] = upper[2][i] + lower[2][i];
-        U[1][i] = upper[1][i] + lower[1][i];
-        U[2][i] = upper[0][i] - lower[0][i];
-        U[3][i] = upper[1][i] - lower[1][i];
-        U[4][i] = upper[2][i] - lower[2][i];
-        U[5][i] = upper[3][i] + lower[3][i];
-        U[6][i] = upper[3][i] - lower[3][i];
-    }
+    U[0] = upper[2] + lower[2];
+    U[1] = upper[1] + lower[1];
+    U[2] = upper[0] - lower[0];
+    U[3] = upper[1] - lower[1];
+    U[4] = upper[2] - lower[2];
+    U[5] = upper[3] + lower[3];
+    U[6] = upper[3] - lower[3];
 }
 
 /* factor / 64 (a x b), axis i: of the volume's derivatives (LAR_HEX8_VOLUME_TERM). */

@@ -17,6 +17,7 @@
 #include "base/simd.h"
 #include "law/lanes.h"
 #include "mechanics/hex8_gather.h"
+#include "mechanics/hex8_lean.h"
 #include "mechanics/node_update.h"
 #ifndef LAR_KERNEL_ELASTIC
 #include "mechanics/hex8_fibre.h"
@@ -24,114 +25,85 @@
 #include "mechanics/hex8_viscous.h"
 #endif
 
-/* ---- lean blocks --------------------------------------------------------------------------- */
-
-/* The quotient as division would round it: what is left over, times the reciprocal (Markstein
- * 1990). Divisions take five times as long. It may be wrong once in some 10^15 times, and then
- * lar_domain_create sees it and keeps whole blocks. */
-LAR_INLINE lar_lane quotient(lar_lane a, lar_lane b, lar_lane reciprocal) {
-    lar_lane q = a * reciprocal;
-    return lar_lane_fma(lar_lane_fnma(q, b, a), reciprocal, q);
-}
-
-/* Gradients and shapes of some lanes, as hex8.c makes them, operation for operation. */
-LAR_INLINE void expand_lanes(const lar_lean_block *lean, int lane, lar_block_rows rows,
-                             lane_nodes rest, lar_hex8_block *whole) {
-    lar_lane X[7][3];
-    gather_modes(&whole->head, lane, rows, false, rest, X);
-    lar_lane volume = lar_lane_load(&lean->volume[lane]), reciprocal = lar_lane_set(1) / volume;
-    UNROLL6 for (int m = 0; m < LAR_HEX8_GRADIENTS; m++) UNROLL3 for (int i = 0; i < 3; i++) {
-        lar_lane term[2];
-        for (int t = 0; t < 2; t++)
-            term[t] =
-                volume_term(LAR_HEX8_VOLUME_TERM[m][t].factor, X[LAR_HEX8_VOLUME_TERM[m][t].left],
-                            X[LAR_HEX8_VOLUME_TERM[m][t].right], i);
-        lar_lane_store(&whole->gradient[m][i][lane],
-                       quotient(term[0] + term[1], volume, reciprocal));
-    }
-    UNROLL4 for (int m = 0; m < LAR_HEX8_HOURGLASS; m++) UNROLL3 for (int i = 0; i < 3; i++)
-        lar_lane_store(&whole->shape[m][i][lane], X[3 + m][i]);
-}
-
-static lane_nodes nodes_of(const lar_block_run *run, const double *value) {
-    return (lane_nodes){value, run->axis_stride};
-}
-
-/* Of some memory every so many lines are asked for, from the first one on.
- *
- * Blocks that come from beyond the second-level cache are asked for while the chunk before them is
- * computed: a few lines of each, evenly. Hardware fetches on from a line that was asked for, some
- * twenty lines, but only while somebody asks, and a core can wait for sixteen lines at once; asked
- * for in one go they keep it from computing (docs/performance.md, "Large models"). */
-LAR_INLINE void ask(const char *memory, size_t bytes, size_t first, size_t each) {
-    enum { LINE = 64 };
-#pragma GCC unroll 1
-    for (size_t k = first * LINE; k < bytes; k += each * LINE) __builtin_prefetch(memory + k, 0, 3);
-}
-
-/* Of a lean block in a model that caches do not hold nearly all that comes from memory is its
- * nodes. They are numbered as blocks come: what this many nodes further stands is needed soon. */
-__attribute__((noinline)) static void ask_for_nodes(const lar_block_run *run,
-                                                    const lar_block_head *head, const double *u,
-                                                    const int64_t *force) {
-    enum { AHEAD = 128 };
-    __asm__ volatile(""); /* else calls of a function that changes nothing are left out */
-    size_t at = (size_t)head->node[left_node[3]][0] + AHEAD;
-    for (int i = 0; i < 3; i++, at += run->axis_stride) {
-        __builtin_prefetch(run->rest + at, 0, 3);
-        __builtin_prefetch(u + at, 0, 3);
-        __builtin_prefetch(force + at, 1, 3);
-    }
-}
-
-static void expand(const lar_block_run *run, int32_t b, lar_hex8_block *whole) {
-    const void *block = lar_run_block(run, b);
-    lar_lean_head(run, block, &whole->head);
-    for (int lane = 0; lane < LAR_BLOCK; lane += LAR_LANES)
-        expand_lanes(block, lane, run->rows, nodes_of(run, run->rest), whole);
-}
-
-/* The blocks of a chunk that begins with block b as phases take them. */
-static const char *whole_blocks(const lar_block_run *run, int32_t b, size_t count, const double *u,
-                                const int64_t *force, lar_hex8_block *made) {
-    const char *kept = lar_run_block(run, b);
-    if (!run->rest) return kept;
-    if (run->streamed) ask(kept + count * lar_run_stride(run), count * lar_run_stride(run), 0, 1);
-    for (size_t i = 0; i < count; i++) {
-        expand(run, b + (int32_t)i, &made[i]);
-        if (run->streamed) ask_for_nodes(run, &made[i].head, u, force);
-    }
-    return (const char *)made;
-}
-
 /* ---- phases -------------------------------------------------------------------------------- */
 
-LAR_INLINE void strain_general(const lar_hex8_block *block, int lane, lar_lane U[7][3],
-                               lar_lane H[9]) {
+/* Some lanes' gradients and, of general blocks, the shapes behind them, LAR_BLOCK values from one
+ * number to the next. Where axes take turns a compiler that knows where this comes from keeps each
+ * number, or each address, for the next axis, and has registers for neither. */
+LAR_INLINE const double *constants_of(const void *block, int lane, lar_block_shape shape) {
+    const lar_hex8_block *general = block;
+    const lar_box_block *box = block;
+    const double *first =
+        shape == LAR_SHAPE_BOX ? &box->gradient[0][lane] : &general->gradient[0][0][lane];
+    __asm__("" : "+r"(first));
+    return first;
+}
+/* What one axis uses at a time is loaded where it does. */
+LAR_INLINE lar_lane gradient_of(const double *constants, int k) {
+    const double *p = constants + (size_t)k * LAR_BLOCK;
+    return AXES > 1 ? lar_lane_load_once(p) : lar_lane_load(p);
+}
+LAR_INLINE lar_lane shape_of(const double *constants, int k) {
+    return lar_lane_load_once(constants + (size_t)(3 * LAR_HEX8_GRADIENTS + k) * LAR_BLOCK);
+}
+_Static_assert(offsetof(lar_hex8_block, shape) ==
+                   offsetof(lar_hex8_block, gradient) + sizeof(((lar_hex8_block *)NULL)->gradient),
+               "shapes stand behind gradients");
+
+#if LAR_SIMD == LAR_SIMD_AVX2
+__attribute__((noinline, cold)) static void round_large(const lar_lane G[7], lar_ilane n[7]) {
+    for (int m = 0; m < 7; m++) n[m] = lar_lane_round(G[m]);
+}
+
+/* Modal forces are below 2^51 units but where a material is crushed, and those take half the
+ * operations. */
+LAR_INLINE void round_modes(const lar_lane G[7], lar_ilane n[7]) {
+    lar_lane sum = lar_lane_fma(G[0], G[0], G[1] * G[1]), more = G[2] * G[2];
+    UNROLL7 for (int m = 3; m < 7; m++) more = lar_lane_fma(G[m], G[m], more);
+    if (__builtin_expect(lar_lane_not_greater(lar_lane_set(0x1p101), sum + more) != 0, 0)) {
+        lar_lane large[7]; /* copies, so that the others stay in registers */
+        lar_ilane rounded[7];
+        memcpy(large, G, sizeof large);
+        round_large(large, rounded);
+        memcpy(n, rounded, sizeof rounded);
+        return;
+    }
+    UNROLL7 for (int m = 0; m < 7; m++) n[m] = lar_lane_round_small(G[m]);
+}
+#else
+LAR_INLINE void round_modes(const lar_lane G[7], lar_ilane n[7]) {
+    UNROLL7 for (int m = 0; m < 7; m++) n[m] = lar_lane_round(G[m]);
+}
+#endif
+
+/* Some axes of the gradient of displacement, from modes U of these axes. */
+LAR_INLINE void strain_general(const double *constants, lar_lane U[AXES][7], lar_lane H[AXES][3]) {
     UNROLL3 for (int j = 0; j < 3; j++) {
-        lar_lane B = lar_lane_load_once(&block->gradient[0][j][lane]);
-        UNROLL3 for (int i = 0; i < 3; i++) H[3 * i + j] = U[0][i] * B;
+        lar_lane B = gradient_of(constants, j);
+        UNROLL3 for (int i = 0; i < AXES; i++) H[i][j] = U[i][0] * B;
     }
     UNROLL6 for (int m = 1; m < LAR_HEX8_GRADIENTS; m++) UNROLL3 for (int j = 0; j < 3; j++) {
-        lar_lane B = lar_lane_load_once(&block->gradient[m][j][lane]);
-        UNROLL3 for (int i = 0; i < 3; i++) H[3 * i + j] = lar_lane_fma(U[m][i], B, H[3 * i + j]);
-    }
-    UNROLL4 for (int m = 0; m < LAR_HEX8_HOURGLASS; m++) /* q_m = U_m - H X_m */
-        UNROLL3 for (int j = 0; j < 3; j++) {
-        lar_lane X = lar_lane_load_once(&block->shape[m][j][lane]);
-        UNROLL3 for (int i = 0; i < 3; i++) U[3 + m][i] =
-            lar_lane_fnma(H[3 * i + j], X, U[3 + m][i]);
+        lar_lane B = gradient_of(constants, 3 * m + j);
+        UNROLL3 for (int i = 0; i < AXES; i++) H[i][j] = lar_lane_fma(U[i][m], B, H[i][j]);
     }
 }
 
-/* Straight into the record: column turn + m of F is U_m B_m, plus 1 on the diagonal. */
-LAR_INLINE void strain_box(const lar_box_block *block, int lane, int turn, lar_lane U[7][3],
-                           lar_lane F[9]) {
+/* The same of a box: column turn + m is U_m B_m. */
+LAR_INLINE void strain_box(const double *constants, int turn, lar_lane U[AXES][7],
+                           lar_lane H[AXES][3]) {
     UNROLL3 for (int m = 0; m < 3; m++) {
         int axis = turn + m < 3 ? turn + m : turn + m - 3;
-        lar_lane B = lar_lane_load_once(&block->gradient[m][lane]);
-        UNROLL3 for (int i = 0; i < 3; i++) F[3 * i + axis] =
-            U[m][i] * B + lar_lane_set(i == axis ? 1 : 0);
+        lar_lane B = gradient_of(constants, m);
+        UNROLL3 for (int i = 0; i < AXES; i++) H[i][axis] = U[i][m] * B;
+    }
+}
+
+/* Of the modes of a general element what its gradient does not explain: q_m = U_m - H X_m. */
+LAR_INLINE void strain_hourglass(const double *constants, const lar_lane H[3][3],
+                                 lar_lane q[3][LAR_HEX8_HOURGLASS]) {
+    UNROLL4 for (int m = 0; m < LAR_HEX8_HOURGLASS; m++) UNROLL3 for (int j = 0; j < 3; j++) {
+        lar_lane X = shape_of(constants, 3 * m + j);
+        UNROLL3 for (int i = 0; i < 3; i++) q[i][m] = lar_lane_fnma(H[i][j], X, q[i][m]);
     }
 }
 
@@ -140,19 +112,27 @@ LAR_INLINE void strain_lanes(const void *block, int lane, lar_block_shape shape,
                              lar_block_rows rows, bool fours, int turn, lane_nodes u,
                              lane_record *record) {
     const lar_block_head *head = block;
-    lar_lane U[7][3];
-    gather_modes(head, lane, rows, fours, u, U);
-    if (shape == LAR_SHAPE_BOX) {
-        strain_box(block, lane, turn, U, record->F);
-    } else {
-        lar_lane H[9];
-        strain_general(block, lane, U, H);
-        UNROLL9 for (int k = 0; k < 9; k++) record->F[k] =
-            k % 4 == 0 ? H[k] + lar_lane_set(1) : H[k];
+    picked_corners picked;
+    const lane_corners from = find_corners(head, lane, rows, fours, u, &picked);
+    lar_lane H[3][3], q[3][LAR_HEX8_HOURGLASS];
+    UNROLL3 for (int first = 0; first < 3; first += AXES) {
+        const double *constants = constants_of(block, lane, shape);
+        lar_lane U[AXES][7];
+        UNROLL3 for (int i = 0; i < AXES; i++) gather_axis(from, first + i, fours, U[i]);
+        if (shape == LAR_SHAPE_BOX)
+            strain_box(constants, turn, U, H + first);
+        else
+            strain_general(constants, U, H + first);
+        UNROLL3 for (int i = 0; i < AXES; i++) UNROLL4 for (int m = 0; m < LAR_HEX8_HOURGLASS; m++)
+            q[first + i][m] = U[i][3 + m];
     }
+    if (shape == LAR_SHAPE_GENERAL)
+        strain_hourglass(constants_of(block, lane, shape), (const lar_lane(*)[3])H, q);
+    UNROLL3 for (int i = 0; i < 3; i++) UNROLL3 for (int j = 0; j < 3; j++) record->F[3 * i + j] =
+        i == j ? H[i][j] + lar_lane_set(1) : H[i][j];
     UNROLL4 for (int m = 0; m < LAR_HEX8_HOURGLASS; m++) {
         lar_lane c = lar_lane_load_once(&head->stiffness[m][lane]);
-        UNROLL3 for (int i = 0; i < 3; i++) record->cq[m][i] = U[3 + m][i] * c;
+        UNROLL3 for (int i = 0; i < 3; i++) record->cq[m][i] = q[i][m] * c;
     }
 }
 
@@ -204,91 +184,102 @@ LAR_INLINE unsigned stress_lanes(const lar_block_head *head, int lane, lane_reco
     return beyond;
 }
 
-LAR_INLINE void force_general(const lar_hex8_block *block, int lane, const lane_record *record,
-                              lar_ilane n[7][3]) {
-    lar_lane S[9];
-    UNROLL9 for (int k = 0; k < 9; k++) S[k] = record->F[k];
+/* Stress less what hourglass forces take of it. */
+LAR_INLINE void stress_left(const double *constants, const lane_record *record, lar_lane S[3][3]) {
+    UNROLL3 for (int i = 0; i < 3; i++) UNROLL3 for (int j = 0; j < 3; j++) S[i][j] =
+        record->F[3 * i + j];
     UNROLL4 for (int m = 0; m < LAR_HEX8_HOURGLASS; m++) UNROLL3 for (int j = 0; j < 3; j++) {
-        lar_lane X = lar_lane_load_once(&block->shape[m][j][lane]);
-        UNROLL3 for (int i = 0; i < 3; i++) S[3 * i + j] =
-            lar_lane_fnma(record->cq[m][i], X, S[3 * i + j]);
+        lar_lane X = shape_of(constants, 3 * m + j);
+        UNROLL3 for (int i = 0; i < 3; i++) S[i][j] = lar_lane_fnma(record->cq[m][i], X, S[i][j]);
     }
+}
+
+/* Some axes of the modal forces, `first` and those after it, from these axes of S. */
+LAR_INLINE void force_general(const double *constants, const lane_record *record, int first,
+                              lar_lane S[AXES][3], lar_lane G[AXES][7]) {
     UNROLL6 for (int m = 0; m < LAR_HEX8_GRADIENTS; m++) {
         lar_lane B[3];
-        UNROLL3 for (int j = 0; j < 3; j++) B[j] = lar_lane_load_once(&block->gradient[m][j][lane]);
-        UNROLL3 for (int i = 0; i < 3; i++) {
-            lar_lane G =
-                m < 3 ? S[3 * i] * B[0] : lar_lane_fma(S[3 * i], B[0], record->cq[m - 3][i]);
-            G = lar_lane_fma(S[3 * i + 1], B[1], G);
-            n[m][i] = lar_lane_round(lar_lane_fma(S[3 * i + 2], B[2], G));
+        UNROLL3 for (int j = 0; j < 3; j++) B[j] = gradient_of(constants, 3 * m + j);
+        UNROLL3 for (int i = 0; i < AXES; i++) {
+            lar_lane sum =
+                m < 3 ? S[i][0] * B[0] : lar_lane_fma(S[i][0], B[0], record->cq[m - 3][first + i]);
+            G[i][m] = lar_lane_fma(S[i][2], B[2], lar_lane_fma(S[i][1], B[1], sum));
         }
     }
 }
 
-LAR_INLINE void force_box(const lar_box_block *block, int lane, int turn, const lane_record *record,
-                          lar_ilane n[7][3]) {
+LAR_INLINE void force_box(const double *constants, int turn, const lane_record *record, int first,
+                          lar_lane G[AXES][7]) {
     UNROLL3 for (int m = 0; m < 3; m++) {
         int axis = turn + m < 3 ? turn + m : turn + m - 3;
-        lar_lane B = lar_lane_load_once(&block->gradient[m][lane]);
-        UNROLL3 for (int i = 0; i < 3; i++) {
-            n[m][i] = lar_lane_round(record->F[3 * i + axis] * B);
-            n[3 + m][i] = lar_lane_round(record->cq[m][i]);
+        lar_lane B = gradient_of(constants, m);
+        UNROLL3 for (int i = 0; i < AXES; i++) {
+            G[i][m] = record->F[3 * (first + i) + axis] * B;
+            G[i][3 + m] = record->cq[m][first + i];
         }
     }
 }
 
-LAR_INLINE void scatter_edge(const lar_block_head *head, int lane, lar_block_rows rows, bool fours,
-                             int edge, const lar_ilane sum[3], const lar_ilane difference[3],
-                             lane_sums force, lar_ilane corner[8][3]) {
-    lar_ilane left[3], right[3];
-    UNROLL3 for (int i = 0; i < 3; i++) {
-        left[i] = sum[i] - difference[i];
-        right[i] = sum[i] + difference[i];
-    }
-    if (fours || LANES_LIE_IN_ROWS(rows)) {
-        lar_ilane_scatter_row(force.value, force.stride, head->node[left_node[edge]] + lane,
-                              head->node[right_node[edge]] + lane, fours, left, right);
-        return;
-    }
-    UNROLL3 for (int i = 0; i < 3; i++) {
-        corner[left_node[edge]][i] = left[i];
-        corner[right_node[edge]][i] = right[i];
-    }
-}
-
-/* The transform back, from the modes n: along zeta, eta, xi. */
-LAR_INLINE void scatter_modes(const lar_block_head *head, int lane, lar_block_rows rows, bool fours,
-                              lar_ilane n[7][3], lane_sums force) {
-    lar_ilane corner[8][3];
+/* The transform back of some axes, from the modes n: along zeta, eta, xi; and to the nodes of rows,
+ * while corners of other lanes wait for hand_out. */
+LAR_INLINE void scatter_modes(const lar_block_head *head, int lane, bool in_rows, bool fours,
+                              lar_ilane n[AXES][7], int first, lane_sums force,
+                              lar_ilane corner[8][3]) {
     UNROLL3 for (int top = 0; top < 2; top++) {
-        lar_ilane s0[3], s1[3], d0[3], d1[3];
-        UNROLL3 for (int i = 0; i < 3; i++) {
-            lar_ilane zeta = top ? n[2][i] : -n[2][i];
-            lar_ilane eta = top ? n[1][i] + n[3][i] : n[1][i] - n[3][i];
-            lar_ilane xi = top ? n[0][i] + n[4][i] : n[0][i] - n[4][i];
-            lar_ilane xieta = top ? n[5][i] + n[6][i] : n[5][i] - n[6][i];
-            s0[i] = zeta - eta;
-            s1[i] = zeta + eta;
-            d0[i] = xi - xieta;
-            d1[i] = xi + xieta;
+        lar_ilane left[2][AXES], right[2][AXES];
+        UNROLL3 for (int i = 0; i < AXES; i++) {
+            lar_ilane zeta = top ? n[i][2] : -n[i][2];
+            lar_ilane eta = top ? n[i][1] + n[i][3] : n[i][1] - n[i][3];
+            lar_ilane xi = top ? n[i][0] + n[i][4] : n[i][0] - n[i][4];
+            lar_ilane xieta = top ? n[i][5] + n[i][6] : n[i][5] - n[i][6];
+            lar_ilane sum = zeta - eta, difference = xi - xieta;
+            left[0][i] = sum - difference;
+            right[0][i] = sum + difference;
+            sum = zeta + eta;
+            difference = xi + xieta;
+            left[1][i] = sum - difference;
+            right[1][i] = sum + difference;
         }
-        scatter_edge(head, lane, rows, fours, 2 * top, s0, d0, force, corner);
-        scatter_edge(head, lane, rows, fours, 2 * top + 1, s1, d1, force, corner);
+        UNROLL3 for (int k = 0; k < 2; k++) {
+            const int a = left_node[2 * top + k], b = right_node[2 * top + k];
+            if (in_rows)
+                lar_ilane_scatter_row(force.value + (size_t)first * force.stride, force.stride,
+                                      head->node[a] + lane, head->node[b] + lane, fours, AXES,
+                                      left[k], right[k]);
+            else
+                UNROLL3 for (int i = 0; i < AXES; i++) {
+                    corner[a][first + i] = left[k][i];
+                    corner[b][first + i] = right[k][i];
+                }
+        }
     }
-    if (!fours && !LANES_LIE_IN_ROWS(rows))
-        hand_out(head, lane, rows, (const lar_ilane(*)[3])corner, force);
 }
 
 /* Phase 3: stress and hourglass forces to the nodes. */
 LAR_INLINE void force_lanes(const void *block, int lane, lar_block_shape shape, lar_block_rows rows,
                             bool fours, int turn, const lane_record *record, lane_sums force) {
-    lar_ilane n[7][3];
-    if (shape == LAR_SHAPE_BOX)
-        force_box(block, lane, turn, record, n);
-    else
-        force_general(block, lane, record, n);
-    UNROLL3 for (int i = 0; i < 3; i++) n[6][i] = lar_lane_round(record->cq[3][i]);
-    scatter_modes(block, lane, rows, fours, n, force);
+    const bool in_rows = fours || LANES_LIE_IN_ROWS(rows);
+    lar_ilane corner[8][3];
+    lar_lane S[3][3];
+    if (shape == LAR_SHAPE_GENERAL) stress_left(constants_of(block, lane, shape), record, S);
+    _Pragma("GCC unroll 1") for (int first = 0; first < 3; first += AXES) {
+        lar_lane G[AXES][7];
+        lar_ilane n[AXES][7];
+        const double *constants = constants_of(block, lane, shape);
+        if (shape == LAR_SHAPE_BOX)
+            force_box(constants, turn, record, first, G);
+        else
+            force_general(constants, record, first, S + first, G);
+        UNROLL3 for (int i = 0; i < AXES; i++) {
+            G[i][6] = record->cq[3][first + i];
+            round_modes(G[i], n[i]);
+        }
+        if (in_rows)
+            scatter_modes(block, lane, true, fours, n, first, force, corner);
+        else
+            scatter_modes(block, lane, false, fours, n, first, force, corner);
+    }
+    if (!in_rows) hand_out(block, lane, rows, (const lar_ilane(*)[3])corner, force);
 }
 
 #define FOR_PARTS(blocks, count, size)                                                             \

@@ -2,6 +2,7 @@
 
 #include <float.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -123,15 +124,23 @@ static void fill_lane(const lar_domain *domain, const lar_block_run *run, void *
 
 /* How many bytes of blocks caches hold, beside nodes and other programs: of the second level, from
  * where on they are asked for, and of the third, from where on they are lean. A twelfth of what the
- * system says that there is: a server's cores share it, and some systems say the sum of several
- * caches. Where it says nothing, 12 MiB. Decides about time only. */
+ * system says that there is, for a server's cores share it. Where it says nothing, 12 MiB. Decides
+ * about time only. */
 enum { SECOND_LEVEL_BYTES = 1 << 20, THIRD_LEVEL_MIN = 12 << 20, THIRD_LEVEL_MAX = 40 << 20 };
 
+/* Linux says what the first core shares; the C library adds up all caches of some processors. */
 static size_t third_level_bytes(void) {
     long bytes = 0;
+    FILE *said = fopen("/sys/devices/system/cpu/cpu0/cache/index3/size", "re");
+    if (said) {
+        char unit = 0;
+        if (fscanf(said, "%ld%c", &bytes, &unit) == 2 && unit == 'K') bytes *= 1024;
+        fclose(said);
+    }
 #ifdef _SC_LEVEL3_CACHE_SIZE
-    bytes = sysconf(_SC_LEVEL3_CACHE_SIZE) / 12;
+    if (bytes <= 0) bytes = sysconf(_SC_LEVEL3_CACHE_SIZE);
 #endif
+    bytes /= 12;
     return bytes < THIRD_LEVEL_MIN   ? THIRD_LEVEL_MIN
            : bytes > THIRD_LEVEL_MAX ? THIRD_LEVEL_MAX
                                      : (size_t)bytes;

@@ -187,8 +187,8 @@ LAR_INLINE void single_scatter(int64_t *nodes, size_t stride, const int32_t *nod
 }
 
 LAR_INLINE void single_scatter_row(int64_t *nodes, size_t stride, const int32_t *left_node,
-                                   const int32_t *right_node, bool half, const single_ilane left[3],
-                                   const single_ilane right[3]) {
+                                   const int32_t *right_node, bool half, int axes,
+                                   const single_ilane *left, const single_ilane *right) {
     single_halves l[3], r[3];
     for (int i = 0; i < 3; i++) {
         l[i].whole = left[i];
@@ -198,7 +198,7 @@ LAR_INLINE void single_scatter_row(int64_t *nodes, size_t stride, const int32_t 
         const lar_ilane l_part[3] = {l[0].half[h], l[1].half[h], l[2].half[h]};
         const lar_ilane r_part[3] = {r[0].half[h], r[1].half[h], r[2].half[h]};
         lar_ilane_scatter_row(nodes, stride, left_node + h * LAR_LANES, right_node + h * LAR_LANES,
-                              half, l_part, r_part);
+                              half, axes, l_part, r_part);
     }
 }
 
@@ -269,6 +269,7 @@ LAR_INLINE single_lane lar_lane_sign(single_lane x) {
 #define lar_lane              single_lane
 #define lar_ilane             single_ilane
 #define lar_lane_load         single_load
+#define lar_lane_keep(a)      (a)
 #define lar_lane_load_once    single_load_once
 #define lar_lane_load_row     single_load
 #define lar_lane_store        single_store

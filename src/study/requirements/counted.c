@@ -89,15 +89,19 @@ static plain counted_root(plain a) {
 #define fabs counted_size
 
 /* What looks at the bits of a double must do it to a double. */
-#define lar_lane_bits     unused_lane_bits
-#define lar_ilane_as_lane unused_ilane_as_lane
-#define lar_ilane_to_lane unused_ilane_to_lane
+#define lar_lane_bits       unused_lane_bits
+#define lar_ilane_as_lane   unused_ilane_as_lane
+#define lar_ilane_to_lane   unused_ilane_to_lane
+#define lar_lane_upper      unused_lane_upper
+#define lar_lane_from_upper unused_lane_from_upper
 #undef LAR_SIMD
 #define LAR_SIMD 1
 #include "base/simd.h"
 #undef lar_lane_bits
 #undef lar_ilane_as_lane
 #undef lar_ilane_to_lane
+#undef lar_lane_upper
+#undef lar_lane_from_upper
 
 LAR_INLINE int64_t lar_lane_bits(lar_lane a) {
     plain value = (plain)a;
@@ -112,6 +116,12 @@ LAR_INLINE lar_lane lar_ilane_as_lane(int64_t a) {
 }
 LAR_INLINE lar_lane lar_ilane_to_lane(int64_t a) {
     return (plain)a;
+}
+LAR_INLINE lar_lane lar_lane_upper(lar_lane a) {
+    return lar_ilane_to_lane(lar_lane_bits(a) >> 32);
+}
+LAR_INLINE lar_lane lar_lane_from_upper(lar_lane a) {
+    return lar_ilane_as_lane(llrint((plain)a) * (INT64_C(1) << 32));
 }
 
 /* Other names for what other files define too. */
@@ -185,9 +195,9 @@ LAR_INLINE void counted_scatter(int64_t *nodes, size_t stride, const int32_t *no
     }
 }
 LAR_INLINE void counted_scatter_row(int64_t *nodes, size_t stride, const int32_t *left_node,
-                                    const int32_t *right_node, bool half, const counted left[3],
-                                    const counted right[3]) {
-    (void)half;
+                                    const int32_t *right_node, bool half, int axes,
+                                    const counted *left, const counted *right) {
+    (void)half, (void)axes;
     counted_scatter(nodes, stride, left_node, left);
     counted_scatter(nodes, stride, right_node, right);
 }
