@@ -95,6 +95,16 @@ lar_status lar_model_notice(lar_model *model, lar_error *error, const char *form
     return LAR_OK;
 }
 
+/* ---- fields of elements ------------------------------------------------------------------ */
+
+const lar_cell_field_row lar_cell_field_table[LAR_CELL_FIELDS] = {
+    [LAR_CELL_VON_MISES] = {LAR_FIELD_VON_MISES, "von_mises", "Pa", 1},
+    [LAR_CELL_PRESSURE] = {LAR_FIELD_PRESSURE, "pressure", "Pa", 1},
+    [LAR_CELL_ENERGY] = {LAR_FIELD_ENERGY, "energy", "J/m^3", 1},
+    [LAR_CELL_STRESS] = {LAR_OUTPUT_STRESS, "stress", "Pa", 6},
+    [LAR_CELL_STRAIN] = {LAR_OUTPUT_STRAIN, "strain", "1", 6},
+    [LAR_CELL_VOLUME] = {LAR_OUTPUT_VOLUME, "volume_ratio", "1", 1}};
+
 /* ---- small questions -------------------------------------------------------------------- */
 
 const double (*lar_model_positions(const lar_model *model))[3] {
@@ -331,7 +341,9 @@ static lar_status check_loads(const lar_model *model, lar_error *error) {
     }
     for (int i = 0; !status && i < model->output.probe_count; i++) {
         const lar_probe *probe = &model->output.probe[i];
-        status = check_list(model, "probe", i, probe->nodes.node, probe->nodes.count, nodes, error);
+        const lar_gid places = probe->what == LAR_PROBE_MEAN ? model->mesh.element_count : nodes;
+        status =
+            check_list(model, "probe", i, probe->nodes.node, probe->nodes.count, places, error);
     }
     return status;
 }

@@ -91,19 +91,44 @@ static inline lar_tool_info lar_tool_inspect(const lar_tool *tool) {
                            .friction = tool->friction};
 }
 
-/* One line of probes.csv: the mean displacement of some nodes, or the sum of the reactions of
- * their supports. */
+/* What frames and probes may hold of elements, means of each. */
+typedef enum lar_cell_field {
+    LAR_CELL_VON_MISES,
+    LAR_CELL_PRESSURE,
+    LAR_CELL_ENERGY,
+    LAR_CELL_STRESS,
+    LAR_CELL_STRAIN,
+    LAR_CELL_VOLUME,
+    LAR_CELL_FIELDS
+} lar_cell_field;
+
+typedef struct lar_cell_field_row {
+    unsigned bit; /* in lar_output.fields */
+    const char *name, *unit;
+    int components; /* 1, or 6 of a symmetric tensor: xx yy zz xy yz zx */
+} lar_cell_field_row;
+extern const lar_cell_field_row lar_cell_field_table[LAR_CELL_FIELDS];
+
+/* A part of each line of probes.csv: the mean displacement of some nodes, the sum of the reactions
+ * of their supports, or the mean of a field over the volume at rest of some elements. */
 typedef struct lar_probe {
     char *name;
-    lar_node_list nodes;
-    enum { LAR_PROBE_DISPLACEMENT, LAR_PROBE_REACTION } what;
+    lar_node_list nodes; /* elements, where it is a field's mean */
+    enum { LAR_PROBE_DISPLACEMENT, LAR_PROBE_REACTION, LAR_PROBE_MEAN } what;
+    lar_cell_field field; /* of a mean */
 } lar_probe;
 
-enum { LAR_OUTPUT_FIBRES = 64 }; /* beside the bits of lar_field */
+enum { /* beside the bits of lar_field */
+       LAR_OUTPUT_FIBRES = 64,
+       LAR_OUTPUT_STRETCH = 128,
+       LAR_OUTPUT_STRESS = 256,
+       LAR_OUTPUT_STRAIN = 512,
+       LAR_OUTPUT_VOLUME = 1024
+};
 
 typedef struct lar_output {
     double every;    /* seconds, 0: only the end */
-    unsigned fields; /* lar_field bits (lariat.h), and that one */
+    unsigned fields; /* lar_field bits (lariat.h), and these */
     bool surface;    /* the embedded surface too, in every frame */
     int probe_count;
     lar_probe *probe;

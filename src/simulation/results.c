@@ -12,27 +12,16 @@
 #include "simulation/results_probe.h"
 #include "simulation/results_surface.h"
 #include "simulation/simulation.h"
-#include "mechanics/stress.h"
 #include "model/format/mesh_io.h"
-
-/* Stress and energy of the elements: in the order of the columns of `cell`. */
-enum { CELL_VON_MISES, CELL_PRESSURE, CELL_ENERGY, CELL_FIELDS };
-
-static const struct {
-    unsigned field;
-    const char *name;
-} cell_field[CELL_FIELDS] = {{LAR_FIELD_VON_MISES, "von_mises"},
-                             {LAR_FIELD_PRESSURE, "pressure"},
-                             {LAR_FIELD_ENERGY, "energy"}};
 
 struct lar_results {
     const lar_model *model;
     lar_series series;
     lar_surface_results surface;
     double (*displacement)[3], (*velocity)[3]; /* NULL when not asked for */
-    double *cell[CELL_FIELDS];                 /* the same */
+    double *cell[LAR_CELL_FIELDS];             /* the same */
     int families;                              /* of fibres that are written */
-    double (*fibre[2])[3];
+    double (*fibre[2])[3], *stretch[2];        /* along what they run now, and how long: or NULL */
     lar_probe_file probes;
 };
 
@@ -50,15 +39,20 @@ static char *series_name(const lar_model *model) {
 /* Where fibres are asked for and there are some. */
 static bool prepare_fibres(lar_results *results, const lar_model *model) {
     const lar_gid elements = model->mesh.element_count;
-    if (!(model->output.fields & LAR_OUTPUT_FIBRES)) return true;
+    const unsigned fields = model->output.fields;
+    if (!(fields & (LAR_OUTPUT_FIBRES | LAR_OUTPUT_STRETCH))) return true;
     for (lar_gid e = 0; e < elements && results->families < 2; e++) {
         int32_t here = lar_model_element_fibres(model, e, NULL);
         if (here > results->families) results->families = here;
     }
     bool complete = true;
     for (int k = 0; k < results->families; k++) {
-        results->fibre[k] = lar_calloc((size_t)elements, sizeof *results->fibre[k]);
-        complete = complete && results->fibre[k];
+        if (fields & LAR_OUTPUT_FIBRES)
+            results->fibre[k] = lar_calloc((size_t)elements, sizeof *results->fibre[k]);
+        if (fields & LAR_OUTPUT_STRETCH)
+            results->stretch[k] = lar_calloc((size_t)elements, sizeof *results->stretch[k]);
+        complete = complete && (results->fibre[k] || !(fields & LAR_OUTPUT_FIBRES)) &&
+                   (results->stretch[k] || !(fields & LAR_OUTPUT_STRETCH));
     }
     return complete;
 }
@@ -75,14 +69,15 @@ static lar_status prepare_arrays(lar_results *results, const lar_model *model, l
         results->velocity = lar_calloc(nodes, sizeof *results->velocity);
         complete = complete && results->velocity;
     }
-    for (int i = 0; i < CELL_FIELDS; i++)
-        if (fields & cell_field[i].field) {
-            results->cell[i] = lar_calloc(elements, sizeof *results->cell[i]);
+    for (int i = 0; i < LAR_CELL_FIELDS; i++)
+        if (fields & lar_cell_field_table[i].bit) {
+            results->cell[i] = lar_calloc(elements * (size_t)lar_cell_field_table[i].components,
+                                          sizeof *results->cell[i]);
             complete = complete && results->cell[i];
         }
     complete = complete && prepare_fibres(results, model);
     return complete ? LAR_OK
-                    : lar_fail_memory(error, 48 * nodes + 24 * elements, "the fields of a frame");
+                    : lar_fail_memory(error, 48 * nodes + 200 * elements, "the fields of a frame");
 }
 
 static lar_status open_folder(lar_results *results, const char *folder, const lar_model *model,
@@ -140,8 +135,11 @@ lar_status lar_results_close(lar_results *results, lar_error *error) {
     if (!status && closed) status = lar_fail(error, closed, "%s", later.message);
     closed = lar_probe_file_close(&results->probes, &later);
     if (!status && closed) status = lar_fail(error, closed, "%s", later.message);
-    for (int i = 0; i < CELL_FIELDS; i++) free(results->cell[i]);
-    for (int k = 0; k < 2; k++) free(results->fibre[k]);
+    for (int i = 0; i < LAR_CELL_FIELDS; i++) free(results->cell[i]);
+    for (int k = 0; k < 2; k++) {
+        free(results->fibre[k]);
+        free(results->stretch[k]);
+    }
     lar_series_clear(&results->series);
     free(results->displacement);
     free(results->velocity);
@@ -151,23 +149,19 @@ lar_status lar_results_close(lar_results *results, lar_error *error) {
 
 /* ---- a frame ---------------------------------------------------------------------------- */
 
-/* An element that is inside out has no stress: 0 is written, never a NaN. */
-static double finite_or_zero(double value) {
-    return isfinite(value) ? value : 0;
-}
-
 static void measure_cells(lar_results *results, const lar_simulation *simulation) {
-    double **cell = results->cell;
-    if (!cell[CELL_VON_MISES] && !cell[CELL_PRESSURE] && !cell[CELL_ENERGY]) return;
-    lar_state state = simulation->state;
-    state.past =
-        lar_past_step(&simulation->domain, lar_division_of(&simulation->interactions), &state);
+    unsigned wanted = 0;
+    for (int i = 0; i < LAR_CELL_FIELDS; i++) wanted |= results->cell[i] ? 1U << i : 0;
+    if (!wanted) return;
+    const lar_state state = lar_state_measured(simulation);
     for (lar_gid e = 0; e < simulation->domain.model->mesh.element_count; e++) {
-        double cauchy[6];
-        double energy = lar_measure_stress(&simulation->domain, &state, e, cauchy);
-        if (cell[CELL_VON_MISES]) cell[CELL_VON_MISES][e] = finite_or_zero(lar_von_mises(cauchy));
-        if (cell[CELL_PRESSURE]) cell[CELL_PRESSURE][e] = finite_or_zero(lar_mean_pressure(cauchy));
-        if (cell[CELL_ENERGY]) cell[CELL_ENERGY][e] = finite_or_zero(energy);
+        double value[LAR_CELL_FIELDS][6];
+        lar_element_fields(&simulation->domain, &state, e, wanted, value);
+        for (int i = 0; i < LAR_CELL_FIELDS; i++) {
+            int components = lar_cell_field_table[i].components;
+            for (int k = 0; results->cell[i] && k < components; k++)
+                results->cell[i][components * e + k] = value[i][k];
+        }
     }
 }
 
@@ -178,10 +172,14 @@ static void turn_fibres(lar_results *results, const lar_simulation *simulation) 
         double F[3][3], fibre[2][3];
         lar_model_element_fibres(domain->model, e, fibre);
         lar_element_gradient(domain, &simulation->state, e, F);
-        for (int k = 0; k < results->families; k++)
+        for (int k = 0; k < results->families; k++) {
+            double now[3];
             for (int i = 0; i < 3; i++)
-                results->fibre[k][e][i] =
-                    F[i][0] * fibre[k][0] + F[i][1] * fibre[k][1] + F[i][2] * fibre[k][2];
+                now[i] = F[i][0] * fibre[k][0] + F[i][1] * fibre[k][1] + F[i][2] * fibre[k][2];
+            if (results->fibre[k]) memcpy(results->fibre[k][e], now, sizeof now);
+            if (results->stretch[k])
+                results->stretch[k][e] = sqrt(now[0] * now[0] + now[1] * now[1] + now[2] * now[2]);
+        }
     }
 }
 
@@ -203,7 +201,8 @@ static lar_status check_finite(const lar_simulation *simulation, lar_error *erro
 static lar_status write_frame(lar_results *results, const lar_simulation *simulation,
                               const char *path, lar_error *error) {
     static const char *const fibre_name[] = {"fibre_now", "fibre2_now"};
-    lar_vtu_array point[2], cell[CELL_FIELDS + 2];
+    static const char *const stretch_name[] = {"fibre_stretch", "fibre2_stretch"};
+    lar_vtu_array point[2], cell[LAR_CELL_FIELDS + 4];
     lar_vtu_frame frame = {.mesh = &simulation->domain.model->mesh,
                            .point_array = point,
                            .cell_array = cell,
@@ -218,14 +217,19 @@ static lar_status write_frame(lar_results *results, const lar_simulation *simula
         point[frame.point_array_count++] = (lar_vtu_array){"velocity", 3, &results->velocity[0][0]};
     }
     measure_cells(results, simulation);
-    for (int i = 0; i < CELL_FIELDS; i++)
+    for (int i = 0; i < LAR_CELL_FIELDS; i++)
         if (results->cell[i])
-            cell[frame.cell_array_count++] =
-                (lar_vtu_array){cell_field[i].name, 1, results->cell[i]};
+            cell[frame.cell_array_count++] = (lar_vtu_array){
+                lar_cell_field_table[i].name, lar_cell_field_table[i].components, results->cell[i]};
     turn_fibres(results, simulation);
-    for (int k = 0; k < results->families; k++)
-        cell[frame.cell_array_count++] =
-            (lar_vtu_array){fibre_name[k], 3, &results->fibre[k][0][0]};
+    for (int k = 0; k < results->families; k++) {
+        if (results->fibre[k])
+            cell[frame.cell_array_count++] =
+                (lar_vtu_array){fibre_name[k], 3, &results->fibre[k][0][0]};
+        if (results->stretch[k])
+            cell[frame.cell_array_count++] =
+                (lar_vtu_array){stretch_name[k], 1, results->stretch[k]};
+    }
     return lar_vtu_write(path, &frame, error);
 }
 

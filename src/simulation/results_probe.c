@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "base/text.h"
+#include "mechanics/hexahedron.h"
 #include "step/measure.h"
 
 static lar_status fail_to(const lar_probe_file *file, const char *verb, int cause,
@@ -20,25 +21,35 @@ static lar_status fail_to(const lar_probe_file *file, const char *verb, int caus
 /* ---- lines ------------------------------------------------------------------------------ */
 
 /* A CSV field after RFC 4180: quoted when it holds a separator, a quote or a line end. */
-static void print_name(FILE *line, const char *name, char axis, const char *unit) {
+static void print_name(FILE *line, const char *name, const char *what, const char *unit) {
     bool quote = strpbrk(name, ",;\"\r\n") != NULL;
     if (quote) fputc('"', line);
     for (const char *c = name; *c; c++) {
         if (*c == '"') fputc('"', line);
         fputc(*c, line);
     }
-    fprintf(line, " %c [%s]", axis, unit);
+    fprintf(line, " %s [%s]", what, unit);
     if (quote) fputc('"', line);
 }
 
 static void print_header(FILE *line, const lar_model *model) {
+    static const char *const axis[] = {"x", "y", "z"};
+    static const char *const component[] = {"xx", "yy", "zz", "xy", "yz", "zx"};
     fprintf(line, "time [s]");
     for (int i = 0; i < model->output.probe_count; i++) {
         const lar_probe *probe = &model->output.probe[i];
-        for (char axis = 'x'; axis <= 'z'; axis++) {
+        const lar_cell_field_row *mean =
+            probe->what == LAR_PROBE_MEAN ? &lar_cell_field_table[probe->field] : NULL;
+        for (int k = 0; k < (mean ? mean->components : 3); k++) {
+            char what[32];
+            if (mean)
+                snprintf(what, sizeof what, "%s%s%s", mean->name, mean->components > 1 ? " " : "",
+                         mean->components > 1 ? component[k] : "");
             fputc(',', line);
-            print_name(line, probe->name ? probe->name : "probe", axis,
-                       probe->what == LAR_PROBE_REACTION ? "N" : "m");
+            print_name(line, probe->name ? probe->name : "probe", mean ? what : axis[k],
+                       mean                                ? mean->unit
+                       : probe->what == LAR_PROBE_REACTION ? "N"
+                                                           : "m");
         }
     }
     fputc('\n', line);
@@ -55,20 +66,41 @@ static void mean_displacement(const lar_simulation *simulation, const lar_node_l
     }
 }
 
+/* The mean of a field over elements, by their volumes at rest. */
+static void mean_field(const lar_simulation *simulation, const lar_probe *probe, double mean[6]) {
+    const lar_domain *domain = &simulation->domain;
+    lar_state state = lar_state_measured(simulation);
+    double sum[6] = {0}, volume = 0;
+    for (int32_t i = 0; i < probe->nodes.count; i++) {
+        double corner[8][3], value[LAR_CELL_FIELDS][6];
+        lar_gid e = probe->nodes.node[i];
+        lar_mesh_corners(&domain->model->mesh, e, corner);
+        double part = lar_hexahedron_volume((const double(*)[3])corner);
+        lar_element_fields(domain, &state, e, 1U << probe->field, value);
+        for (int k = 0; k < 6; k++) sum[k] += part * value[probe->field][k];
+        volume += part;
+    }
+    for (int k = 0; k < 6; k++) mean[k] = sum[k] / volume;
+}
+
 static lar_status print_values(FILE *line, const lar_simulation *simulation, lar_error *error) {
     const lar_output *output = &simulation->domain.model->output;
     fprintf(line, "%.10g", lar_simulation_time(simulation));
     for (int i = 0; i < output->probe_count; i++) {
         const lar_probe *probe = &output->probe[i];
-        double value[3];
+        double value[6];
+        int count = 3;
         lar_status status = LAR_OK;
         if (probe->what == LAR_PROBE_REACTION)
             status = lar_measure_reaction(&simulation->domain, &simulation->scratch->measure,
                                           &simulation->state, &probe->nodes, false, value, error);
+        else if (probe->what == LAR_PROBE_MEAN)
+            mean_field(simulation, probe, value);
         else
             mean_displacement(simulation, &probe->nodes, value);
         if (status) return status;
-        fprintf(line, ",%.17g,%.17g,%.17g", value[0], value[1], value[2]);
+        if (probe->what == LAR_PROBE_MEAN) count = lar_cell_field_table[probe->field].components;
+        for (int k = 0; k < count; k++) fprintf(line, ",%.17g", value[k]);
     }
     fputc('\n', line);
     return LAR_OK;

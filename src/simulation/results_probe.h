@@ -1,4 +1,4 @@
-/* probes.csv: one column per probed value, one line per frame.
+/* probes.csv: a column for each probed value, one line per frame.
  *
  *     time [s],fundus x [m],fundus y [m],fundus z [m],cervix x [N],cervix y [N],cervix z [N]
  *     0,0,0,0,0,0,0

@@ -47,6 +47,12 @@ const lar_state *lar_simulation_state(const lar_simulation *simulation);
 /* The mean deformation gradient of an element (stresses.c). */
 void lar_element_gradient(const lar_domain *domain, const lar_state *state, lar_gid e,
                           double F[3][3]);
+/* The state with what measuring viscous stress needs to know. */
+lar_state lar_state_measured(const lar_simulation *simulation);
+/* Of an element the fields that have a bit in `wanted`, 1 << lar_cell_field; an element that is
+ * inside out has 0 instead of a stress, never a NaN. */
+void lar_element_fields(const lar_domain *domain, const lar_state *state, lar_gid e,
+                        unsigned wanted, double value[LAR_CELL_FIELDS][6]);
 
 /* lar_simulation_advance_with without bringing the state together: what a tick of a session
  * costs. lar_simulation_gather does that, before somebody looks, and says when it fails: between

@@ -69,7 +69,8 @@ static int set_up(void **state) {
     fix->nodes = (lar_node_list){9, lar_calloc(9, sizeof(int32_t))};
     for (int i = 0; i < 9; i++) fix->nodes.node[i] = i;
     model->output.fields = LAR_FIELD_DISPLACEMENT | LAR_FIELD_VELOCITY | LAR_FIELD_VON_MISES |
-                           LAR_FIELD_PRESSURE | LAR_FIELD_ENERGY;
+                           LAR_FIELD_PRESSURE | LAR_FIELD_ENERGY | LAR_OUTPUT_STRESS |
+                           LAR_OUTPUT_STRAIN | LAR_OUTPUT_VOLUME;
     add_probe(model, "lid", LAR_PROBE_DISPLACEMENT, 18, 9);
     add_probe(model, "foot, \"left\"", LAR_PROBE_REACTION, 0, 9);
     remove_results();
@@ -105,26 +106,48 @@ static lar_bytes read_all(const char *path) {
     return bytes;
 }
 
+static void expect_same(const char *path, const char *other) {
+    lar_bytes got = read_all(path), expected = read_all(other);
+    assert_int_equal(got.size, expected.size);
+    assert_memory_equal(got.data, expected.data, got.size);
+    lar_bytes_free(&got);
+    lar_bytes_free(&expected);
+}
+
 /* ---- frames ----------------------------------------------------------------------------- */
 
 /* The same frame, put together from the public calls. */
 static void write_expected(fixture *f, const char *path) {
     double u[BRICK_NODES][3], v[BRICK_NODES][3], mises[8], pressure[8], energy[8], cauchy[6];
+    double stress[8][6], strain[8][6], volume[8];
+    lar_simulation_stresses(f->simulation, stress, strain, NULL);
     lar_simulation_displacements(f->simulation, u);
     lar_simulation_velocities(f->simulation, v);
     for (int e = 0; e < 8; e++) {
         energy[e] = lar_measure_stress(&f->simulation->domain, &f->simulation->state, e, cauchy);
         mises[e] = lar_von_mises(cauchy);
         pressure[e] = lar_mean_pressure(cauchy);
+        assert_memory_equal(cauchy, stress[e], sizeof cauchy);
+        double value[LAR_CELL_FIELDS][6];
+        lar_element_fields(&f->simulation->domain, &f->simulation->state, e, 1U << LAR_CELL_VOLUME,
+                           value);
+        volume[e] = value[LAR_CELL_VOLUME][0];
+        /* det(1 + 2 E) = det(F)^2 */
+        const double *E = strain[e];
+        double det = (1 + 2 * E[0]) * ((1 + 2 * E[1]) * (1 + 2 * E[2]) - 4 * E[4] * E[4]) -
+                     2 * E[3] * (2 * E[3] * (1 + 2 * E[2]) - 4 * E[4] * E[5]) +
+                     2 * E[5] * (4 * E[3] * E[4] - 2 * E[5] * (1 + 2 * E[1]));
+        assert_true(fabs(volume[e] * volume[e] - det) < 1e-14);
     }
     const lar_vtu_array point[] = {{"displacement", 3, &u[0][0]}, {"velocity", 3, &v[0][0]}};
-    const lar_vtu_array cell[] = {
-        {"von_mises", 1, mises}, {"pressure", 1, pressure}, {"energy", 1, energy}};
+    const lar_vtu_array cell[] = {{"von_mises", 1, mises},      {"pressure", 1, pressure},
+                                  {"energy", 1, energy},        {"stress", 6, &stress[0][0]},
+                                  {"strain", 6, &strain[0][0]}, {"volume_ratio", 1, volume}};
     const lar_vtu_frame frame = {.mesh = &f->model->mesh,
                                  .point_array = point,
                                  .point_array_count = 2,
                                  .cell_array = cell,
-                                 .cell_array_count = 3,
+                                 .cell_array_count = 6,
                                  .time = lar_simulation_time(f->simulation)};
     assert_int_equal(lar_vtu_write(path, &frame, &f->error), LAR_OK);
     assert_true(mises[0] > 0 && energy[0] > 0 && u[26][2] < 0);
@@ -136,12 +159,7 @@ static void a_frame_holds_the_state(void **state) {
     lar_simulation_advance(f->simulation, 100, NULL);
     add(f);
     write_expected(f, FOLDER "/expected.vtu");
-    lar_bytes got = read_all(FOLDER "/organ_000000.vtu"),
-              expected = read_all(FOLDER "/expected.vtu");
-    assert_int_equal(got.size, expected.size);
-    assert_memory_equal(got.data, expected.data, got.size);
-    lar_bytes_free(&got);
-    lar_bytes_free(&expected);
+    expect_same(FOLDER "/organ_000000.vtu", FOLDER "/expected.vtu");
 
     lar_mesh mesh = {0};
     assert_int_equal(lar_mesh_read(FOLDER "/organ_000000.vtu", 1, &mesh, &f->error), LAR_OK);
@@ -194,12 +212,36 @@ static void read_turned(lar_mesh *mesh, lar_error *error) {
     assert_int_equal(lar_mesh_read(FOLDER "/expected.vtu", 1, mesh, error), LAR_OK);
 }
 
+/* The frame of fibres, put together from gradients: directions now, and how long they are. */
+static void write_fibres(fixture *f, const char *path) {
+    double now[2][BRICK_ELEMENTS][3], stretch[2][BRICK_ELEMENTS];
+    const lar_mesh *mesh = &f->model->mesh;
+    for (int e = 0; e < BRICK_ELEMENTS; e++)
+        for (int k = 0; k < 2; k++) {
+            const double *a = k ? mesh->second[e] : mesh->fibre[e];
+            double F[3][3], *n = now[k][e];
+            lar_element_gradient(&f->simulation->domain, &f->simulation->state, e, F);
+            for (int i = 0; i < 3; i++) n[i] = F[i][0] * a[0] + F[i][1] * a[1] + F[i][2] * a[2];
+            stretch[k][e] = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+        }
+    const lar_vtu_array cell[] = {{"fibre_now", 3, &now[0][0][0]},
+                                  {"fibre_stretch", 1, stretch[0]},
+                                  {"fibre2_now", 3, &now[1][0][0]},
+                                  {"fibre2_stretch", 1, stretch[1]}};
+    const lar_vtu_frame frame = {.mesh = mesh,
+                                 .cell_array = cell,
+                                 .cell_array_count = 4,
+                                 .time = lar_simulation_time(f->simulation)};
+    assert_int_equal(lar_vtu_write(path, &frame, &f->error), LAR_OK);
+    assert_true(fabs(stretch[0][2] - 1) > 1e-4);
+}
+
 /* Along the fibres as they are now: in frames that ask for it, where there are some. */
 static void fibres_turn_with_the_tissue(void **state) {
     fixture *f = *state;
     lar_mesh *mesh = &f->model->mesh;
     double u[BRICK_NODES][3], now[2][BRICK_ELEMENTS][3];
-    f->model->output.fields = LAR_OUTPUT_FIBRES;
+    f->model->output.fields = LAR_OUTPUT_FIBRES | LAR_OUTPUT_STRETCH;
     open_results(f);
     add(f); /* nothing has any */
     assert_int_equal(lar_results_close(f->results, &f->error), LAR_OK);
@@ -226,6 +268,8 @@ static void fibres_turn_with_the_tissue(void **state) {
     }
     assert_true(fabs(now[0][2][2] - 1) > 1e-3 && fabs(now[1][4][0] - 0.6) > 1e-5);
     lar_mesh frame = {0};
+    write_fibres(f, FOLDER "/expected.vtu");
+    expect_same(FOLDER "/organ_000000.vtu", FOLDER "/expected.vtu");
     read_turned(&frame, &f->error);
     for (int e = 0; e < BRICK_ELEMENTS; e++)
         for (int i = 0; i < 3; i++) {
@@ -302,6 +346,46 @@ static void probes_have_names_units_and_values(void **state) {
     /* At rest the foot carries the whole weight: 1000 kg/m^3 in a cube of 20 mm. */
     assert_true(fabs(value[6] - 8e-6 * 1000 * 9.81) < 1e-6);
     assert_true(fabs(value[4]) < 1e-9 && fabs(value[5]) < 1e-9);
+    lar_bytes_free(&bytes);
+}
+
+/* What stands on its foot carries half its weight on average, by its top and bottom; the mean of a
+ * field is that of its elements, which are of one size here. */
+static void probes_of_elements_are_means(void **state) {
+    fixture *f = *state;
+    f->model->output.probe_count = 0;
+    free(f->model->output.probe[0].name);
+    free(f->model->output.probe[0].nodes.node);
+    free(f->model->output.probe[1].name);
+    free(f->model->output.probe[1].nodes.node);
+    add_probe(f->model, "all", LAR_PROBE_MEAN, 0, BRICK_ELEMENTS);
+    f->model->output.probe[0].field = LAR_CELL_STRESS;
+    add_probe(f->model, "all", LAR_PROBE_MEAN, 0, BRICK_ELEMENTS);
+    f->model->output.probe[1].field = LAR_CELL_PRESSURE;
+    add_probe(f->model, "one", LAR_PROBE_MEAN, 5, 1);
+    f->model->output.probe[2].field = LAR_CELL_VOLUME;
+    open_results(f);
+    lar_simulation_advance(f->simulation, 40000, NULL);
+    add(f);
+    lar_bytes bytes = read_all(FOLDER "/probes.csv");
+    char *text = (char *)bytes.data;
+    const char *header = "time [s],all stress xx [Pa],all stress yy [Pa],all stress zz [Pa],"
+                         "all stress xy [Pa],all stress yz [Pa],all stress zx [Pa],"
+                         "all pressure [Pa],one volume_ratio [1]\n";
+    assert_memory_equal(text, header, strlen(header));
+    char *line = text + strlen(header);
+    double value[9], cauchy[BRICK_ELEMENTS][6], sum[3] = {0};
+    for (int i = 0; i < 9; i++) {
+        value[i] = strtod(line, &line);
+        assert_int_equal(*line++, i < 8 ? ',' : '\n');
+    }
+    lar_simulation_stresses(f->simulation, cauchy, NULL, NULL);
+    for (int e = 0; e < BRICK_ELEMENTS; e++)
+        for (int k = 0; k < 3; k++) sum[k] += cauchy[e][k] / BRICK_ELEMENTS;
+    for (int k = 0; k < 3; k++) assert_true(fabs(value[1 + k] - sum[k]) < 1e-9);
+    assert_true(fabs(value[7] + (sum[0] + sum[1] + sum[2]) / 3) < 1e-9);
+    assert_true(fabs(value[3] + 1000 * 9.81 * 0.01) < 4); /* 98.1 Pa, bulging apart */
+    assert_true(value[8] > 0.99 && value[8] < 1.01 && value[8] != 1);
     lar_bytes_free(&bytes);
 }
 
@@ -564,6 +648,7 @@ int main(void) {
                                        WITH_FIXTURE(the_series_lists_what_is_there),
                                        WITH_FIXTURE(adding_frames_changes_nothing),
                                        WITH_FIXTURE(probes_have_names_units_and_values),
+                                       WITH_FIXTURE(probes_of_elements_are_means),
                                        WITH_FIXTURE(without_probes_there_is_the_time),
                                        WITH_FIXTURE(a_line_is_whole_or_not_there),
                                        WITH_FIXTURE(an_embedded_surface_waits_to_be_asked),

@@ -6,12 +6,14 @@
 /* ---- fields ------------------------------------------------------------------------------- */
 
 static lar_status read_fields(lar_scene *scene, const lar_yaml *node) {
-    enum { FIELDS = 6 };
-    static const char *const names[FIELDS] = {"displacement", "velocity", "von_mises",
-                                              "pressure",     "energy",   "fibres"};
-    static const unsigned bits[FIELDS] = {LAR_FIELD_DISPLACEMENT, LAR_FIELD_VELOCITY,
-                                          LAR_FIELD_VON_MISES,    LAR_FIELD_PRESSURE,
-                                          LAR_FIELD_ENERGY,       LAR_OUTPUT_FIBRES};
+    enum { FIELDS = 10 };
+    static const char *const names[FIELDS] = {
+        "displacement", "velocity", "von_mises", "pressure",     "energy",
+        "stress",       "strain",   "fibres",    "volume_ratio", "fibre_stretch"};
+    static const unsigned bits[FIELDS] = {
+        LAR_FIELD_DISPLACEMENT, LAR_FIELD_VELOCITY, LAR_FIELD_VON_MISES, LAR_FIELD_PRESSURE,
+        LAR_FIELD_ENERGY,       LAR_OUTPUT_STRESS,  LAR_OUTPUT_STRAIN,   LAR_OUTPUT_FIBRES,
+        LAR_OUTPUT_VOLUME,      LAR_OUTPUT_STRETCH};
     lar_status status = lar_scene_list(scene, node, "fields");
     if (status) return status;
     unsigned fields = 0;
@@ -25,6 +27,20 @@ static lar_status read_fields(lar_scene *scene, const lar_yaml *node) {
     }
     scene->model->output.fields = fields;
     return LAR_OK;
+}
+
+/* A probe of elements: what it is the mean of. */
+static lar_status read_mean(lar_scene *scene, const lar_yaml *node, lar_probe *probe) {
+    const char *names[LAR_CELL_FIELDS];
+    for (int i = 0; i < LAR_CELL_FIELDS; i++) {
+        names[i] = lar_cell_field_table[i].name;
+        if (!lar_scene_is_word(node, names[i])) continue;
+        probe->what = LAR_PROBE_MEAN;
+        probe->field = (lar_cell_field)i;
+        return LAR_OK;
+    }
+    return lar_scene_unknown(scene, node, LAR_ERROR_FORMAT, "the mean of", "there are means of",
+                             names, LAR_CELL_FIELDS);
 }
 
 /* ---- probes ------------------------------------------------------------------------------- */
@@ -70,22 +86,31 @@ static lar_status notice_free_reaction(lar_scene *scene, const lar_yaml *entry,
 }
 
 static lar_status read_probe(lar_scene *scene, const lar_yaml *entry) {
-    static const char *const keys[] = {"node", "nodes", "set", "sum", "name", NULL};
-    enum { MAX = 1000 };
+    static const char *const keys[] = {"node", "nodes", "set",  "cells",
+                                       "sum",  "mean",  "name", NULL};
+    enum { MAX = 1000, PLACES = 4 };
     lar_status status = lar_scene_keys(scene, entry, "a probe", keys);
     if (status) return status;
     const lar_yaml *where = NULL, *sum = lar_yaml_get(entry, "sum");
-    for (int i = 0; i < 3; i++) {
+    const lar_yaml *mean = lar_yaml_get(entry, "mean");
+    for (int i = 0; i < PLACES; i++) {
         const lar_yaml *found = lar_yaml_get(entry, keys[i]);
         if (found && where)
-            return lar_scene_fail(scene, found->key, LAR_ERROR_FORMAT,
-                                  "a probe takes one of node, nodes and set; make two probes");
+            return lar_scene_fail(
+                scene, found->key, LAR_ERROR_FORMAT,
+                "a probe takes one of node, nodes, set and cells; make two probes");
         if (found) where = found;
     }
     if (!where)
-        return lar_scene_fail(scene, entry, LAR_ERROR_FORMAT,
-                              "a probe needs the key \"node\", \"nodes\" or \"set\"; add one, for "
-                              "example node: 12");
+        return lar_scene_fail(
+            scene, entry, LAR_ERROR_FORMAT,
+            "a probe needs the key \"node\", \"nodes\", \"set\" or \"cells\"; add "
+            "one, for example node: 12");
+    const bool cells = strcmp(where->key->text, "cells") == 0;
+    if (cells != (mean != NULL) || (cells && sum))
+        return lar_scene_fail(scene, mean ? mean->key : where->key, LAR_ERROR_FORMAT,
+                              "cells and mean belong together, for example {cells: all, mean: "
+                              "von_mises}; a probe of nodes has neither");
     int64_t ignored;
     if (strcmp(where->key->text, "node") == 0)
         status = lar_scene_integer(scene, where, "the number of a node in the mesh file", &ignored);
@@ -102,8 +127,11 @@ static lar_status read_probe(lar_scene *scene, const lar_yaml *entry) {
     lar_probe *probe = LAR_MODEL_APPEND(scene->model, output.probe);
     if (!probe) return lar_scene_no_memory(scene, sizeof *probe);
     probe->what = sum ? LAR_PROBE_REACTION : LAR_PROBE_DISPLACEMENT;
-    status = name_probe(scene, entry, where, probe);
-    if (!status) status = lar_scene_select_nodes(scene, where, &probe->nodes);
+    if (cells) status = read_mean(scene, mean, probe);
+    if (!status) status = name_probe(scene, entry, where, probe);
+    if (!status)
+        status = lar_scene_select(scene, where, cells ? LAR_SET_ELEMENTS : LAR_SET_NODES, cells,
+                                  &probe->nodes.node, &probe->nodes.count);
     return status || !sum ? status : notice_free_reaction(scene, entry, probe);
 }
 
