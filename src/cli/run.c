@@ -314,10 +314,10 @@ static int complain_restless(const run *r) {
                         r->settings.scene, time, left, r->rest.share, remedy(r));
 }
 
-/* Of the scene's duration, at least one output interval in all; a scene without one is open. */
+/* Of the scene's duration; a scene without one is open. */
 static double time_left(const run *r) {
     double duration = lar_model_duration(r->model);
-    if (duration > 0) return fmax(duration, r->interval) - lar_simulation_time(r->simulation);
+    if (duration > 0) return duration - lar_simulation_time(r->simulation);
     return r->interval > 0 ? r->interval : 1;
 }
 
@@ -478,8 +478,8 @@ static int run_main(int argc, char **argv) {
     run_settings s = {.parallel = CLI_PARALLEL_NONE, .argc = argc, .argv = argv};
     const cli_option options[] = {
         CLI_REAL("--time", "S",
-                 "simulated seconds; without: the scene's duration,\nat least one "
-                 "output interval, 1 when it has none",
+                 "simulated seconds; without: the scene's duration,\nelse one output "
+                 "interval, else 1",
                  &s.time, 1e-12, 1e9),
         CLI_COUNT("--steps", "N", "the same in steps", &s.steps, 1, 1e15),
         CLI_FLAG("--until-rest",

@@ -178,7 +178,7 @@ expect 0 "$LARIAT" run "$SCRATCH/muscle.yaml" --json
 value_of account.share | awk '{ exit !($1 < 1e-3) }' || fail "muscle: $(value_of account.share)"
 
 # A run goes on to the scene's duration, and no farther.
-for every in "" "output: {every: 0.02}"; do
+for every in "" "output: {every: 0.02}" "output: {every: 5}"; do
     sed -e 's/duration: 1/duration: 0.05/' -e '$a\' -e "$every" "$SCRATCH/muscle.yaml" >"$SCRATCH/short.yaml"
     expect 0 "$LARIAT" run "$SCRATCH/short.yaml" --time 0.04 --save "$SCRATCH/short.checkpoint"
     expect 0 "$LARIAT" run "$SCRATCH/short.yaml" --resume "$SCRATCH/short.checkpoint" --json \
