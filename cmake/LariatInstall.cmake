@@ -26,7 +26,7 @@ endif()
 # The same objects as an archive, for programs that shall need no file of ours. What the objects call
 # is named for those who link it; headers of these libraries nobody needs.
 set(LARIAT_PRIVATE_LIBRARIES xml2 yaml z)
-foreach(pair HWLOC:hwloc METIS:metis NIFTI:nifti2 LIBWEBSOCKETS:websockets UCX:ucp UCX:ucs)
+foreach(pair HWLOC:hwloc METIS:metis NIFTI:nifti2 LIBWEBSOCKETS:websockets)
   string(REPLACE ":" ";" pair ${pair})
   list(GET pair 0 name)
   list(GET pair 1 library)

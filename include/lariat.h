@@ -27,6 +27,11 @@
  * simulation over and computes on a thread of its own; all its calls may come from any thread.
  * While it does, calls that change the simulation, or write frames of it, are refused.
  *
+ * Calls need up to 128 kB of stack, and so do threads that a host makes for the library. What a
+ * signal does, and what the terminal shows, stays the host's. After fork() a child has none of the
+ * threads: it goes on with simulations of one thread, and makes new ones; one with a grid or
+ * threads refuses to advance there, and a session or server must not be used.
+ *
  * "T 6.5.2" in comments and docs is section 6.5.2 of the dissertation that Lariat takes up:
  * Real-Time Finite Elements: A Parallel Computer Application, ETH Zuerich 2001. Words:
  * docs/glossary.md.
@@ -718,7 +723,9 @@ LAR_API uint64_t lar_simulation_hash(const lar_simulation *simulation);
  * and tools since the start, damping = energy taken out, contact = stored in contacts and lost in
  * them, and, without any contact too, lost in the dampers of corners that nearly fold; viscous =
  * what the viscous terms of materials have taken, most of it for good; strain = what is left in the
- * end, with what barriers of such corners store;
+ * end, with what barriers of such corners store. Of tools this is what they do at the nodes: what
+ * a hand puts into a tool is more by what its spring stores and its friction takes, the force of
+ * lar_simulation_tool_force along the way of its pose;
  * kinetic + strain + hourglass + damping + contact + viscous = external (+ start). */
 typedef struct lar_energy {
     double kinetic, strain, hourglass, external, damping, contact, viscous;

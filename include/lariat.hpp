@@ -20,6 +20,10 @@
 
 #include <lariat.h>
 
+#if defined(__GNUC__) && !defined(__EXCEPTIONS)
+#error "lariat.hpp throws; without exceptions use lariat.h, whose calls return a status"
+#endif
+
 #include <array>
 #include <cstddef>
 #include <cstdint>

@@ -49,7 +49,7 @@ static const double CUT_TIME = 0.2; /* until an endpoint is closed by force [s] 
 static void count_down(void *request, ucs_status_t status, void *user) {
     (void)status;
     --*(int *)user;
-    ucp_request_free(request);
+    lar_ucx.ucp_request_free(request);
 }
 
 static ucp_request_param_t counted(int *count) {
@@ -69,14 +69,14 @@ void lar_ucx_send_note(ucx_state *state, ucx_link *link, const note *n) {
     param.op_attr_mask |= UCP_OP_ATTR_FIELD_FLAGS;
     param.flags = UCP_AM_SEND_FLAG_EAGER;
     count_up(&state->pending,
-             ucp_am_send_nbx(link->endpoint, MESSAGE_NOTE, n, sizeof *n, NULL, 0, &param));
+             lar_ucx.ucp_am_send_nbx(link->endpoint, MESSAGE_NOTE, n, sizeof *n, NULL, 0, &param));
 }
 
 static void cut(ucx_state *state, ucx_link *link) {
     ucp_request_param_t param = counted(&state->pending);
     param.op_attr_mask |= UCP_OP_ATTR_FIELD_FLAGS;
     param.flags = link->severable ? UCP_EP_CLOSE_FLAG_FORCE : 0;
-    if (link->endpoint) count_up(&state->pending, ucp_ep_close_nbx(link->endpoint, &param));
+    if (link->endpoint) count_up(&state->pending, lar_ucx.ucp_ep_close_nbx(link->endpoint, &param));
     link->endpoint = NULL;
 }
 
@@ -84,7 +84,7 @@ bool lar_ucx_work_until(lar_comm *comm, condition fulfilled, double deadline) {
     ucx_state *state = comm->state;
     for (;;) {
         lock(state);
-        unsigned events = ucp_worker_progress(state->worker);
+        unsigned events = lar_ucx.ucp_worker_progress(state->worker);
         bool done = fulfilled(comm);
         unlock(state);
         if (done || lar_comm_now() > deadline) return done;
@@ -114,7 +114,7 @@ static unsigned work(ucx_state *state) {
     if (atomic_load_explicit(&state->putters, memory_order_relaxed) > 0 ||
         atomic_flag_test_and_set_explicit(&state->lock, memory_order_acquire))
         return 0;
-    unsigned events = ucp_worker_progress(state->worker);
+    unsigned events = lar_ucx.ucp_worker_progress(state->worker);
     unlock(state);
     return events;
 }
@@ -126,10 +126,10 @@ static lar_status abandon(lar_comm *comm, ucx_link *link, ucs_status_ptr_t reque
     double deadline = lar_comm_now() + CUT_TIME;
     lock(state);
     if (link->severable) cut(state, link);
-    while (link->severable && ucp_request_check_status(request) == UCS_INPROGRESS &&
+    while (link->severable && lar_ucx.ucp_request_check_status(request) == UCS_INPROGRESS &&
            lar_comm_now() < deadline)
-        ucp_worker_progress(state->worker);
-    ucp_request_free(request);
+        lar_ucx.ucp_worker_progress(state->worker);
+    lar_ucx.ucp_request_free(request);
     unlock(state);
     return status;
 }
@@ -142,9 +142,9 @@ static lar_status complete(lar_comm *comm, int32_t peer, ucs_status_ptr_t reques
     double deadline = lar_comm_now() + comm->options.patience;
     for (;;) {
         lock(state);
-        ucp_worker_progress(state->worker);
-        ucs_status_t status = ucp_request_check_status(request);
-        if (status != UCS_INPROGRESS) ucp_request_free(request);
+        lar_ucx.ucp_worker_progress(state->worker);
+        ucs_status_t status = lar_ucx.ucp_request_check_status(request);
+        if (status != UCS_INPROGRESS) lar_ucx.ucp_request_free(request);
         unlock(state);
         if (status == UCS_OK) return LAR_OK;
         if (status != UCS_INPROGRESS)
@@ -163,8 +163,8 @@ static ucs_status_ptr_t send_packet(lar_comm *comm, ucx_link *link, const packet
     static const ucp_request_param_t eager = {.op_attr_mask = UCP_OP_ATTR_FIELD_FLAGS,
                                               .flags = UCP_AM_SEND_FLAG_EAGER};
     (void)comm;
-    return ucp_am_send_nbx(link->endpoint, MESSAGE_PACKET, head, sizeof *head, data, head->bytes,
-                           &eager);
+    return lar_ucx.ucp_am_send_nbx(link->endpoint, MESSAGE_PACKET, head, sizeof *head, data,
+                                   head->bytes, &eager);
 }
 
 /* The same with the lock, when no put of the half's last tail is under way. */
@@ -176,13 +176,13 @@ static ucs_status_ptr_t put_packet(lar_comm *comm, ucx_link *link, size_t half,
     ucp_request_param_t plain = {0}, tail = counted(&link->puts[parity]);
     ucs_status_ptr_t request = NULL;
     if (head->bytes)
-        request = ucp_put_nbx(link->endpoint, data, head->bytes, there, link->key, &plain);
+        request = lar_ucx.ucp_put_nbx(link->endpoint, data, head->bytes, there, link->key, &plain);
     if (UCS_PTR_IS_ERR(request)) return request;
-    ucp_worker_fence(state->worker);
+    lar_ucx.ucp_worker_fence(state->worker);
     link->tails[parity] = head->step;
     ucs_status_ptr_t end =
-        ucp_put_nbx(link->endpoint, &link->tails[parity], sizeof link->tails[parity],
-                    there + lar_comm_padded(head->bytes), link->key, &tail);
+        lar_ucx.ucp_put_nbx(link->endpoint, &link->tails[parity], sizeof link->tails[parity],
+                            there + lar_comm_padded(head->bytes), link->key, &tail);
     count_up(&link->puts[parity], end);
     /* The endpoint has failed; `request` ends by that too. */
     if (UCS_PTR_IS_ERR(end) && !request) return end;
@@ -202,7 +202,7 @@ static lar_status ucx_put(lar_comm *comm, int32_t peer, size_t offset, const voi
     double deadline = 0;
     lock(state);
     while (link->endpoint && link->way == WAY_PUT && !tail_is_free(link, step)) {
-        ucp_worker_progress(state->worker);
+        lar_ucx.ucp_worker_progress(state->worker);
         unlock(state);
         lar_status status = lar_comm_check(comm, step, error);
         double now = lar_comm_now();
@@ -264,7 +264,7 @@ static void ucx_leave(lar_comm *comm) {
     for (int32_t p = 0; p < comm->options.count; p++) {
         ucp_request_param_t param = counted(&state->pending);
         if (talks(&state->links[p]))
-            count_up(&state->pending, ucp_ep_flush_nbx(state->links[p].endpoint, &param));
+            count_up(&state->pending, lar_ucx.ucp_ep_flush_nbx(state->links[p].endpoint, &param));
     }
     unlock(state);
     if (!lar_ucx_work_until(comm, all_is_put, deadline)) return;
@@ -287,14 +287,14 @@ static void ucx_close(lar_comm *comm) {
         for (int32_t p = 0; p < comm->options.count; p++) {
             ucx_link *link = &state->links[p];
             if (link->severable || !lost) cut(state, link);
-            if (link->key) ucp_rkey_destroy(link->key);
+            if (link->key) lar_ucx.ucp_rkey_destroy(link->key);
         }
         unlock(state);
         lar_ucx_work_until(comm, nothing_pending, lar_comm_now() + CUT_TIME);
-        ucp_worker_destroy(state->worker);
+        lar_ucx.ucp_worker_destroy(state->worker);
     }
-    if (state->memory) ucp_mem_unmap(state->context, state->memory);
-    if (state->context) ucp_cleanup(state->context);
+    if (state->memory) lar_ucx.ucp_mem_unmap(state->context, state->memory);
+    if (state->context) lar_ucx.ucp_cleanup(state->context);
     free(state->links);
     free(state);
 }

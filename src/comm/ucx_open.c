@@ -1,14 +1,8 @@
 /* UCX in this process, and everyone reaching everyone: open and connect of the backend ucx. */
 #ifdef LAR_HAVE_UCX
-#include <pthread.h>
-#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <ucs/config/global_opts.h>
-#if __has_include(<ucs/debug/debug.h>)
-#include <ucs/debug/debug.h>
-#endif
 
 #include "base/memory.h"
 #include "comm/rendezvous.h"
@@ -24,26 +18,11 @@ typedef struct ucx_address {
 
 /* ---- the library in this process ----------------------------------------------------------- */
 
-/* UCX catches the signals of crashes as soon as it is loaded, whether it is used or not. */
-__attribute__((constructor)) static void leave_signals_alone(void) {
-#if __has_include(<ucs/debug/debug.h>)
-    static const int caught[] = {SIGILL, SIGSEGV, SIGBUS, SIGFPE};
-    if (getenv("UCX_ERROR_SIGNALS") || getenv("UCX_HANDLE_ERRORS")) return;
-    for (int i = 0; i < 4; i++) ucs_debug_disable_signal(caught[i]);
-#endif
-}
-
-/* What it has to say arrives as a status. The user's own settings stand. */
-static void leave_terminal_alone(void) {
-    if (!getenv("UCX_LOG_LEVEL")) ucs_global_opts_set_value("LOG_LEVEL", "fatal");
-    if (!getenv("UCX_HANDLE_ERRORS")) ucs_global_opts_set_value("HANDLE_ERRORS", "none");
-}
-
 static lar_status refuse(const char *what, ucs_status_t why, lar_error *error) {
     return lar_fail(error, LAR_ERROR_IO,
                     "UCX cannot %s: %s; see what ucx_info -d finds and what the variables UCX_... "
                     "say, or use the backend tcp",
-                    what, ucs_status_string(why));
+                    what, lar_ucx.ucs_status_string(why));
 }
 
 /* ---- what comes ---------------------------------------------------------------------------- */
@@ -105,21 +84,22 @@ static lar_status choose_way(ucx_state *state, lar_error *error) {
 static lar_status start_context(lar_comm *comm, lar_error *error) {
     ucx_state *state = comm->state;
     ucp_config_t *config = NULL;
-    ucs_status_t refused = ucp_config_read(NULL, NULL, &config);
+    ucs_status_t refused = lar_ucx.ucp_config_read(NULL, NULL, &config);
     if (refused) return refuse("read its settings", refused, error);
     /* Loopback stays loopback: only a master elsewhere makes this processor reachable. */
     if (lar_comm_is_local(comm) && !getenv("UCX_NET_DEVICES"))
-        ucp_config_modify(config, "NET_DEVICES", "lo");
+        lar_ucx.ucp_config_modify(config, "NET_DEVICES", "lo");
     ucp_params_t params = {.field_mask =
                                UCP_PARAM_FIELD_FEATURES | UCP_PARAM_FIELD_ESTIMATED_NUM_EPS,
                            .features = UCP_FEATURE_RMA | UCP_FEATURE_AM,
                            .estimated_num_eps = (size_t)comm->options.count};
-    refused = ucp_init(&params, config, &state->context);
-    ucp_config_release(config);
+    refused =
+        lar_ucx.ucp_init_version(UCP_API_MAJOR, UCP_API_MINOR, &params, config, &state->context);
+    lar_ucx.ucp_config_release(config);
     if (refused) return refuse("start", refused, error);
     ucp_worker_params_t worker = {.field_mask = UCP_WORKER_PARAM_FIELD_THREAD_MODE,
                                   .thread_mode = UCS_THREAD_MODE_SERIALIZED};
-    refused = ucp_worker_create(state->context, &worker, &state->worker);
+    refused = lar_ucx.ucp_worker_create(state->context, &worker, &state->worker);
     return refused ? refuse("create a worker", refused, error) : LAR_OK;
 }
 
@@ -132,7 +112,7 @@ static lar_status set_handler(lar_comm *comm, unsigned id, ucp_am_recv_callback_
                                     .cb = handler,
                                     .arg = comm};
     ucs_status_t refused =
-        ucp_worker_set_am_recv_handler(((ucx_state *)comm->state)->worker, &param);
+        lar_ucx.ucp_worker_set_am_recv_handler(((ucx_state *)comm->state)->worker, &param);
     return refused ? refuse("take messages", refused, error) : LAR_OK;
 }
 
@@ -146,8 +126,8 @@ static lar_status take_memory(lar_comm *comm, lar_error *error) {
                                    .length = bytes,
                                    .flags = UCP_MEM_MAP_ALLOCATE};
     ucp_mem_attr_t found = {.field_mask = UCP_MEM_ATTR_FIELD_ADDRESS};
-    ucs_status_t refused = ucp_mem_map(state->context, &params, &state->memory);
-    if (!refused) refused = ucp_mem_query(state->memory, &found);
+    ucs_status_t refused = lar_ucx.ucp_mem_map(state->context, &params, &state->memory);
+    if (!refused) refused = lar_ucx.ucp_mem_query(state->memory, &found);
     if (refused) return refuse("give memory for a receive buffer", refused, error);
     comm->receive = found.address;
     memset(comm->receive, 0, bytes);
@@ -161,8 +141,8 @@ static lar_status write_address(lar_comm *comm, lar_error *error) {
     ucp_address_t *worker = NULL;
     void *key = NULL;
     size_t worker_bytes = 0, key_bytes = 0;
-    ucs_status_t refused = ucp_worker_get_address(state->worker, &worker, &worker_bytes);
-    if (!refused) refused = ucp_rkey_pack(state->context, state->memory, &key, &key_bytes);
+    ucs_status_t refused = lar_ucx.ucp_worker_get_address(state->worker, &worker, &worker_bytes);
+    if (!refused) refused = lar_ucx.ucp_rkey_pack(state->context, state->memory, &key, &key_bytes);
     lar_status status = LAR_OK;
     size_t bytes = sizeof head + key_bytes + worker_bytes;
     if (refused) {
@@ -180,21 +160,21 @@ static lar_status write_address(lar_comm *comm, lar_error *error) {
         memcpy(own->data + sizeof head, key, key_bytes);
         memcpy(own->data + sizeof head + key_bytes, worker, worker_bytes);
     }
-    if (key) ucp_rkey_buffer_release(key);
-    if (worker) ucp_worker_release_address(state->worker, worker);
+    if (key) lar_ucx.ucp_rkey_buffer_release(key);
+    if (worker) lar_ucx.ucp_worker_release_address(state->worker, worker);
     return status;
 }
 
 lar_status lar_ucx_open(lar_comm *comm, lar_error *error) {
-    static pthread_once_t once = PTHREAD_ONCE_INIT;
-    pthread_once(&once, leave_terminal_alone);
+    lar_status status = lar_ucx_load(error);
+    if (status) return status;
     size_t count = (size_t)comm->options.count;
     ucx_state *state = comm->state = lar_calloc(1, sizeof *state);
     if (!state) return lar_fail_memory(error, sizeof *state, "connections");
     atomic_flag_clear(&state->lock);
     state->links = lar_calloc(count, sizeof *state->links);
     if (!state->links) return lar_fail_memory(error, count * sizeof *state->links, "connections");
-    lar_status status = choose_way(state, error);
+    status = choose_way(state, error);
     if (!status) status = start_context(comm, error);
     if (!status) status = set_handler(comm, MESSAGE_NOTE, take_note, error);
     if (!status) status = set_handler(comm, MESSAGE_PACKET, take_packet, error);
@@ -215,11 +195,11 @@ static ucs_status_t create_endpoint(ucx_state *state, ucx_link *link, const void
                               .err_mode = state->first == WAY_PUT ? UCP_ERR_HANDLING_MODE_NONE
                                                                   : UCP_ERR_HANDLING_MODE_PEER,
                               .err_handler = {.cb = endpoint_failed, .arg = link}};
-    ucs_status_t refused = ucp_ep_create(state->worker, &params, &link->endpoint);
+    ucs_status_t refused = lar_ucx.ucp_ep_create(state->worker, &params, &link->endpoint);
     link->severable = !refused && params.err_mode == UCP_ERR_HANDLING_MODE_PEER;
     if (refused != UCS_ERR_UNREACHABLE && refused != UCS_ERR_UNSUPPORTED) return refused;
     params.err_mode = UCP_ERR_HANDLING_MODE_NONE;
-    return ucp_ep_create(state->worker, &params, &link->endpoint);
+    return lar_ucx.ucp_ep_create(state->worker, &params, &link->endpoint);
 }
 
 /* UCX has no question for this that all its versions answer; its description of an endpoint names
@@ -229,7 +209,7 @@ static bool card_writes_memory(ucp_ep_h endpoint) {
     size_t bytes = 0;
     FILE *file = open_memstream(&text, &bytes);
     if (!file) return false;
-    ucp_ep_print_info(endpoint, file);
+    lar_ucx.ucp_ep_print_info(endpoint, file);
     fclose(file);
     bool found = text && (strstr(text, ":rc_") || strstr(text, ":dc_"));
     (free)(text); /* the C library's own */
@@ -253,15 +233,15 @@ static lar_status reach(lar_comm *comm, int32_t p, lar_error *error) {
      * has not unpacked): whoever is known to be lost is not asked. */
     lar_status lost = lar_rendezvous_check(comm, error);
     if (lost) return lost;
-    if (!refused) refused = ucp_ep_rkey_unpack(link->endpoint, key, &link->key);
+    if (!refused) refused = lar_ucx.ucp_ep_rkey_unpack(link->endpoint, key, &link->key);
     if (refused)
         return lar_fail(error, LAR_ERROR_PEER,
                         "processor %d cannot reach processor %d by UCX: %s; allow both a common "
                         "network in UCX_TLS and UCX_NET_DEVICES, or use the backend tcp",
-                        (int)comm->options.self, (int)p, ucs_status_string(refused));
+                        (int)comm->options.self, (int)p, lar_ucx.ucs_status_string(refused));
     link->receive = head.receive;
     void *there = NULL;
-    if (state->first == WAY_DIRECT && !ucp_rkey_ptr(link->key, head.receive, &there))
+    if (state->first == WAY_DIRECT && !lar_ucx.ucp_rkey_ptr(link->key, head.receive, &there))
         comm->peers[p].direct = there;
     else if (state->first == WAY_PUT)
         link->way = WAY_PUT;

@@ -5,9 +5,9 @@
 
 #include <sched.h>
 #include <stdatomic.h>
-#include <ucp/api/ucp.h>
 
 #include "comm/backend.h"
+#include "comm/ucx_calls.h"
 
 enum { MESSAGE_NOTE = 1, MESSAGE_PACKET = 2 };
 

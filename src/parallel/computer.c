@@ -190,6 +190,7 @@ lar_status lar_computer_create(const lar_domain *whole, lar_interactions *intera
         computer->whole = whole;
         computer->interactions = interactions;
         computer->gathered = true;
+        computer->process = getpid();
         computer->state = state;
         computer->tools = tools;
         computer->list = list;
@@ -442,6 +443,10 @@ lar_status lar_computer_advance(lar_computer *computer, uint64_t steps, bool fir
                                 lar_step_callback *callback, void *context, lar_fault *fault,
                                 lar_error *error) {
     if (computer->broken) return lar_computer_refuse(error);
+    if (computer->process != getpid())
+        return lar_fail(error, LAR_ERROR_PEER,
+                        "the threads of this simulation are in the process that this one was "
+                        "forked from; make another simulation here, or one of one thread before");
     const lar_state *state = &computer->processor[0].worker[0].state;
     const uint64_t *step = &state->step, end = *step + steps;
     lar_status status = LAR_OK;

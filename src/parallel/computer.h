@@ -20,6 +20,8 @@
 #ifndef LAR_PARALLEL_COMPUTER_H
 #define LAR_PARALLEL_COMPUTER_H
 
+#include <sys/types.h>
+
 #include "base/thread_pool.h"
 #include "parallel/contact_exchange.h"
 #include "parallel/control.h"
@@ -67,6 +69,7 @@ typedef struct lar_computer {
     lar_step_callback *callback;
     void *callback_context;
     bool called_off;     /* by the callback */
+    pid_t process;       /* that has the threads */
     lar_report report;   /* of the last advance; at processor zero, of all processors */
     lar_state *state;    /* of the whole model: gathered into at zero, scattered from elsewhere */
     bool gathered;       /* at zero: `state` is what the processors have */

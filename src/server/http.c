@@ -1,5 +1,6 @@
 /* Connections that are no viewers: who is let in, and the viewer's files. */
 #include <errno.h>
+#include <fcntl.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <stdio.h>
@@ -261,7 +262,7 @@ static int accept_next(lar_server *server, struct sockaddr_storage *from) {
         close(server->spare);
         fd = accept4(server->listener, NULL, NULL, SOCK_CLOEXEC);
         if (fd >= 0) close(fd);
-        server->spare = dup(server->listener);
+        server->spare = fcntl(server->listener, F_DUPFD_CLOEXEC, 0);
         if (fd < 0) return -1;
     }
 }

@@ -3,6 +3,7 @@
 
 #include <arpa/inet.h>
 #include <ctype.h>
+#include <fcntl.h>
 #include <linux/tcp.h>
 #include <netinet/in.h>
 #include <stdio.h>
@@ -261,7 +262,7 @@ static lar_status listen_there(lar_server *server, int port, lar_error *error) {
     lar_status status = lar_socket_listen(at, &server->listener, error);
     if (status) return status;
     server->port = lar_socket_port(server->listener);
-    server->spare = dup(server->listener);
+    server->spare = fcntl(server->listener, F_DUPFD_CLOEXEC, 0);
     return LAR_OK;
 }
 

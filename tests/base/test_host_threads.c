@@ -9,6 +9,8 @@
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <cmocka.h>
 
@@ -159,10 +161,41 @@ static void where_there_is_none_it_is_said(void **unused) {
     DONE(lar_threads_set(NULL, &error));
 }
 
+/* A child has no threads but its own: what needs others says so instead of waiting for them. */
+static void a_forked_child_is_told(void **unused) {
+    (void)unused;
+    lar_model *model = NULL;
+    lar_options options = {.grid = "2x1x1"};
+    lar_simulation *divided = NULL, *plain = NULL;
+    DONE(lar_model_open(LAR_TEST_EXAMPLES "/beam.yaml", &model, &error));
+    DONE(lar_simulation_create(model, &options, &divided, &error));
+    options.grid = "1x1x1";
+    DONE(lar_simulation_create(model, &options, &plain, &error));
+    DONE(lar_simulation_advance(divided, 20, &error));
+    pid_t child = fork();
+    if (child == 0) {
+        alarm(20);
+        bool told = lar_simulation_advance(divided, 5, &error) == LAR_ERROR_PEER &&
+                    strstr(error.message, "forked") &&
+                    lar_simulation_advance(plain, 25, &error) == LAR_OK;
+        _exit(told ? 0 : 1);
+    }
+    int status = -1;
+    assert_true(child > 0 && waitpid(child, &status, 0) == child);
+    assert_int_equal(status, 0);
+    DONE(lar_simulation_advance(divided, 5, &error));
+    DONE(lar_simulation_advance(plain, 25, &error));
+    assert_true(lar_simulation_hash(divided) == lar_simulation_hash(plain));
+    lar_simulation_destroy(divided);
+    lar_simulation_destroy(plain);
+    lar_model_destroy(model);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(all_threads_are_the_hosts),
         cmocka_unit_test(where_there_is_none_it_is_said),
+        cmocka_unit_test(a_forked_child_is_told),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

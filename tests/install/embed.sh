@@ -93,6 +93,30 @@ echo "$first"
 echo "$first" | grep -q '^tip  *-[0-9.]*[1-9]' || fail "the tip did not sink"
 echo "$first" | grep -Eq '^hash [0-9a-f]{16}$' || fail "no hash was printed"
 
+# Loaded, used and let go again and again it says nothing and takes no signal from its host.
+cat >"$scratch/plugin.c" <<'END'
+#include <dlfcn.h>
+#include <signal.h>
+#include <stddef.h>
+static volatile sig_atomic_t caught;
+static void count(int number) { (void)number, caught++; }
+int main(int argc, char **argv) {
+    int signals = 0;
+    for (int i = 1; i < 32; i++) signals += signal(i, count) != SIG_ERR;
+    for (int round = 0; round < 3; round++) {
+        void *library = argc > 1 ? dlopen(argv[1], RTLD_NOW | RTLD_LOCAL) : NULL;
+        if (!library) return 2;
+        dlclose(library);
+    }
+    for (int i = 1; i < 32; i++)
+        if (i != SIGKILL && i != SIGSTOP) raise(i);
+    return caught == signals ? 0 : 1;
+}
+END
+"$cc" -std=gnu17 -Wall -Wextra -Werror "$scratch/plugin.c" -o "$scratch/plugin" -ldl
+"$scratch/plugin" "$library" >"$scratch/plugin.out" 2>&1 || fail "the library takes signals: status $?"
+[ ! -s "$scratch/plugin.out" ] || fail "the library prints: $(cat "$scratch/plugin.out")"
+
 # The Python module, where it was built and an interpreter can load it.
 module=$(find "$prefix" -name '_lariat.abi3.so')
 if [ -n "$module" ] && python3 -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null; then

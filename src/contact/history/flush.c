@@ -14,18 +14,20 @@ static void corners_at_rest(const lar_contact_surface *s, int32_t face, double c
         memcpy(corner[a], s->rest[s->face[face].corner[a]], 3 * sizeof(double));
 }
 
-/* Whether a face of one body goes on in the plane of one of another, and looks the same way. */
+/* Whether a face of one body goes on in the plane of one of another, or a little within it, and
+ * looks the same way. */
 static bool goes_on_in(const lar_contact_surface *s, int32_t own, int32_t other, int32_t node,
                        double rounding) {
-    static const double SAME = 0.9999; /* cosine */
+    static const double SAME = 0.9; /* cosine */
+    static const double WITHIN = 0.25; /* of a face */
     double corner[2][4][3], way[2][3], from[3];
     corners_at_rest(s, own, corner[0]);
     corners_at_rest(s, other, corner[1]);
     for (int k = 0; k < 2; k++) lar_face_normal((const double(*)[3])corner[k], way[k]);
     lar_minus(s->rest[node], corner[1][0], from);
-    double length = lar_length(way[1]);
-    return lar_dot(way[0], way[1]) > SAME * lar_length(way[0]) * length &&
-           fabs(lar_dot(from, way[1])) <= rounding * length;
+    double length = lar_length(way[1]), out = lar_dot(from, way[1]) / length;
+    return lar_dot(way[0], way[1]) > SAME * lar_length(way[0]) * length && out <= rounding &&
+           out >= -fmax(rounding, WITHIN * s->face[other].size);
 }
 
 /* Faces by their corners: those of node n are at[first[n]] up to at[first[n + 1]]. */
