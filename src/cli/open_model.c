@@ -21,6 +21,14 @@ int cli_resume_options(const cli_command *command, const char *path, const lar_m
     if (!path) return CLI_DONE;
     if (lar_checkpoint_inspect(path, &info, &error))
         return cli_complain(command, CLI_FAILED, "%s", error.message);
+    lar_model_info here;
+    if (lar_model_inspect(model, &here, &error) == LAR_OK &&
+        (here.nodes != info.nodes || here.elements != info.elements))
+        return cli_complain(command, CLI_FAILED,
+                            "%s: was saved from another model: it has %d elements and %d nodes, "
+                            "this one %lld and %lld; load it into the model that it was saved from",
+                            path, (int)info.elements, (int)info.nodes, (long long)here.elements,
+                            (long long)here.nodes);
     if (options->time_step == 0) options->time_step = info.time_step;
     if (options->element == LAR_ELEMENT_HEX8) options->element = info.element;
     int32_t hands = info.tools - lar_model_tool_count(model);

@@ -1,5 +1,6 @@
 /* lariat partition: who computes what. */
 #include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
 #include <unistd.h>
 
@@ -81,9 +82,10 @@ static void write_json(const lar_partition_report *r) {
 /* ---- for people ------------------------------------------------------------------------- */
 
 static void print_costs(const lar_partition_report *r) {
-    printf("%-17s%" PRId64 " before (plain cut), %" PRId64 " after (%s), %.1f %% less\n", "cost",
+    printf("%-17s%" PRId64 " before (plain cut), %" PRId64 " after (%s), %.1f %% %s\n", "cost",
            r->cost[LAR_PARTITION_CUT].worst, r->cost[r->method].worst,
-           lar_partition_method_name[r->method], 100 * r->reduction);
+           lar_partition_method_name[r->method], 100 * fabs(r->reduction),
+           r->reduction < 0 ? "more" : "less");
     for (int m = 0; m < LAR_PARTITION_METHODS; m++)
         if (r->cost[m].known)
             printf("%-17s%-8s %6" PRId64 " at the worst processor, %" PRId64 " in all\n", "",

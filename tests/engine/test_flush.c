@@ -33,6 +33,52 @@ static double force_below(const lar_simulation *s, const brick *b) {
     return sum;
 }
 
+/* Two cubes of 3 x 3 x 3 elements, the upper one moved aside and turned about the vertical axis,
+ * pressed by a tenth of one with what is above and below held. Returns the force [N]. */
+static double pressed_aside(double aside, double degrees) {
+    const double edge = 0.03, turn = degrees * acos(-1) / 180;
+    const brick cube = {{3, 3, 3}, edge / 3, 0, LAR_LAW_neo_hookean, 1e4, 1e6, 1000};
+    lar_model *model = empty_model(&cube);
+    add_brick(model, &cube, (double[]){0, 0, 0});
+    int32_t split = model->mesh.element_count,
+            first = add_brick(model, &cube, (double[]){0, 0, edge});
+    for (int32_t n = first; n < model->mesh.node_count; n++) {
+        double *x = model->mesh.position[n], a = x[0] - edge / 2, b = x[1] - edge / 2;
+        x[0] = edge / 2 + aside + cos(turn) * a - sin(turn) * b;
+        x[1] = edge / 2 + sin(turn) * a + cos(turn) * b;
+    }
+    touch_between(model, split);
+    fix_nodes(model, brick_side(&cube, 2, 0), LAR_AXIS_ALL);
+    fix_nodes(model, shifted(brick_side(&cube, 2, -1), first), LAR_AXIS_X | LAR_AXIS_Y);
+    move_nodes(model, shifted(brick_side(&cube, 2, -1), first), LAR_AXIS_Z, -0.1 * edge,
+               add_ramp(model, 0.1));
+    model->damping = 60;
+    lar_simulation *s = start(model);
+    while (lar_simulation_time(s) < 0.6) advance(s, 100);
+    double force = force_below(s, &cube);
+    finish(s, model);
+    return force;
+}
+
+/* Not quite flush blocks bear what flush ones do: 0.1 mm aside, or half a degree, once cost 27 and
+ * 47 % of it. Farther aside less of them lies on each other. */
+static void a_little_aside_bears_too(void **unused) {
+    (void)unused;
+    static const struct {
+        double aside, degrees, least;
+    } way[] = {{2e-5, 0, 0.99},   {1e-4, 0, 0.99}, {3e-4, 0, 0.99}, {1e-3, 0, 0.985},
+               {2.4e-3, 0, 0.97}, {5e-3, 0, 0.92}, {0, 0.5, 0.99},  {2e-4, 2, 0.99},
+               {1e-3, -10, 0.98}, {0, 45, 0.94}};
+    const double flush = pressed_aside(0, 0);
+    for (size_t i = 0; i < sizeof way / sizeof way[0]; i++) {
+        double part = pressed_aside(way[i].aside, way[i].degrees) / flush;
+        print_message("%g mm aside, turned by %g degrees: %.4f of the force\n", 1e3 * way[i].aside,
+                      way[i].degrees, part);
+        assert_below(way[i].least, part);
+        assert_below(part, 1.002);
+    }
+}
+
 /* A quarter of two cubes with n elements along an edge, pressed together by a part of one. Returns
  * the force, as a part of that of a body of which all is strained alike. */
 static double pressed(int n, double by) {
@@ -148,6 +194,7 @@ static void it_has_the_same_bits(void **unused) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_little_aside_bears_too),
         cmocka_unit_test(a_pressed_edge_bears),
         cmocka_unit_test(who_slides_off_gains_nothing),
         cmocka_unit_test(it_has_the_same_bits),

@@ -312,6 +312,16 @@ static void test_output(void **state) {
                                 "output: {probes: [{set: bottom, sum: reaction}]}\n");
     assert_int_equal(model->notice_count, 0);
     lar_model_destroy(model);
+    /* What is asked for and is not there, and what is there. */
+    model = scene(HEAD MATERIAL "output: {fields: [fibre_stretch], surface: true,\n"
+                                "  probes: [{cells: all, mean: stress, name: mean}]}\n");
+    assert_int_equal(model->notice_count, 2);
+    assert_non_null(strstr(model->notice[0], "frames hold no fibres"));
+    assert_non_null(strstr(model->notice[1], "frames hold no surface"));
+    assert_int_equal(model->output.probe[0].what, LAR_PROBE_MEAN);
+    assert_int_equal(model->output.probe[0].field, LAR_CELL_STRESS);
+    assert_int_equal(model->output.probe[0].nodes.count, model->mesh.element_count);
+    lar_model_destroy(model);
 }
 
 static void laws_that_give_way_are_told(void **state) {

@@ -1,10 +1,11 @@
-/* Blocks that stand exactly on each other, side over side, at rest.
+/* Blocks that stand on each other, side over side or nearly so, at rest.
  *
  *          |      |            A node on the edge of the upper block that sinks in goes down along
- *          |      |            the other's side, which would be the closest face, at distance 0:
- *     -----o------o            nothing would push it up. As long as a node has never parted from
- *          |      |            the block that it is flush with, it does not see those of its faces
- *          |      |            that its own body's faces go on in, and stands on what is left.
+ *          |      |            the other's side, which would be the closest face, at distance 0 or
+ *     -----o------o            nearly: nothing would push it up. As long as a node has never parted
+ *          |      |            from the block that it is flush with, it does not see those of its
+ *          |      |            faces that its own body's faces go on in, or go on a little within
+ *                              and turned, and stands on what is left.
  *
  * Points of edges are flush as the nodes are of which they are made. What becomes of it in a run is
  * in body_contact.h, offsets.

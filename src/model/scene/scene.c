@@ -155,7 +155,7 @@ static lar_status read_root(lar_scene *scene) {
                 {"fix", lar_scene_read_fix},         {"move", lar_scene_read_move},
                 {"load", lar_scene_read_load},       {"initial", lar_scene_read_initial},
                 {"contact", lar_scene_read_contact}, {"tools", lar_scene_read_tools},
-                {"output", lar_scene_read_output},   {"surface", lar_scene_read_surface}};
+                {"surface", lar_scene_read_surface}, {"output", lar_scene_read_output}};
     const lar_yaml *mesh = NULL, *materials;
     double scale;
     lar_status status = check_root(scene);

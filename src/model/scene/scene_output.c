@@ -135,6 +135,27 @@ static lar_status read_probe(lar_scene *scene, const lar_yaml *entry) {
     return status || !sum ? status : notice_free_reaction(scene, entry, probe);
 }
 
+/* What is asked for and cannot be there is most likely missed somewhere else. */
+static lar_status notice_lacking(lar_scene *scene, const lar_yaml *surface,
+                                 const lar_yaml *fields) {
+    const lar_model *model = scene->model;
+    bool fibres = !(model->output.fields & (LAR_OUTPUT_FIBRES | LAR_OUTPUT_STRETCH));
+    for (lar_gid e = 0; e < model->mesh.element_count && !fibres; e++)
+        fibres = lar_model_element_fibres(model, e, NULL) > 0;
+    lar_status status = LAR_OK;
+    if (!fibres)
+        status = lar_model_notice(scene->model, scene->error,
+                                  "%s:%d:%d: frames hold no fibres, for no material has any; give "
+                                  "one the key fibres",
+                                  scene->path, fields->line, fields->column);
+    if (!status && model->output.surface && !lar_model_embedded(model, NULL))
+        status = lar_model_notice(scene->model, scene->error,
+                                  "%s:%d:%d: frames hold no surface, for the scene has none; give "
+                                  "it the key surface",
+                                  scene->path, surface->line, surface->column);
+    return status;
+}
+
 lar_status lar_scene_read_output(lar_scene *scene, const lar_yaml *node) {
     static const char *const keys[] = {"every", "fields", "probes", "surface", NULL};
     lar_output *output = &scene->model->output;
@@ -156,5 +177,5 @@ lar_status lar_scene_read_output(lar_scene *scene, const lar_yaml *node) {
     for (const lar_yaml *entry = probes ? probes->first : NULL; !status && entry;
          entry = entry->next)
         status = read_probe(scene, entry);
-    return status;
+    return status ? status : notice_lacking(scene, surface, fields);
 }
