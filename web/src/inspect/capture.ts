@@ -7,7 +7,10 @@ import type { View } from '../picture/view';
 const KINDS = ['video/webm;codecs=vp9', 'video/webm;codecs=vp8', 'video/webm', 'video/mp4'];
 const RATE = 30; // pictures per second
 const LONGEST = 600; // s: a video lies in memory until it ends
-const FOOT = 34; // pixels of the line below, where the picture is 640 high
+const FOOT = 34; // pixels of a line below, where the picture is 640 high
+const FONT = '14px system-ui, "DejaVu Sans", sans-serif';
+const MARGIN = 12;
+const MAP = 140; // pixels of the legend's colours where there is room
 
 /* A name for a file: uterus-12000.png. */
 export function fileName(title: string, step: number, ending: string): string {
@@ -81,38 +84,66 @@ export class Capture {
         return fileName(this.session.hello?.title ?? '', this.session.frame.step, ending);
     }
 
-    /* The picture as it is drawn now, and the line below. */
+    /* The picture as it is drawn now, and below it one line, or two where the legend has no room beside the rest. */
     private withFoot(): HTMLCanvasElement {
         const { canvas } = this.view;
         this.view.changed();
         this.view.draw(0); // what was drawn before is gone by now
         const scale = Math.max(1, canvas.height / 640);
+        const width = canvas.width / scale;
         const out = document.createElement('canvas');
-        out.width = canvas.width;
-        out.height = canvas.height + FOOT * scale;
         const pen = out.getContext('2d')!;
+        pen.font = FONT;
+        const what = this.what(pen, width - 2 * MARGIN);
+        const legend = this.legend(pen, width - 2 * MARGIN);
+        const apart = legend !== null && pen.measureText(what).width + legend.width + 4 * MARGIN > width;
+        out.width = canvas.width;
+        out.height = canvas.height + (apart ? 2 : 1) * FOOT * scale;
         pen.fillStyle = '#07080a';
         pen.fillRect(0, 0, out.width, out.height);
         pen.drawImage(canvas, 0, 0);
         pen.setTransform(scale, 0, 0, scale, 0, canvas.height);
-        this.drawFoot(pen, out.width / scale);
+        pen.font = FONT;
+        pen.textBaseline = 'middle';
+        pen.fillStyle = '#e9ecef';
+        pen.fillText(what, MARGIN, FOOT / 2);
+        if (legend) drawLegend(pen, legend, width - MARGIN, apart ? 1.4 * FOOT : FOOT / 2);
         return out;
     }
 
-    private drawFoot(pen: CanvasRenderingContext2D, width: number): void {
+    /* Scene, time and step; of a long title as much as there is room for. */
+    private what(pen: CanvasRenderingContext2D, room: number): string {
         const { hello, frame } = this.session;
-        const middle = FOOT / 2;
-        pen.font = '14px system-ui, "DejaVu Sans", sans-serif';
-        pen.textBaseline = 'middle';
-        pen.fillStyle = '#e9ecef';
-        pen.fillText(`${hello?.title || 'Lariat'}, ${frame.time.toFixed(3)} s, step ${frame.step}`, 12, middle);
-        if (element('legend').hidden) return;
+        const when = `, ${frame.time.toFixed(3)} s, step ${frame.step}`;
+        let title = hello?.title || 'Lariat';
+        if (pen.measureText(title + when).width <= room) return title + when;
+        while (title && pen.measureText(`${title}…${when}`).width > room) title = title.slice(0, -1);
+        return `${title}…${when}`;
+    }
+
+    private legend(pen: CanvasRenderingContext2D, room: number): Legend | null {
+        if (element('legend').hidden) return null;
+        const { hello, frame } = this.session;
         const field = hello?.fields.find((one) => one.number === frame.field)?.title ?? '';
         const [min, max] = ['legend-least', 'legend-most'].map((id) => element(id).textContent ?? '');
-        pen.textAlign = 'right';
-        pen.fillText(max!, width - 12, middle);
-        const right = width - 20 - pen.measureText(max!).width;
-        pen.drawImage(element<HTMLCanvasElement>('legend-map'), right - 140, middle - 6, 140, 12);
-        pen.fillText(`${field}  ${min}`, right - 148, middle);
+        const before = `${field}  ${min}`;
+        const words = pen.measureText(before).width + 16 + pen.measureText(max!).width;
+        const colours = Math.max(20, Math.min(MAP, room - words));
+        return { before, after: max!, colours, width: words + colours };
     }
+}
+
+interface Legend {
+    before: string; // field and least value, left of the colours
+    after: string; // largest value, right of them
+    colours: number; // pixels of them
+    width: number;
+}
+
+function drawLegend(pen: CanvasRenderingContext2D, legend: Legend, right: number, middle: number): void {
+    pen.textAlign = 'right';
+    pen.fillText(legend.after, right, middle);
+    const map = right - 8 - pen.measureText(legend.after).width;
+    pen.drawImage(element<HTMLCanvasElement>('legend-map'), map - legend.colours, middle - 6, legend.colours, 12);
+    pen.fillText(legend.before, map - legend.colours - 8, middle);
 }
