@@ -131,7 +131,8 @@ static PyType_Slot results_slots[] = {
      "writes them: frames (.vtu) with a series (.pvd) for ParaView, and probes.csv, with the "
      "fields "
      "and probes that the scene's `output` asks for. The folder is made when it is missing; it can "
-     "be opened after every frame.\n\n"
+     "be opened after every frame. Frames are listed as they are added: after a reset, or without a "
+     "step between, times go back or repeat, which is no series in time.\n\n"
      "surface  the embedded surface, if any, in every frame (.vtp)\n\n"
      "    with lariat.Results(sim, \"out\") as results:\n"
      "        sim.advance(seconds=1, callback=lambda sim: results.add(), every=100)"},

@@ -75,7 +75,7 @@ void lar_advise(const lar_advice *a, double pace, lar_session_status *status) {
         status->slow_cause = LAR_SLOW_MACHINE;
         snprintf(status->slow_advice, sizeof status->slow_advice,
                  "a step takes %.3g us of the %.3g us that it has, but other programs keep the "
-                 "processor busy; end them%s",
+                 "processor busy, here or, of a virtual machine, on its host; end them%s",
                  1e6 * min, 1e6 * allowed / ROOM,
                  a->priority > 0 ? "" : ", or start with --priority 10");
     }
