@@ -442,7 +442,7 @@ static int compute(run *r) {
 /* Processor zero hears Ctrl-C too, and ends the run for all. */
 static int serve(run *r) {
     lar_error error;
-    cli_catch_stop_of_all();
+    cli_catch_stop_of_all(lar_processes_by_hand(r->processes));
     return lar_simulation_serve(r->simulation, &error) ? fail_by(r, &error) : CLI_DONE;
 }
 

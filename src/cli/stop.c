@@ -1,7 +1,7 @@
 #include "cli/stop.h"
 
-#include <stdbool.h>
 #include <stddef.h>
+#include <unistd.h>
 
 volatile sig_atomic_t cli_stop_asked;
 
@@ -9,8 +9,18 @@ static void ask_stop(int signal_number) {
     cli_stop_asked = signal_number;
 }
 
-static void catch_signals(bool terminate) {
-    struct sigaction action = {.sa_handler = ask_stop, .sa_flags = SA_RESTART | SA_RESETHAND};
+/* Nothing but write() may be called here. */
+static void point_to_zero(int signal_number) {
+    static const char text[] =
+        "\nnote: this processor goes on: Ctrl-C at processor 0 ends the run for all, with results; "
+        "once more here, this one is lost and the run ends without\n";
+    cli_stop_asked = signal_number;
+    ssize_t ignored = write(STDERR_FILENO, text, sizeof text - 1);
+    (void)ignored;
+}
+
+static void catch_signals(bool terminate, void (*handler)(int)) {
+    struct sigaction action = {.sa_handler = handler, .sa_flags = SA_RESTART | SA_RESETHAND};
     struct sigaction hangup;
     sigemptyset(&action.sa_mask);
     sigaction(SIGINT, &action, NULL);
@@ -20,9 +30,9 @@ static void catch_signals(bool terminate) {
 }
 
 void cli_catch_stop(void) {
-    catch_signals(true);
+    catch_signals(true, ask_stop);
 }
 
-void cli_catch_stop_of_all(void) {
-    catch_signals(false);
+void cli_catch_stop_of_all(bool by_hand) {
+    catch_signals(false, by_hand ? point_to_zero : ask_stop);
 }

@@ -3,6 +3,7 @@
 #define LAR_CLI_STOP_H
 
 #include <signal.h>
+#include <stdbool.h>
 
 /* The signal that asked; 0: none has. */
 extern volatile sig_atomic_t cli_stop_asked;
@@ -12,7 +13,8 @@ extern volatile sig_atomic_t cli_stop_asked;
 void cli_catch_stop(void);
 
 /* A processor that is not zero: of what a terminal sends to all of a run, zero hears it too, and
- * ends the run for all. SIGTERM, which is for one, ends this one at once. */
-void cli_catch_stop_of_all(void);
+ * ends the run for all. SIGTERM, which is for one, ends this one at once. Of processors that were
+ * started `by_hand`, each in its own terminal, zero hears nothing: then this one says so. */
+void cli_catch_stop_of_all(bool by_hand);
 
 #endif

@@ -412,7 +412,7 @@ static int present(view *v) {
 /* Processor zero hears Ctrl-C too, and ends the session for all. */
 static int serve(view *v) {
     lar_error error;
-    cli_catch_stop_of_all();
+    cli_catch_stop_of_all(lar_processes_by_hand(v->processes));
     return lar_simulation_serve(v->simulation, &error) ? fail_by(v, &error) : CLI_DONE;
 }
 

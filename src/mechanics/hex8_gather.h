@@ -40,7 +40,6 @@ typedef struct lane_strain {
 /* How many axes of some lanes are worked on at once: modes, gradients and stresses of all three
  * fill 32 registers, those of one 16. */
 enum { AXES = LAR_LANES == 4 ? 1 : 3 };
-#define UNROLL_AXES UNROLL3
 
 /* The phases work on a few blocks at a time. The law of one block is a long chain of dependent
  * operations, which a processor can hide only behind other blocks; in short loops their turns

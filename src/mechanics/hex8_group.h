@@ -38,7 +38,7 @@ GROUP_CALL void corner_volumes(const lar_lane x[8][3], lar_lane volume[8]) {
     }
 }
 
-/* Modes of the corners, as gather_modes has them. */
+/* Modes of the corners, as gather_axis has them. */
 LAR_INLINE void modes_of(const lar_lane x[8][3], lar_lane X[7][3]) {
     static const int left[4] = {0, 3, 4, 7}, right[4] = {1, 2, 5, 6};
     UNROLL3 for (int i = 0; i < 3; i++) {

@@ -140,6 +140,10 @@ int32_t lar_processes_self(const lar_processes *p) {
     return p->self;
 }
 
+bool lar_processes_by_hand(const lar_processes *p) {
+    return p && p->setting.processor > 0 && !p->has_parent;
+}
+
 /* ---- starting the others ------------------------------------------------------------------- */
 
 /* The command line of processor k: the command's words, who it is, and what this process was

@@ -45,6 +45,8 @@ lar_status lar_processes_begin(const lar_processes_setting *setting, lar_process
 
 /* The number of this process's first processor. */
 int32_t lar_processes_self(const lar_processes *processes);
+/* Whether somebody started this one by itself, and not processor zero or a launcher. */
+bool lar_processes_by_hand(const lar_processes *processes);
 
 /* Processor zero starts processors 1 .. count - 1 when nobody else does. */
 lar_status lar_processes_start(lar_processes *processes, int32_t count, lar_error *error);

@@ -180,6 +180,24 @@ expect 0 "$LARIAT" run $scene --steps 40 --json --grid 2x1x1 --comm tcp --proces
 wait $pid || fail "processor 1 failed"
 [ "$(value_of state_hash)" = "$hash" ] || fail "by hand: $(value_of state_hash), not $hash"
 [ ! -s other ] && [ ! -e not-here ] || fail "processor 1 wrote something"
+# Ctrl-C in the other's terminal says where it belongs; there it ends both.
+port=$((port + 1))
+by_hand run $scene --time 60 --realtime
+"$LARIAT" run $scene --time 60 --realtime --grid 2x1x1 --comm tcp --processor 0 \
+    --master 127.0.0.1:$port >zero 2>&1 &
+zero=$!
+for try in $(seq 100); do
+    kill -INT $pid 2>/dev/null || break
+    sleep 0.05
+    grep -q 'Ctrl-C at processor 0 ends the run' complaint && break
+    [ "$try" -lt 100 ] || fail "processor 1 says nothing"
+done
+sleep 0.3
+kill -INT $zero
+wait $zero
+status=$?
+[ $status -eq 130 ] || fail "processor 0 ended with $status: $(cat zero)"
+wait $pid || fail "processor 1 did not go on to the end: $(cat complaint)"
 for wrong in "run $scene --time-step 1e-6" "run $scene --distribution random" "verify $scene"; do
     port=$((port + 1))
     # shellcheck disable=SC2086

@@ -125,7 +125,7 @@ for cells in 2 1; do
     says '^rest  *yes'
     [ $cells = 1 ] || says '^hourglass  *24'
 done
-says '^hourglass  *99[0-9.]* % of the strain energy: .*two or more elements'
+says '^hourglass  *99[0-9.]* % of strain and hourglass energy: .*two or more elements'
 expect 0 "$LARIAT" run "$SCRATCH/slender1.yaml" --json
 [ "$(value_of energy.hourglass_share | cut -c 1-4)" = 0.99 ] || fail "share of one layer"
 scene wrong "duration: soon"

@@ -54,6 +54,7 @@ export class Transport {
 
     update(status: Status): void {
         const playing = status.state === 'playing';
+        write(element('clock'), `${status.time.toFixed(2)} s`);
         const fixed = this.watches || status.state === 'stopped';
         this.play.disabled = fixed;
         element('step').toggleAttribute('disabled', fixed);
