@@ -200,6 +200,7 @@ LAR_INLINE lar_ilane lar_lane_round_small(lar_lane a) {
     const lar_lane magic = lar_lane_set(0x1.8p52);
     return (lar_ilane)(a + magic) - (lar_ilane)magic;
 }
+/* As below, where others have them: numbers of 32 bits need no general conversion. */
 LAR_INLINE lar_lane lar_lane_upper(lar_lane a) {
     const int64_t sign = 0x80000000LL, above = 0x4338000000000000LL;
     lar_ilane upper = (lar_ilane)_mm256_srli_epi64((__m256i)a, 32);

@@ -8,7 +8,6 @@
 #include <unistd.h>
 
 #include "base/text.h"
-#include "mechanics/hexahedron.h"
 #include "step/measure.h"
 
 static lar_status fail_to(const lar_probe_file *file, const char *verb, int cause,

@@ -141,7 +141,7 @@ int32_t lar_processes_self(const lar_processes *p) {
 }
 
 bool lar_processes_by_hand(const lar_processes *p) {
-    return p && p->setting.processor > 0 && !p->has_parent;
+    return by_hand(p) && !p->has_parent;
 }
 
 /* ---- starting the others ------------------------------------------------------------------- */

@@ -33,31 +33,43 @@ static double force_below(const lar_simulation *s, const brick *b) {
     return sum;
 }
 
+/* One cube on another: the nodes of the upper one begin with *first. */
+static lar_model *two_cubes(const brick *cube, double edge, int32_t *first) {
+    lar_model *model = empty_model(cube);
+    add_brick(model, cube, (double[]){0, 0, 0});
+    int32_t split = model->mesh.element_count;
+    *first = add_brick(model, cube, (double[]){0, 0, edge});
+    touch_between(model, split);
+    return model;
+}
+
+/* What the fixed nodes below bear in the end [N]; the model is destroyed. */
+static double force_in_the_end(lar_model *model, const brick *cube) {
+    model->damping = 60;
+    lar_simulation *s = start(model);
+    while (lar_simulation_time(s) < 0.6) advance(s, 100);
+    double force = force_below(s, cube);
+    finish(s, model);
+    return force;
+}
+
 /* Two cubes of 3 x 3 x 3 elements, the upper one moved aside and turned about the vertical axis,
  * pressed by a tenth of one with what is above and below held. Returns the force [N]. */
 static double pressed_aside(double aside, double degrees) {
     const double edge = 0.03, turn = degrees * acos(-1) / 180;
     const brick cube = {{3, 3, 3}, edge / 3, 0, LAR_LAW_neo_hookean, 1e4, 1e6, 1000};
-    lar_model *model = empty_model(&cube);
-    add_brick(model, &cube, (double[]){0, 0, 0});
-    int32_t split = model->mesh.element_count,
-            first = add_brick(model, &cube, (double[]){0, 0, edge});
+    int32_t first;
+    lar_model *model = two_cubes(&cube, edge, &first);
     for (int32_t n = first; n < model->mesh.node_count; n++) {
         double *x = model->mesh.position[n], a = x[0] - edge / 2, b = x[1] - edge / 2;
         x[0] = edge / 2 + aside + cos(turn) * a - sin(turn) * b;
         x[1] = edge / 2 + sin(turn) * a + cos(turn) * b;
     }
-    touch_between(model, split);
     fix_nodes(model, brick_side(&cube, 2, 0), LAR_AXIS_ALL);
     fix_nodes(model, shifted(brick_side(&cube, 2, -1), first), LAR_AXIS_X | LAR_AXIS_Y);
     move_nodes(model, shifted(brick_side(&cube, 2, -1), first), LAR_AXIS_Z, -0.1 * edge,
                add_ramp(model, 0.1));
-    model->damping = 60;
-    lar_simulation *s = start(model);
-    while (lar_simulation_time(s) < 0.6) advance(s, 100);
-    double force = force_below(s, &cube);
-    finish(s, model);
-    return force;
+    return force_in_the_end(model, &cube);
 }
 
 /* Not quite flush blocks bear what flush ones do: 0.1 mm aside, or half a degree, once cost 27 and
@@ -84,21 +96,14 @@ static void a_little_aside_bears_too(void **unused) {
 static double pressed(int n, double by) {
     const double edge = 0.02;
     const brick cube = {{n, n, n}, edge / n, 0, LAR_LAW_neo_hookean, 1e3, 1e4, 1000};
-    lar_model *model = empty_model(&cube);
-    add_brick(model, &cube, (double[]){0, 0, 0});
-    int32_t split = model->mesh.element_count,
-            first = add_brick(model, &cube, (double[]){0, 0, edge});
-    touch_between(model, split);
+    int32_t first;
+    lar_model *model = two_cubes(&cube, edge, &first);
     fix_nodes(model, both_sides(&cube, 0, first), LAR_AXIS_X);
     fix_nodes(model, both_sides(&cube, 1, first), LAR_AXIS_Y);
     fix_nodes(model, brick_side(&cube, 2, 0), LAR_AXIS_Z);
     move_nodes(model, shifted(brick_side(&cube, 2, -1), first), LAR_AXIS_Z, -by * edge,
                add_ramp(model, 0.2));
-    model->damping = 60;
-    lar_simulation *s = start(model);
-    while (lar_simulation_time(s) < 0.6) advance(s, 100);
-    double force = force_below(s, &cube);
-    finish(s, model);
+    double force = force_in_the_end(model, &cube);
 
     /* One element of the same shape and strain, with nothing between. */
     const brick alike = {{1, 1, 1}, edge, 0, LAR_LAW_neo_hookean, 1e3, 1e4, 1000};
@@ -108,11 +113,7 @@ static double pressed(int n, double by) {
     fix_nodes(model, brick_side(&alike, 2, 0), LAR_AXIS_Z);
     move_nodes(model, brick_side(&alike, 2, -1), LAR_AXIS_Z, -0.5 * by * edge,
                add_ramp(model, 0.2));
-    model->damping = 60;
-    s = start(model);
-    while (lar_simulation_time(s) < 0.6) advance(s, 100);
-    double wanted = force_below(s, &alike);
-    finish(s, model);
+    double wanted = force_in_the_end(model, &alike);
     return force / wanted;
 }
 

@@ -317,6 +317,15 @@ static void adding_frames_changes_nothing(void **state) {
 
 /* ---- probes ----------------------------------------------------------------------------- */
 
+/* The numbers of a line, and where the next one begins. */
+static char *read_line(char *line, double *value, int count) {
+    for (int i = 0; i < count; i++) {
+        value[i] = strtod(line, &line);
+        assert_int_equal(*line++, i < count - 1 ? ',' : '\n');
+    }
+    return line;
+}
+
 static void probes_have_names_units_and_values(void **state) {
     fixture *f = *state;
     open_results(f);
@@ -332,11 +341,7 @@ static void probes_have_names_units_and_values(void **state) {
     assert_memory_equal(line, "0,0,0,0,", 8);
     line = strchr(line, '\n') + 1;
     double value[7];
-    for (int i = 0; i < 7; i++) {
-        value[i] = strtod(line, &line);
-        assert_int_equal(*line++, i < 6 ? ',' : '\n');
-    }
-    assert_int_equal(*line, 0);
+    assert_int_equal(*read_line(line, value, 7), 0);
 
     double u[BRICK_NODES][3], mean = 0;
     lar_simulation_displacements(f->simulation, u);
@@ -373,12 +378,8 @@ static void probes_of_elements_are_means(void **state) {
                          "all stress xy [Pa],all stress yz [Pa],all stress zx [Pa],"
                          "all pressure [Pa],one volume_ratio [1]\n";
     assert_memory_equal(text, header, strlen(header));
-    char *line = text + strlen(header);
     double value[9], cauchy[BRICK_ELEMENTS][6], sum[3] = {0};
-    for (int i = 0; i < 9; i++) {
-        value[i] = strtod(line, &line);
-        assert_int_equal(*line++, i < 8 ? ',' : '\n');
-    }
+    assert_int_equal(*read_line(text + strlen(header), value, 9), 0);
     lar_simulation_stresses(f->simulation, cauchy, NULL, NULL);
     for (int e = 0; e < BRICK_ELEMENTS; e++)
         for (int k = 0; k < 3; k++) sum[k] += cauchy[e][k] / BRICK_ELEMENTS;
