@@ -204,6 +204,7 @@ typedef struct lar_model_info {
     int32_t stable_worst; /* the element that asks for it */
     double time_step;     /* what lar_options_default() will take [s] */
     lar_mass_scaling mass_scaling;
+    int32_t thin_elements; /* whose opposite sides are both outside: one layer, which bends too far */
 } lar_model_info;
 
 /* Counts, measures and the stable step: goes through all elements. `info` is the caller's. */

@@ -31,6 +31,18 @@ static void inspect_elements(const lar_model *model, lar_model_info *info) {
     }
 }
 
+/* Faces of one element stand together in the surface, and opposite ones differ in the last bit. */
+static int32_t count_thin_elements(const lar_surface *surface) {
+    int32_t count = 0, last = -1;
+    for (int32_t k = 0; k + 1 < surface->face_count; k++) {
+        int32_t face = surface->face[k];
+        if (face % 2 != 0 || surface->face[k + 1] != face + 1 || face / 6 == last) continue;
+        last = face / 6;
+        count++;
+    }
+    return count;
+}
+
 static lar_status count_fixed_nodes(const lar_model *model, int32_t *count, lar_error *error) {
     unsigned char *held = lar_calloc((size_t)model->mesh.node_count, 1);
     if (!held) return lar_fail_memory(error, (size_t)model->mesh.node_count, "a node mark");
@@ -79,6 +91,7 @@ lar_status lar_model_inspect(const lar_model *model, lar_model_info *info, lar_e
         }
     }
     inspect_elements(model, &made);
+    made.thin_elements = count_thin_elements(&model->surface);
     lar_status status = count_fixed_nodes(model, &made.fixed_nodes, error);
     if (!status) status = inspect_step(model, &made, error);
     if (status) return status;

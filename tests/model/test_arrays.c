@@ -96,6 +96,7 @@ static void sets_and_tags_are_found_by_the_scene(void **unused) {
     if (lar_model_from_arrays(&arrays, scene, &model, &error)) fail_msg("%s", error.message);
     assert_int_equal(lar_model_inspect(model, &about, &error), LAR_OK);
     assert_int_equal(about.fixed_nodes, 4);
+    assert_int_equal(about.thin_elements, 2); /* two cubes side by side */
     assert_true(fabs(about.mass - 8e-6 * 4000) < 1e-12);
     assert_int_equal(lar_model_set_count(model), 3);
     assert_int_equal(lar_model_set(model, 2, &set, &error), LAR_OK);

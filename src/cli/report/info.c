@@ -104,6 +104,7 @@ void info_report_json(const info_report *report) {
                      lar_model_element_id(model, info->scaled_jacobian_worst));
     lar_json_close(&json);
     cli_write_quality(&json, &report->quality);
+    lar_json_integer(&json, "thin_elements", info->thin_elements);
     lar_json_number(&json, "stable_step", info->stable_step);
     lar_json_integer(&json, "stable_step_element", lar_model_element_id(model, info->stable_worst));
     lar_json_number(&json, "time_step", info->time_step);
@@ -235,6 +236,14 @@ static void print_duration(const lar_model *model) {
         printf("one frame at the end\n");
 }
 
+/* One element bends with no stress that differs over its thickness (docs/theory.md, Bending). */
+static void print_thin(const lar_model_info *info) {
+    if (info->thin_elements == 0) return;
+    printf("%-17s%d of %d elements have outer faces on two opposite sides: one layer bends too far; "
+           "two or more bend right\n",
+           "thin", (int)info->thin_elements, (int)info->elements);
+}
+
 void info_report_table(const info_report *report) {
     const lar_model *model = report->model;
     const lar_model_info *info = &report->info;
@@ -258,6 +267,7 @@ void info_report_table(const info_report *report) {
            info->scaled_jacobian_mean, info->scaled_jacobian_min,
            lar_model_element_id(model, info->scaled_jacobian_worst));
     cli_print_jacobians(&report->quality);
+    print_thin(info);
     printf("%-17s%.4g s (stable up to %.4g s, set by element %" PRId64 ")\n", "time step",
            info->time_step, info->stable_step, lar_model_element_id(model, info->stable_worst));
     cli_print_mass_scaling(model, &info->mass_scaling, true, stdout);
