@@ -21,6 +21,18 @@ target_link_libraries(liblariat PRIVATE lariat_core)
 if(NOT LARIAT_SANITIZE)
   target_link_options(liblariat PRIVATE -Wl,--no-undefined -Wl,--as-needed -Wl,--gc-sections
     -Wl,-Bsymbolic-functions)
+  # Addresses in tables as bits instead of 24 bytes each (DT_RELR), where the loader knows them.
+  include(CheckCSourceCompiles)
+  include(CheckLinkerFlag)
+  check_linker_flag(C -Wl,-z,pack-relative-relocs LARIAT_LINKER_HAS_RELR)
+  check_c_source_compiles("#include <features.h>
+#if !defined(__GLIBC_PREREQ) || !__GLIBC_PREREQ(2, 36)
+#error the loader does not know DT_RELR
+#endif
+int main(void) { return 0; }" LARIAT_LOADER_HAS_RELR)
+  if(LARIAT_LINKER_HAS_RELR AND LARIAT_LOADER_HAS_RELR)
+    target_link_options(liblariat PRIVATE -Wl,-z,pack-relative-relocs)
+  endif()
 endif()
 
 # The same objects as an archive, for programs that shall need no file of ours. What the objects call

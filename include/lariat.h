@@ -204,7 +204,10 @@ typedef struct lar_model_info {
     int32_t stable_worst; /* the element that asks for it */
     double time_step;     /* what lar_options_default() will take [s] */
     lar_mass_scaling mass_scaling;
-    int32_t thin_elements; /* whose opposite sides are both outside: one layer, which bends too far */
+    int32_t
+        thin_elements; /* whose opposite sides are both outside: one layer, which bends too far */
+    int32_t spring_nodes;    /* that springs hold, counted once for each entry of a scene */
+    double spring_stiffness; /* of all these springs together [N/m] */
 } lar_model_info;
 
 /* Counts, measures and the stable step: goes through all elements. `info` is the caller's. */
@@ -662,7 +665,8 @@ LAR_API void lar_simulation_destroy(lar_simulation *simulation);
  * with lar_simulation_load_from. Model, options and what was compiled of the model are the same
  * and there once, whichever is destroyed first; the two may belong to different threads then. Some
  * ten times as fast as lar_simulation_create. LAR_ERROR_UNSUPPORTED for one of several processors
- * or threads (a grid of one with one thread is none, and its clone has no grid); LAR_ERROR_UNSTABLE as lar_simulation_save_to. */
+ * or threads (a grid of one with one thread is none, and its clone has no grid); LAR_ERROR_UNSTABLE
+ * as lar_simulation_save_to. */
 LAR_API lar_status lar_simulation_clone(lar_simulation *simulation, lar_simulation **clone,
                                         lar_error *error);
 

@@ -6,16 +6,18 @@
 
 /* Room for at most so many entries; the lists are still empty. */
 LAR_SETUP static lar_status allocate(lar_conditions *c, size_t nodes, size_t constraints,
-                                     size_t forces, size_t pressures, lar_error *error) {
+                                     size_t forces, size_t springs, size_t pressures,
+                                     lar_error *error) {
     c->held = lar_calloc(nodes, sizeof *c->held);
     c->constraint = lar_calloc(constraints, sizeof *c->constraint);
     c->force = lar_calloc(forces, sizeof *c->force);
+    c->spring = lar_calloc(springs, sizeof *c->spring);
     c->pressure = lar_calloc(pressures, sizeof *c->pressure);
-    if (c->held && c->constraint && c->force && c->pressure) return LAR_OK;
+    if (c->held && c->constraint && c->force && c->spring && c->pressure) return LAR_OK;
     lar_conditions_destroy(c);
     return lar_fail_memory(error,
                            nodes + constraints * sizeof *c->constraint + forces * sizeof *c->force +
-                               pressures * sizeof *c->pressure,
+                               springs * sizeof *c->spring + pressures * sizeof *c->pressure,
                            "supports and loads");
 }
 
@@ -69,6 +71,15 @@ static void add_forces(lar_conditions *c, const int32_t *local, const lar_condit
     }
 }
 
+static void add_springs(lar_conditions *c, const int32_t *local, const lar_condition_share *share,
+                        const lar_spring_bed *bed) {
+    for (int32_t k = 0; k < bed->nodes.count; k++) {
+        int32_t node = bed->nodes.node[k];
+        if (share && share->loads[node] != share->thread) continue;
+        c->spring[c->spring_count++] = (lar_point_spring){local[node], bed->stiffness[k]};
+    }
+}
+
 /* A force may be set on any node, and its thread applies it. */
 static lar_status note_bearers(const lar_condition_share *share, int32_t nodes, lar_conditions *c,
                                lar_error *error) {
@@ -84,15 +95,16 @@ LAR_SETUP lar_status lar_conditions_create(const lar_model *model, const int32_t
                                            const lar_condition_share *share, lar_conditions *c,
                                            lar_error *error) {
     *c = (lar_conditions){0};
-    size_t constraints = 0, forces = 0, pressures = 0;
+    size_t constraints = 0, forces = 0, springs = 0, pressures = 0;
     for (int i = 0; i < model->fix_count; i++)
         constraints += 3u * (size_t)model->fix[i].nodes.count;
     for (int i = 0; i < model->move_count; i++)
         constraints += 3u * (size_t)model->move[i].nodes.count;
     for (int i = 0; i < model->load_count; i++) forces += (size_t)model->load[i].nodes.count;
+    for (int i = 0; i < model->spring_count; i++) springs += (size_t)model->spring[i].nodes.count;
     for (int i = 0; i < model->pressure_count; i++) pressures += (size_t)model->pressure[i].count;
     size_t nodes = (size_t)model->mesh.node_count;
-    lar_status status = allocate(c, nodes, constraints, forces, pressures, error);
+    lar_status status = allocate(c, nodes, constraints, forces, springs, pressures, error);
     if (!status && share) status = note_bearers(share, model->mesh.node_count, c, error);
     if (status) {
         lar_conditions_destroy(c);
@@ -102,6 +114,7 @@ LAR_SETUP lar_status lar_conditions_create(const lar_model *model, const int32_t
 
     list_constraints(c, model, local, share);
     for (int i = 0; i < model->load_count; i++) add_forces(c, local, share, &model->load[i]);
+    for (int i = 0; i < model->spring_count; i++) add_springs(c, local, share, &model->spring[i]);
     for (int i = 0; i < model->pressure_count; i++)
         for (int32_t k = 0; k < model->pressure[i].count; k++) {
             int32_t face = model->pressure[i].face[k];
@@ -118,6 +131,7 @@ LAR_SETUP lar_status lar_conditions_create(const lar_model *model, const int32_t
 void lar_conditions_destroy(lar_conditions *c) {
     free(c->constraint);
     free(c->force);
+    free(c->spring);
     free(c->pressure);
     free(c->held);
     free(c->bears);
@@ -126,7 +140,8 @@ void lar_conditions_destroy(lar_conditions *c) {
 
 LAR_SETUP lar_status lar_condition_notes_create(const lar_conditions *c, lar_condition_notes *notes,
                                                 lar_error *error) {
-    size_t moved = (size_t)(c->constraint_count - c->fixed_count), forces = (size_t)c->force_count;
+    size_t moved = (size_t)(c->constraint_count - c->fixed_count);
+    size_t forces = (size_t)c->force_count + (size_t)c->spring_count;
     size_t pressures = (size_t)c->pressure_count;
     *notes = (lar_condition_notes){.constraint_count = c->constraint_count,
                                    .fixed_count = c->fixed_count,
@@ -187,7 +202,7 @@ LAR_SETUP lar_status lar_condition_notes_set(const lar_conditions *c, const lar_
     if (!mark) return lar_fail_memory(error, nodes, "supports");
     lar_supports_mark(set, model, mark);
     size_t axes = count_axes(mark, nodes);
-    lar_status status = allocate(&made, nodes, axes, 0, 0, error);
+    lar_status status = allocate(&made, nodes, axes, 0, 0, 0, error);
     if (!status && !(moved = lar_calloc(axes, sizeof *moved)))
         status = lar_fail_memory(error, axes * sizeof *moved, "supports");
     if (!status) {
@@ -316,6 +331,8 @@ double lar_conditions_half_work(const lar_conditions *c, const lar_condition_con
     double dt = context->mean_step, work = 0;
     for (int32_t i = 0; i < c->force_count; i++)
         work += half_work_on(notes->force[i], state, c->force[i].node, dt);
+    for (int32_t i = 0; i < c->spring_count; i++)
+        work += half_work_on(notes->force[c->force_count + i], state, c->spring[i].node, dt);
     for (int32_t i = 0; i < c->pressure_count; i++)
         for (int a = 0; a < 4; a++)
             work += half_work_on(notes->pressure[i][a], state, c->pressure[i].node[a], dt);
@@ -332,6 +349,13 @@ int32_t lar_conditions_load(const lar_conditions *c, const lar_condition_context
         double factor = factor_at(context->model, f->curve, time), *now = notes->force[i];
         for (int k = 0; k < 3; k++) now[k] = factor * f->force[k];
         if (!add_external(state, f->node, context->scale, now)) beyond = f->node;
+    }
+    for (int32_t i = 0; i < c->spring_count; i++) {
+        const lar_point_spring *s = &c->spring[i];
+        double *now = notes->force[c->force_count + i];
+        for (int k = 0; k < 3; k++)
+            now[k] = -s->stiffness * state->u[lar_state_at(state, s->node, k)];
+        if (!add_external(state, s->node, context->scale, now)) beyond = s->node;
     }
     for (int32_t i = 0; i < c->pressure_count; i++) {
         const lar_face_pressure *p = &c->pressure[i];

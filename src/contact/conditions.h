@@ -46,6 +46,12 @@ typedef struct lar_point_force {
     double force[3];
 } lar_point_force;
 
+/* A spring to where a node is at rest. */
+typedef struct lar_point_spring {
+    int32_t node;     /* local */
+    double stiffness; /* [N/m] */
+} lar_point_spring;
+
 /* A pressure on one face. */
 typedef struct lar_face_pressure {
     int32_t node[4]; /* local, counter-clockwise from outside */
@@ -55,10 +61,11 @@ typedef struct lar_face_pressure {
 } lar_face_pressure;
 
 typedef struct lar_conditions {
-    int32_t constraint_count, force_count, pressure_count;
+    int32_t constraint_count, force_count, spring_count, pressure_count;
     int32_t fixed_count; /* of the constraints, the first: those that stand still */
     lar_constraint *constraint;
     lar_point_force *force;
+    lar_point_spring *spring;
     lar_face_pressure *pressure;
     uint8_t *held; /* [nodes of the model] LAR_AXIS bits of the axes in `constraint`, or NULL */
     /* Of forces that are set while it runs (model/forces.h). */
@@ -81,7 +88,7 @@ typedef struct lar_condition_notes {
     uint8_t *mark;            /* own, as `constraint` then: supports were set; else NULL */
     lar_supports set;         /* that these follow */
     lar_moved_axis *moved;    /* [constraint_count - fixed_count] */
-    double (*force)[3];       /* [force_count] [N] */
+    double (*force)[3];       /* [force_count], and behind these [spring_count] [N] */
     double (*pressure)[4][3]; /* [pressure_count] on the corners [N] */
 } lar_condition_notes;
 

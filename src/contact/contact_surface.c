@@ -7,6 +7,7 @@
 #include "divide/incidence.h"
 #include "mechanics/contact.h"
 #include "mechanics/hex8.h"
+#include "model/springs.h"
 
 /* While it is put together. */
 typedef struct workspace {
@@ -236,8 +237,13 @@ static void count_possible(lar_contact_surface *s) {
 static lar_status fit_masses(const lar_model *model, double time_step, double stable_step,
                              lar_contact_surface *s, lar_error *error) {
     const lar_mesh *mesh = &model->mesh;
-    double *fastest = lar_calloc((size_t)mesh->node_count, sizeof *fastest), max = 0;
+    double *fastest = lar_calloc((size_t)mesh->node_count, sizeof *fastest), max = 0, *squares;
     if (!fastest) return lar_fail_memory(error, 8 * (size_t)mesh->node_count, "springs of contact");
+    lar_status status = lar_spring_squares(model, &squares, error);
+    if (status) {
+        free(fastest);
+        return status;
+    }
     for (int32_t e = 0; e < mesh->element_count; e++) {
         double corner[8][3];
         lar_hex8 hex8;
@@ -246,6 +252,7 @@ static lar_status fit_masses(const lar_model *model, double time_step, double st
         lar_hex8_prepare(corner, material, &hex8);
         lar_model_fibres(model, e, hex8.fibre);
         double frequency = lar_model_slowed(model, lar_hex8_frequency(&hex8, material));
+        if (squares) frequency = sqrt(frequency * frequency + lar_spring_square(model, squares, e));
         max = fmax(max, frequency);
         for (int a = 0; a < 8; a++) {
             double *of = &fastest[mesh->element[e][a]];
@@ -258,6 +265,7 @@ static lar_status fit_masses(const lar_model *model, double time_step, double st
         s->node[n].mass *= lar_contact_law_for(time_step, stable).stiffness / body;
     }
     lar_contact_edges_fit(s);
+    free(squares);
     free(fastest);
     return LAR_OK;
 }

@@ -6,10 +6,33 @@
 #include <string.h>
 
 #include "base/pose.h"
+#include "base/vector.h"
 #include "contact/spares.h"
 
-/* How far a hand reaches: about a finger's breadth. */
-static const double HAND_RADIUS = 0.008;
+/* How far a hand reaches: about a finger's breadth; of what is small a tenth of the bounding box's
+ * diagonal, and so much that some point of a face is always within twice as much. */
+static double hand_radius(const lar_model *model) {
+    static const double FINGER = 0.008, OF_BODY = 0.1, OF_FACE = 0.5;
+    const lar_surface *surface = &model->surface;
+    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    double edges = 0;
+    for (int32_t f = 0; f < surface->face_count; f++)
+        for (int a = 0; a < 4; a++) {
+            const double *x = model->mesh.position[surface->corner[f][a]];
+            const double *y = model->mesh.position[surface->corner[f][(a + 1) % 4]];
+            double way[3];
+            lar_minus(y, x, way);
+            edges += lar_length(way);
+            for (int i = 0; i < 3; i++) {
+                low[i] = fmin(low[i], x[i]);
+                high[i] = fmax(high[i], x[i]);
+            }
+        }
+    double across[3];
+    lar_minus(high, low, across);
+    double face = edges / (4.0 * surface->face_count);
+    return fmax(OF_FACE * face, fmin(FINGER, OF_BODY * lar_length(across)));
+}
 
 lar_status lar_tool_list_create(const lar_model *model, int32_t hands, int32_t spares,
                                 lar_tool_list *list, lar_error *error) {
@@ -35,7 +58,7 @@ lar_status lar_tool_list_create(const lar_model *model, int32_t hands, int32_t s
         list->tool[model->tool_count + i] =
             (lar_tool){.name = list->hand[i],
                        .shape = LAR_TOOL_HAND,
-                       .radius = HAND_RADIUS,
+                       .radius = hand_radius(model),
                        .rest = {.orientation = {1, 0, 0, 0}, .opening = 1}};
     }
     lar_spares_name(list);

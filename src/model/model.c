@@ -31,6 +31,10 @@ void lar_model_destroy(lar_model *model) {
     for (int i = 0; i < model->curve_count; i++) free(model->curve[i].point);
     for (int i = 0; i < model->fix_count; i++) free(model->fix[i].nodes.node);
     for (int i = 0; i < model->move_count; i++) free(model->move[i].nodes.node);
+    for (int i = 0; i < model->spring_count; i++) {
+        free(model->spring[i].nodes.node);
+        free(model->spring[i].stiffness);
+    }
     for (int i = 0; i < model->load_count; i++) free(model->load[i].nodes.node);
     for (int i = 0; i < model->pressure_count; i++) free(model->pressure[i].face);
     for (int i = 0; i < model->initial_count; i++) free(model->initial[i].nodes.node);
@@ -50,6 +54,7 @@ void lar_model_destroy(lar_model *model) {
     free(model->curve);
     free(model->fix);
     free(model->move);
+    free(model->spring);
     free(model->load);
     free(model->pressure);
     free(model->initial);
@@ -309,6 +314,13 @@ static lar_status check_supports(const lar_model *model, lar_error *error) {
         if (!status)
             status =
                 check_list(model, "move", i, move->nodes.node, move->nodes.count, nodes, error);
+    }
+    for (int i = 0; !status && i < model->spring_count; i++) {
+        const lar_spring_bed *bed = &model->spring[i];
+        status = check_list(model, "springs", i, bed->nodes.node, bed->nodes.count, nodes, error);
+        for (int32_t k = 0; !status && k < bed->nodes.count; k++)
+            status = check_entry(model, "springs", i,
+                                 bed->stiffness[k] >= 0 && isfinite(bed->stiffness[k]), error);
     }
     return status;
 }

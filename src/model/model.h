@@ -32,6 +32,13 @@ typedef struct lar_move {
     int curve; /* index into lar_model.curve */
 } lar_move;
 
+/* Springs between nodes and where these are at rest: what holds tissue that itself gives way. */
+typedef struct lar_spring_bed {
+    lar_node_list nodes;
+    double *stiffness; /* [nodes.count] along every axis [N/m] */
+    int line;          /* of the file that says so, for messages; 0: unknown */
+} lar_spring_bed;
+
 /* A dead force on every node of a list: `force` newtons per node, times a curve. */
 typedef struct lar_nodal_load {
     lar_node_list nodes;
@@ -166,9 +173,10 @@ struct lar_model {
     bool by_material_time; /* mass only serves to find the states of rest on the way that viscous
                               materials take: no step may be longer than their times */
 
-    int fix_count, move_count, load_count, pressure_count, initial_count;
+    int fix_count, move_count, spring_count, load_count, pressure_count, initial_count;
     lar_fix *fix;
     lar_move *move;
+    lar_spring_bed *spring;
     lar_nodal_load *load;
     lar_pressure_load *pressure;
     lar_initial_velocity *initial;

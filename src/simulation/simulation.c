@@ -500,11 +500,13 @@ size_t lar_simulation_bytes(const lar_simulation *simulation) {
                    nodes * (sizeof *layout->global + sizeof *domain->mass + sizeof *domain->push +
                             (domain->added ? sizeof *domain->added : 0));
     size_t moved = (size_t)(conditions->constraint_count - conditions->fixed_count);
-    bytes += (size_t)conditions->constraint_count * sizeof *conditions->constraint +
-             moved * sizeof *notes->moved +
-             (size_t)conditions->force_count * (sizeof *conditions->force + sizeof *notes->force) +
-             (size_t)conditions->pressure_count *
-                 (sizeof *conditions->pressure + sizeof *notes->pressure);
+    bytes +=
+        (size_t)conditions->constraint_count * sizeof *conditions->constraint +
+        moved * sizeof *notes->moved +
+        (size_t)conditions->force_count * (sizeof *conditions->force + sizeof *notes->force) +
+        (size_t)conditions->spring_count * (sizeof *conditions->spring + sizeof *notes->force) +
+        (size_t)conditions->pressure_count *
+            (sizeof *conditions->pressure + sizeof *notes->pressure);
 #define LAR_STATE_BYTES(type, name, of_node, of_history, kept)                                     \
     bytes += LAR_STATE_SIZE(&simulation->state, of_node, of_history) * sizeof(type);
     LAR_STATE_ARRAYS(LAR_STATE_BYTES)

@@ -1,9 +1,11 @@
 /* Parameters of materials while a simulation runs, as the public header has them. The work that a
  * change does is that of stiffness (simulation_settings.c). */
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "model/parameters.h"
+#include "model/springs.h"
 #include "simulation/simulation.h"
 #include "step/stable_step.h"
 
@@ -26,23 +28,27 @@ lar_status lar_simulation_parameter_index(const lar_model *model, int32_t materi
 /* How many times the squares of frequencies are what they are with the model's parameters. Where
  * the step leaves room a little counts as nothing, as it does when steps are divided
  * (lar_step_room_of): the shear modulus of what hardly changes its volume is hardly felt there. */
-static double faster_with(const lar_domain *domain, int32_t material, const lar_material *made) {
+static lar_status faster_with(const lar_domain *domain, int32_t material, const lar_material *made,
+                              double *faster, lar_error *error) {
     const lar_model *model = domain->model;
-    double most = 0;
+    double most = 0, *squares;
+    lar_status status = lar_spring_squares(model, &squares, error);
+    if (status) return status;
     for (lar_gid e = 0; e < model->mesh.element_count; e++) {
         lar_hex8 hex8;
         if (model->element_material[e] != material) continue;
         double now = lar_element_frequency(model, domain->kind, e, made, &hex8);
         const lar_element_rate *rate = &domain->rate[e];
         double usual = rate->square * rate->mass / (rate->mass - rate->added);
-        double square = now * now / usual;
+        double square = (now * now + lar_spring_square(model, squares, e)) / usual;
         most = square <= most ? most : square; /* what is no number, too */
     }
     static const double LITTLE = 1.02, ROOM = 0.9;
     double dt = domain->time_step, fastest = domain->fastest[lar_factor_of(material)];
     bool roomy = most <= LITTLE && 0.25 * dt * dt * fastest * most <= ROOM;
-    if (most > 1 && roomy) return 1;
-    return most != 0 ? most : 1; /* nothing is made of it */
+    *faster = (most > 1 && roomy) || most == 0 ? 1 : most; /* 0: nothing is made of it */
+    free(squares);
+    return LAR_OK;
 }
 
 static lar_status check_value(const lar_material *made, int index, double value, lar_error *error) {
@@ -70,8 +76,9 @@ lar_status lar_simulation_set_parameter_at(lar_simulation *simulation, int32_t m
         lar_parameter_put(model, &entry, index, value + 0.0); /* no -0 */
         const lar_material made = lar_parameters_give(model, &entry);
         lar_status status = check_value(&made, index, value, error);
+        if (!status)
+            status = faster_with(&simulation->domain, material, &made, &entry.faster, error);
         if (status) return status;
-        entry.faster = faster_with(&simulation->domain, material, &made);
         double factor = simulation->tools.settings.factor[lar_factor_of(material)];
         static const double SHORTEST = 1e9; /* more is no number that says anything */
         if (!(entry.faster * factor <= LAR_STIFFNESS_MAX))

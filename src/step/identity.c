@@ -25,6 +25,9 @@ static uint64_t hash_conditions(uint64_t hash, const lar_conditions *c) {
         hash = lar_hash_word(hash, (uint64_t)(uint32_t)f->node << 32 | (uint32_t)f->curve);
         hash = hash_doubles(hash, f->force, 3);
     }
+    for (int32_t i = 0; i < c->spring_count; i++)
+        hash = lar_hash_double(lar_hash_word(hash, (uint32_t)c->spring[i].node),
+                               c->spring[i].stiffness);
     for (int32_t i = 0; i < c->pressure_count; i++) {
         const lar_face_pressure *p = &c->pressure[i];
         for (int a = 0; a < 4; a++) hash = lar_hash_word(hash, (uint32_t)p->node[a]);
@@ -163,6 +166,10 @@ static uint64_t hash_model_conditions(const lar_model *model) {
         const lar_nodal_load *l = &model->load[i];
         hash = hash_doubles(hash_nodes(hash, &l->nodes), l->force, 3);
         hash = lar_hash_word(hash, (uint32_t)l->curve);
+    }
+    for (int i = 0; i < model->spring_count; i++) {
+        const lar_spring_bed *s = &model->spring[i];
+        hash = hash_doubles(hash_nodes(hash, &s->nodes), s->stiffness, (size_t)s->nodes.count);
     }
     for (int i = 0; i < model->pressure_count; i++) {
         const lar_pressure_load *p = &model->pressure[i];

@@ -91,6 +91,11 @@ lar_status lar_model_inspect(const lar_model *model, lar_model_info *info, lar_e
         }
     }
     inspect_elements(model, &made);
+    for (int i = 0; i < model->spring_count; i++) {
+        const lar_spring_bed *bed = &model->spring[i];
+        made.spring_nodes += bed->nodes.count;
+        for (int32_t k = 0; k < bed->nodes.count; k++) made.spring_stiffness += bed->stiffness[k];
+    }
     made.thin_elements = count_thin_elements(&model->surface);
     lar_status status = count_fixed_nodes(model, &made.fixed_nodes, error);
     if (!status) status = inspect_step(model, &made, error);

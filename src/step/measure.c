@@ -333,6 +333,7 @@ lar_status lar_measure_reaction(const lar_domain *domain, lar_measure_scratch *s
                                 const lar_state *state, const lar_node_list *nodes, bool arriving,
                                 double sum[3], lar_error *error) {
     const lar_condition_notes *supports = &scratch->interactions.notes;
+    const lar_conditions *springs = &domain->surroundings.conditions;
     size_t count = (size_t)domain->layout.node_padded;
     bool *wanted = lar_calloc(count, sizeof *wanted);
     if (!wanted) return lar_fail_memory(error, count * sizeof *wanted, "the sum of reactions");
@@ -346,6 +347,11 @@ lar_status lar_measure_reaction(const lar_domain *domain, lar_measure_scratch *s
         if (!wanted[c->node]) continue;
         double ahead = arriving ? state->v[lar_constraint_at(state, c)] : supported_velocity(&l, c);
         sum[c->axis] += support_force(&l, c, ahead);
+    }
+    for (int32_t i = 0; i < springs->spring_count; i++) {
+        const lar_point_spring *s = &springs->spring[i];
+        for (int axis = 0; wanted[s->node] && axis < 3; axis++)
+            sum[axis] -= s->stiffness * state->u[lar_state_at(state, s->node, axis)];
     }
     end_look(&l);
     free(wanted);

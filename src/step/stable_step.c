@@ -6,6 +6,7 @@
 
 #include "mechanics/hex8_full.h"
 #include "mechanics/hex8_guard.h"
+#include "model/springs.h"
 
 double lar_element_frequency(const lar_model *model, lar_element_kind kind, lar_gid e,
                              const lar_material *material, lar_hex8 *hex8) {
@@ -42,40 +43,78 @@ static lar_status share_frequencies(const lar_model *model, lar_element_rate *ra
     return LAR_OK;
 }
 
-lar_status lar_step_bound_find(const lar_model *model, lar_element_kind kind,
-                               lar_element_rate *rate, lar_step_bound *bound, lar_error *error) {
-    double fastest = 0, moving = 0;
-    *bound = (lar_step_bound){0};
-    for (lar_gid e = 0; e < model->mesh.element_count; e++) {
-        lar_hex8 hex8;
-        double frequency =
-            lar_element_frequency(model, kind, e, lar_model_material_of(model, e), &hex8);
-        double mass = lar_model_material_of(model, e)->density * hex8.volume / 8;
-        double now = lar_model_slowed(model, frequency);
-        rate[e] = (lar_element_rate){now * now, mass, 0, 1};
-        if (now < frequency) {
-            rate[e].added = mass * ((frequency / now) * (frequency / now) - 1);
-            rate[e].mass = mass + rate[e].added;
-        }
-        double *among = &bound->fastest[lar_factor_of(model->element_material[e])];
-        *among = fmax(*among, rate[e].square);
-        if (!(now <= moving)) {
-            moving = now;
-            bound->worst = e;
-        }
-        if (!(frequency <= fastest)) {
-            fastest = frequency;
-            bound->worst_without = e;
+/* What is nearly as stiff as the stiffest tissue holds like a support, and would take from steps
+ * what strained elements need. */
+static lar_status check_springs(const lar_model *model, const double *squares, double moving,
+                                lar_error *error) {
+    static const double PART = 0.1;
+    char line[LAR_LINE_TEXT];
+    for (int i = 0; squares && i < model->spring_count; i++) {
+        const lar_spring_bed *bed = &model->spring[i];
+        for (int32_t k = 0; k < bed->nodes.count; k++) {
+            double share = squares[bed->nodes.node[k]] / (moving * moving);
+            if (!(share > PART)) continue;
+            return lar_fail(error, LAR_ERROR_MODEL,
+                            "%s%s: springs of %.3g N/m on node %lld are too stiff for the elements "
+                            "around it, which bear %.2g N/m in such steps; hold the node with fix, "
+                            "or give all of these springs %.2g of their stiffness",
+                            lar_model_source(model), lar_line_text(bed->line, line),
+                            bed->stiffness[k], (long long)model->mesh.node_id[bed->nodes.node[k]],
+                            bed->stiffness[k] * PART / share, 0.99 * PART / share);
         }
     }
-    if (!(fastest > 0) || !isfinite(fastest))
-        return lar_fail(error, LAR_ERROR_MODEL,
-                        "%s: element %lld has no finite frequency; check its shape and material",
-                        lar_model_source(model),
-                        (long long)model->mesh.element_id[bound->worst_without]);
-    bound->step = 2 / moving;
-    bound->without = 2 / fastest;
-    return share_frequencies(model, rate, error);
+    return LAR_OK;
+}
+
+/* Of an element with the mass that it gets, where springs take their part of the step. */
+static double slowed(const lar_model *model, double frequency, double springs) {
+    if (!(springs > 0) || !(model->mass_step > 0)) return lar_model_slowed(model, frequency);
+    double bound = 2 / model->mass_step;
+    return fmin(frequency, sqrt(fmax(bound * bound - springs, 0.5 * bound * bound)));
+}
+
+/* One element's part of the bound. */
+static void add_element(const lar_model *model, lar_element_kind kind, lar_gid e, double springs,
+                        lar_element_rate *rate, lar_step_bound *bound, double fastest[2]) {
+    const lar_material *material = lar_model_material_of(model, e);
+    lar_hex8 hex8;
+    double frequency = lar_element_frequency(model, kind, e, material, &hex8);
+    double now = slowed(model, frequency, springs), alone = frequency * frequency + springs;
+    double mass = material->density * hex8.volume / 8;
+    *rate = (lar_element_rate){now * now + springs, mass, 0, 1};
+    if (now < frequency) {
+        rate->added = mass * ((frequency / now) * (frequency / now) - 1);
+        rate->mass = mass + rate->added;
+    }
+    double *among = &bound->fastest[lar_factor_of(model->element_material[e])];
+    *among = fmax(*among, rate->square);
+    if (!(rate->square <= fastest[0])) {
+        fastest[0] = rate->square;
+        bound->worst = e;
+    }
+    if (!(alone <= fastest[1])) {
+        fastest[1] = alone;
+        bound->worst_without = e;
+    }
+}
+
+lar_status lar_step_bound_find(const lar_model *model, lar_element_kind kind,
+                               lar_element_rate *rate, lar_step_bound *bound, lar_error *error) {
+    double fastest[2] = {0}, *squares; /* with and without added mass */
+    *bound = (lar_step_bound){0};
+    lar_status status = lar_spring_squares(model, &squares, error);
+    for (lar_gid e = 0; !status && e < model->mesh.element_count; e++)
+        add_element(model, kind, e, lar_spring_square(model, squares, e), &rate[e], bound, fastest);
+    if (!status && (!(fastest[1] > 0) || !isfinite(fastest[1])))
+        status = lar_fail(error, LAR_ERROR_MODEL,
+                          "%s: element %lld has no finite frequency; check its shape and material",
+                          lar_model_source(model),
+                          (long long)model->mesh.element_id[bound->worst_without]);
+    bound->step = 2 / sqrt(fastest[0]);
+    bound->without = 2 / sqrt(fastest[1]);
+    if (!status) status = check_springs(model, squares, sqrt(fastest[0]), error);
+    free(squares);
+    return status ? status : share_frequencies(model, rate, error);
 }
 
 lar_status lar_stable_step(const lar_model *model, lar_element_kind kind, double *step,

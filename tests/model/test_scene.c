@@ -94,6 +94,25 @@ static void test_whole_selections(void **state) {
     lar_model_destroy(model);
 }
 
+static void test_springs(void **state) {
+    (void)state;
+    lar_model *model = scene(HEAD MATERIAL "springs:\n"
+                                           "  - {nodes: bottom, stiffness: 18}\n"
+                                           "  - {faces: lid, stiffness: 16}\n"
+                                           "  - {faces: lid, stiffness_per_area: 4.0e4}\n");
+    assert_int_equal(model->spring_count, 3);
+    for (int i = 0; i < 3; i++) {
+        const lar_spring_bed *bed = &model->spring[i];
+        assert_int_equal(bed->nodes.count, 9);
+        for (int k = 0; k < 9; k++) { /* corner, edge, ... of 20 x 20 mm */
+            static const double share[9] = {1, 2, 1, 2, 4, 2, 1, 2, 1};
+            assert_int_equal(bed->nodes.node[k], i ? 18 + k : k);
+            same(bed->stiffness[k], i ? share[k] : 2);
+        }
+    }
+    lar_model_destroy(model);
+}
+
 static void test_plain_values(void **state) {
     (void)state;
     lar_model *model = scene(HEAD MATERIAL "title: 'A: brick'\nscale: 0.001\n"
@@ -444,6 +463,7 @@ int main(void) {
         cmocka_unit_test(test_line_ends_and_byte_order_mark),
         cmocka_unit_test(test_face_selectors),
         cmocka_unit_test(test_whole_selections),
+        cmocka_unit_test(test_springs),
         cmocka_unit_test(test_plain_values),
         cmocka_unit_test(test_materials),
         cmocka_unit_test(test_stiffening_laws),

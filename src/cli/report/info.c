@@ -105,6 +105,8 @@ void info_report_json(const info_report *report) {
     lar_json_close(&json);
     cli_write_quality(&json, &report->quality);
     lar_json_integer(&json, "thin_elements", info->thin_elements);
+    lar_json_integer(&json, "spring_nodes", info->spring_nodes);
+    lar_json_number(&json, "spring_stiffness", info->spring_stiffness);
     lar_json_number(&json, "stable_step", info->stable_step);
     lar_json_integer(&json, "stable_step_element", lar_model_element_id(model, info->stable_worst));
     lar_json_number(&json, "time_step", info->time_step);
@@ -275,6 +277,9 @@ void info_report_table(const info_report *report) {
     print_duration(model);
     print_materials(model);
     print_sets(model);
+    if (info->spring_nodes > 0)
+        printf("%-17s%d nodes, %.4g N/m together\n", "springs", (int)info->spring_nodes,
+               info->spring_stiffness);
     print_contacts(model);
     print_tools(model);
 }

@@ -7,9 +7,10 @@
 
 static lar_status check_root(const lar_scene *scene) {
     static const char *const keys[] = {
-        "lariat",    "title",  "mesh",     "scale",   "gravity", "time_step",    "damping",
-        "materials", "sets",   "fix",      "move",    "load",    "initial",      "contact",
-        "tools",     "output", "duration", "surface", "view",    "mass_scaling", NULL};
+        "lariat",  "title",        "mesh",    "scale",  "gravity",  "time_step",
+        "damping", "materials",    "sets",    "fix",    "move",     "load",
+        "initial", "contact",      "tools",   "output", "duration", "surface",
+        "view",    "mass_scaling", "springs", NULL};
     const lar_yaml *version = NULL;
     int64_t number;
     if (scene->root->kind != LAR_YAML_MAPPING)
@@ -155,7 +156,8 @@ static lar_status read_root(lar_scene *scene) {
                 {"fix", lar_scene_read_fix},         {"move", lar_scene_read_move},
                 {"load", lar_scene_read_load},       {"initial", lar_scene_read_initial},
                 {"contact", lar_scene_read_contact}, {"tools", lar_scene_read_tools},
-                {"surface", lar_scene_read_surface}, {"output", lar_scene_read_output}};
+                {"springs", lar_scene_read_springs}, {"surface", lar_scene_read_surface},
+                {"output", lar_scene_read_output}};
     const lar_yaml *mesh = NULL, *materials;
     double scale;
     lar_status status = check_root(scene);

@@ -10,7 +10,7 @@
  *           scene_fibre.c     fibres of materials
  *           scene_fibre_rule.c   along what they run
  *           scene_active.c    what is active of them, and when
- *           scene_motion.c    fix, move, load, initial, curves
+ *           scene_motion.c    fix, move, springs, load, initial, curves
  *           scene_contact.c   contact
  *           scene_tools.c     tools
  *           scene_output.c    output, probes
@@ -191,6 +191,7 @@ lar_status lar_scene_read_fix(lar_scene *scene, const lar_yaml *node);
 lar_status lar_scene_read_move(lar_scene *scene, const lar_yaml *node);
 lar_status lar_scene_read_load(lar_scene *scene, const lar_yaml *node);
 lar_status lar_scene_read_initial(lar_scene *scene, const lar_yaml *node);
+lar_status lar_scene_read_springs(lar_scene *scene, const lar_yaml *node);
 lar_status lar_scene_read_contact(lar_scene *scene, const lar_yaml *node);
 lar_status lar_scene_read_tools(lar_scene *scene, const lar_yaml *node);
 lar_status lar_scene_read_output(lar_scene *scene, const lar_yaml *node);

@@ -2,6 +2,8 @@
 
 #include <stdlib.h>
 
+#include "base/vector.h"
+
 /* ---- curves: `over` or `curve` ------------------------------------------------------------ */
 
 /* The new curve's index; -1 with an error written. */
@@ -185,6 +187,81 @@ static lar_status read_move_entry(lar_scene *scene, const lar_yaml *entry) {
     return status ? status : claim_axes(scene, entry, &move->nodes, move->axes, true);
 }
 
+/* ---- springs ------------------------------------------------------------------------------ */
+
+/* Each corner of a face at rest gets a quarter of its area. */
+static lar_status share_by_area(lar_scene *scene, const lar_yaml *faces, lar_spring_bed *bed,
+                                double *area) {
+    const lar_mesh *mesh = &scene->model->mesh;
+    size_t nodes = (size_t)mesh->node_count;
+    double *part = lar_calloc(nodes, sizeof *part);
+    int32_t *face = NULL, count = 0;
+    lar_status status = part ? lar_scene_select(scene, faces, LAR_SET_FACES, false, &face, &count)
+                             : lar_scene_no_memory(scene, nodes * sizeof *part);
+    for (int32_t f = 0; f < count; f++) {
+        const int32_t *element = mesh->element[face[f] / 6];
+        const uint8_t *corner = lar_face_node[face[f] % 6];
+        double diagonal[2][3], normal[3];
+        for (int k = 0; k < 2; k++)
+            lar_minus(mesh->position[element[corner[k + 2]]], mesh->position[element[corner[k]]],
+                      diagonal[k]);
+        lar_cross(diagonal[0], diagonal[1], normal);
+        for (int a = 0; a < 4; a++) part[element[corner[a]]] += lar_length(normal) / 8;
+    }
+    free(face);
+    if (!status) {
+        bed->nodes.node = lar_calloc(nodes, sizeof *bed->nodes.node);
+        bed->stiffness = lar_calloc(nodes, sizeof *bed->stiffness);
+        if (!bed->nodes.node || !bed->stiffness) status = lar_scene_no_memory(scene, 12 * nodes);
+    }
+    for (int32_t n = 0; !status && n < mesh->node_count; n++) {
+        if (!(part[n] > 0)) continue;
+        *area += part[n];
+        bed->stiffness[bed->nodes.count] = part[n];
+        bed->nodes.node[bed->nodes.count++] = n;
+    }
+    free(part);
+    return status;
+}
+
+static lar_status share_by_node(lar_scene *scene, const lar_yaml *nodes, lar_spring_bed *bed) {
+    lar_status status = lar_scene_select_nodes(scene, nodes, &bed->nodes);
+    if (status) return status;
+    size_t count = (size_t)bed->nodes.count;
+    bed->stiffness = lar_calloc(count, sizeof *bed->stiffness);
+    if (!bed->stiffness) return lar_scene_no_memory(scene, count * sizeof *bed->stiffness);
+    for (size_t k = 0; k < count; k++) bed->stiffness[k] = 1;
+    return LAR_OK;
+}
+
+static lar_status read_springs_entry(lar_scene *scene, const lar_yaml *entry) {
+    static const char *const keys[] = {"nodes", "faces", "stiffness", "stiffness_per_area", NULL};
+    lar_status status = lar_scene_keys(scene, entry, "a springs entry", keys);
+    if (status) return status;
+    const lar_yaml *nodes = lar_yaml_get(entry, "nodes"), *faces = lar_yaml_get(entry, "faces");
+    const lar_yaml *all = lar_yaml_get(entry, "stiffness");
+    const lar_yaml *each = lar_yaml_get(entry, "stiffness_per_area");
+    if (!nodes == !faces || !all == !each || (nodes && each))
+        return lar_scene_fail(scene, entry, LAR_ERROR_FORMAT,
+                              "a springs entry needs nodes or faces, and the stiffness of all of "
+                              "them together [N/m] or, of faces, stiffness_per_area [N/m^3], for "
+                              "example {nodes: back, stiffness: 50}");
+    lar_spring_bed *bed = LAR_MODEL_APPEND(scene->model, spring);
+    if (!bed) return lar_scene_no_memory(scene, sizeof *bed);
+    double stiffness = 0, whole = 0;
+    bed->line = entry->line;
+    status = lar_scene_positive(
+        scene, all ? all : each,
+        all ? "a number in N/m, for example 50" : "a number in N/m^3, for example 1e5", &stiffness);
+    if (!status)
+        status =
+            nodes ? share_by_node(scene, nodes, bed) : share_by_area(scene, faces, bed, &whole);
+    if (nodes) whole = bed->nodes.count;
+    for (int32_t k = 0; !status && k < bed->nodes.count; k++)
+        bed->stiffness[k] *= all ? stiffness / whole : stiffness;
+    return status;
+}
+
 /* ---- loads -------------------------------------------------------------------------------- */
 
 static lar_status read_force(lar_scene *scene, const lar_yaml *entry, const lar_yaml *nodes) {
@@ -254,7 +331,7 @@ static lar_status read_initial_entry(lar_scene *scene, const lar_yaml *entry) {
     return status ? status : lar_scene_select_nodes(scene, nodes, &initial->nodes);
 }
 
-/* ---- the four lists ----------------------------------------------------------------------- */
+/* ---- the five lists ----------------------------------------------------------------------- */
 
 static lar_status read_entries(lar_scene *scene, const lar_yaml *node, const char *what,
                                lar_status (*read)(lar_scene *scene, const lar_yaml *entry)) {
@@ -276,6 +353,10 @@ lar_status lar_scene_read_move(lar_scene *scene, const lar_yaml *node) {
 lar_status lar_scene_read_load(lar_scene *scene, const lar_yaml *node) {
     return read_entries(scene, node, "loads, {nodes: tip, force: [0, 0, -0.1], over: 0.1}",
                         read_load_entry);
+}
+
+lar_status lar_scene_read_springs(lar_scene *scene, const lar_yaml *node) {
+    return read_entries(scene, node, "springs, {nodes: back, stiffness: 50}", read_springs_entry);
 }
 
 lar_status lar_scene_read_initial(lar_scene *scene, const lar_yaml *node) {

@@ -79,6 +79,7 @@ static lar_status notice_free_reaction(lar_scene *scene, const lar_yaml *entry,
     for (int32_t n = 0; scene->axis_line && n < probe->nodes.count; n++)
         for (int axis = 0; axis < 3; axis++)
             if (scene->axis_line[3 * (size_t)probe->nodes.node[n] + (size_t)axis]) return LAR_OK;
+    if (scene->model->spring_count > 0) return LAR_OK;
     return lar_model_notice(scene->model, scene->error,
                             "%s:%d:%d: the probe \"%.60s\" sums reactions, but none of its nodes "
                             "is fixed or moved: it will be zero",

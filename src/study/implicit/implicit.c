@@ -57,6 +57,11 @@ static lar_status refuse(const lar_model *model, const lar_implicit_options *o, 
         return lar_fail(error, LAR_ERROR_UNSUPPORTED,
                         "%s:%d: the implicit comparison knows no fibres; take a model without them",
                         lar_model_source(model), lar_model_fibrous(model)->fibre.line);
+    if (model->spring_count > 0)
+        return lar_fail(error, LAR_ERROR_UNSUPPORTED,
+                        "%s:%d: the implicit comparison knows no springs; take a model without "
+                        "them, or hold those nodes with fix",
+                        lar_model_source(model), model->spring[0].line);
     if (!(o->time_step > 0 && isfinite(o->time_step)) || !(o->tolerance > 0) || o->newton_max < 1)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "implicit integration needs a step, a tolerance and iterations above 0");
