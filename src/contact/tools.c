@@ -100,9 +100,8 @@ static bool near_enough(const lar_tool *tool, const lar_tool_motion *motion) {
 
 bool lar_tool_motion_good(const lar_tool *tool, const lar_tool_motion *motion) {
     return lar_pose_is_normal(&motion->from) && lar_pose_is_normal(&motion->to) &&
-           motion->start <= motion->end && motion->end <= LAR_STEPS_MAX &&
-           motion->holding >= 0 && motion->holding <= LAR_HOLDS_NEAR && motion->padding == 0 &&
-           near_enough(tool, motion);
+           motion->start <= motion->end && motion->end <= LAR_STEPS_MAX && motion->holding >= 0 &&
+           motion->holding <= LAR_HOLDS_NEAR && motion->padding == 0 && near_enough(tool, motion);
 }
 
 /* Sums are whatever they are; tissue is no deeper in a tool than its middle. Hands never lag. */

@@ -326,6 +326,29 @@ static void two_graspers_stretch_an_organ_between_them(void **unused) {
     finish(simulation, model);
 }
 
+/* From cells to whales: a hand in the middle of a face takes what is there, and not the body. */
+static void a_hand_fits_the_body(void **unused) {
+    (void)unused;
+    static const double edges[] = {1e-5, 3e-4, 0.01, 0.25, 10};
+    for (int i = 0; i < 5; i++) {
+        const brick body = {{5, 5, 5}, edges[i], 0, LAR_LAW_neo_hookean, 2e3, 2e4, 1000};
+        lar_model *model = brick_model(&body);
+        fix_nodes(model, brick_side(&body, 0, 0), LAR_AXIS_ALL);
+        lar_options options = lar_options_default();
+        options.hands = 1;
+        lar_simulation *simulation = start_with(model, options);
+        lar_error error;
+        const lar_tool_pose pose = {
+            {5 * edges[i], 2.4 * edges[i], 2.3 * edges[i]}, {1, 0, 0, 0}, 0};
+        assert_int_equal(lar_simulation_tool_move(simulation, 0, &pose, 1, &error), LAR_OK);
+        advance(simulation, 1);
+        int held = felt(simulation, 0).held;
+        print_message("edges of %g m: %d held\n", edges[i], held);
+        assert_true(held >= 1 && held <= 36);
+        finish(simulation, model);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(grasp_is_what_one_jaw_is_pushed_with),
@@ -333,6 +356,7 @@ int main(void) {
         cmocka_unit_test(what_slips_out_of_jaws_is_held_no_longer),
         cmocka_unit_test(opening_lets_go_without_a_jump),
         cmocka_unit_test(two_graspers_stretch_an_organ_between_them),
+        cmocka_unit_test(a_hand_fits_the_body),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
