@@ -121,9 +121,10 @@ if(NOT CMAKE_CROSSCOMPILING)
     DESTINATION ${CMAKE_INSTALL_DATADIR})
 endif()
 
-# What headers and help refer to; pictures only where pages are read with them.
-install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} FILES_MATCHING PATTERN "*.md"
-  PATTERN images EXCLUDE PATTERN report EXCLUDE PATTERN notebooks EXCLUDE)
+# What headers and help refer to, with all that these pages lead to but the source.
+install(DIRECTORY docs examples DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(FILES README.md CONTRIBUTING.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(FILES include/lariat.h include/lariat_fit.h DESTINATION ${CMAKE_INSTALL_DOCDIR}/include)
 
 # Both package files find the prefix from where they lie, so that an installed tree can be moved.
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/Lariat)

@@ -276,9 +276,10 @@ static PyGetSetDef model_properties[] = {
      "Simulated time between the frames that the scene asks for [s]; 0: it does not say.", NULL},
     {"damping", get_damping, NULL, "Damping in proportion to mass [1/s].", NULL},
     {"info", get_info, NULL,
-     "dict: the beginning of what `lariat info` prints, which tells materials, sets and\nspeed as "
-     "well. Counts, bounding box [m], volume [m^3], mass [kg], quality, "
-     "largest stable step and time step [s]. Goes through all elements.",
+     "dict: the beginning of what `lariat info` prints, which tells materials, sets and speed as\n"
+     "well, by the names of lar_model_info. Counts, bounding box [m], volume [m^3], mass [kg],\n"
+     "quality, largest stable step and time step [s], springs [N/m]; elements by index, -1: none.\n"
+     "Goes through all elements.",
      NULL},
     {"materials", get_materials, NULL,
      "list of dicts: name, law, elements, density [kg/m^3], moduli [Pa], viscous terms, fibres, "

@@ -120,7 +120,8 @@ static PyMethodDef functions[] = {
      "Works on all cores and lets other threads run; Ctrl-C ends it at the next stage or round."},
     {"checkpoint_info", checkpoint_info, METH_O,
      "checkpoint_info(path)\n--\n\ndict of a checkpoint: element, nodes, elements, tools, spares, "
-     "time_step [s], step. A simulation that shall take it up needs the same."},
+     "time_step [s], step. A simulation that shall take it up needs the same element, "
+     "time_step\nand model, tools and hands; spares are places of tools that were added."},
     {NULL, NULL, 0, NULL}};
 
 static struct PyModuleDef definition = {.m_base = PyModuleDef_HEAD_INIT,

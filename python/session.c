@@ -291,9 +291,10 @@ static PyObject *get_tick(PyObject *me, void *unused) {
 
 static PyObject *status_dict(const lar_session_status *s) {
     static const char *const states[] = {"idle", "playing", "paused", "stopped"};
+    static const char *const causes[] = {"", "step", "division", "machine"};
     return Py_BuildValue(
         "{s:s,s:K,s:d,s:d,s:d,s:d,s:d,s:d,s:d,s:d,s:d,s:K,s:K,s:K,s:d,s:d,s:d,s:d,s:d,s:d,s:N,s:d,"
-        "s:d,s:N,s:s,s:s,s:K,s:s,s:N,s:d,s:d,s:i,s:K,s:i,s:d,s:N}",
+        "s:d,s:N,s:s,s:s,s:K,s:s,s:N,s:d,s:d,s:i,s:K,s:i,s:d,s:s,s:N}",
         "state", states[s->state], "step", (unsigned long long)s->step, "time", s->time, "step_p50",
         s->step_p50, "step_p99", s->step_p99, "step_p999", s->step_p999, "step_max", s->step_max,
         "tick_p50", s->tick_p50, "tick_p99", s->tick_p99, "tick_p999", s->tick_p999, "tick_max",
@@ -307,7 +308,8 @@ static PyObject *status_dict(const lar_session_status *s) {
         "replaying", PyBool_FromLong(s->replaying), "replay_time", s->replay_time, "replay_length",
         s->replay_length, "step_parts", (int)s->step_parts, "divided_steps",
         (unsigned long long)s->divided_steps, "heavier", (int)s->heavier, "heavier_share",
-        s->heavier_share, "slow_advice", python_sentence(s->slow_advice));
+        s->heavier_share, "slow_cause", causes[s->slow_cause], "slow_advice",
+        python_sentence(s->slow_advice));
 }
 
 static PyObject *status(PyObject *me, PyObject *nothing) {

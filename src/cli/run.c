@@ -13,6 +13,7 @@
 #include "cli/parallel.h"
 #include "cli/stop.h"
 #include "cli/report/run.h"
+#include "simulation/rest.h"
 
 enum { PATH_SIZE = 4096 };
 
@@ -415,6 +416,21 @@ static void tell_of_earlier_state(const run *r, int status) {
         cli_complain(&cli_run, status, "%s stays as it was before this run", path);
 }
 
+/* What is to come to rest and goes by no damping gets that of its slowest motion, unless a file to
+ * go on from or the scene says otherwise. */
+static int damp(run *r) {
+    lar_error error;
+    double damping;
+    if (!r->settings.until_rest || r->settings.resume) return CLI_DONE;
+    if (lar_rest_damp(r->simulation, &damping, &error)) return fail_by(r, &error);
+    if (damping > 0)
+        cli_complain(&cli_run, CLI_DONE,
+                     "note: %s names no damping; it is %.3g 1/s, with which the slowest motion "
+                     "dies out",
+                     r->settings.scene, damping);
+    return CLI_DONE;
+}
+
 static int compute(run *r) {
     lar_error error;
     cli_doubt_units(&cli_run, r->settings.scene, r->model, &r->info);
@@ -422,7 +438,8 @@ static int compute(run *r) {
         return fail_by(r, &error);
     lar_simulation_energy(r->simulation, &r->began);
     if (r->settings.save && check_save(r)) return CLI_FAILED;
-    int status = choose_length(r);
+    int status = damp(r);
+    if (!status) status = choose_length(r);
     cli_catch_stop(); /* from here on there are results to end with */
     if (!status && r->settings.out &&
         (r->settings.surface ? lar_results_open_surface : lar_results_open)(

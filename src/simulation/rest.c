@@ -123,6 +123,14 @@ double lar_rest_damping(const lar_model *model) {
     return damping > LEAST * guess ? fmin(damping, guess) : guess;
 }
 
+lar_status lar_rest_damp(lar_simulation *simulation, double *damping, lar_error *error) {
+    const lar_model *model = simulation->domain.model;
+    *damping = 0;
+    if (lar_simulation_damping(simulation) > 0 || model->damping_line > 0) return LAR_OK;
+    *damping = lar_rest_damping(model);
+    return lar_simulation_set_damping(simulation, *damping, error);
+}
+
 lar_status lar_model_damp_itself(lar_model **opened, lar_error *error) {
     lar_model *model = *opened;
     double damping = model->damps_itself ? lar_rest_damping(model) : model->damping;

@@ -11,8 +11,10 @@
 
 static void sum_up(const lar_model *model, const lar_element_rate *rate, lar_mass_scaling *told) {
     double mass = 0;
-    *told = (lar_mass_scaling){
-        .time_step = model->mass_step, .largest_share = model->mass_share, .factor = 1};
+    *told = (lar_mass_scaling){.time_step = model->mass_step,
+                               .largest_share = model->mass_share,
+                               .factor = 1,
+                               .worst = -1};
     for (lar_gid e = 0; e < model->mesh.element_count; e++) {
         double own = rate[e].mass - rate[e].added;
         mass += 8 * own;

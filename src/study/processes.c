@@ -217,7 +217,7 @@ static lar_status check_count(const lar_processes *p, int32_t count, lar_error *
     if (count > 1 && p->start == LAR_COMM_BY_LAUNCHER && p->job.count == 1)
         return lar_fail(error, LAR_ERROR_UNSUPPORTED,
                         "communication by %s needs a launcher: mpirun -n %d lariat ..., or srun; "
-                        "without one there are threads, shm and tcp",
+                        "without one there are threads, shm, tcp and, where it is built in, ucx",
                         p->setting.comm, (int)count);
     if (p->self >= count)
         return lar_fail(error, LAR_ERROR_ARGUMENT,

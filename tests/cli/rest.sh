@@ -73,6 +73,14 @@ complains 'damped.yaml: not at rest after 0.0[0-9]* s, the limit of this run: .*
 expect 4 "$LARIAT" run "$SCRATCH/damped.yaml" --until-rest --steps 40 --json
 [ "$(value_of rest.limit)$(value_of steps)" = "$(value_of time)40" ] || fail "limit with --steps"
 
+# Who gave no damping gets one.
+scene bare "$hold"
+expect 0 "$LARIAT" run "$SCRATCH/bare.yaml" --until-rest
+complains 'bare.yaml names no damping; it is [0-9.]* 1/s, with which the slowest motion dies out'
+says '^rest  *yes'
+scene undamped "damping: 0" "$hold"
+expect 4 "$LARIAT" run "$SCRATCH/undamped.yaml" --until-rest
+
 # A body that comes back to its own shape has no strain energy to compare its motion with.
 scene returning "duration: rest" "damping: 20" "$hold" \
     'load: [{nodes: {box: [[-1, -1, -1], [1, 1, 0.001]]}, force: [0.002, 0, 0], curve: {points: [[0, 0], [0.1, 1], [0.2, 0]]}}]'

@@ -58,9 +58,12 @@ static lar_status name_probe(lar_scene *scene, const lar_yaml *entry, const lar_
     if (given)
         snprintf(text, sizeof text, "%s", name);
     else if (what->kind == LAR_YAML_SCALAR)
-        snprintf(text, sizeof text, "%s%.100s%s",
+        snprintf(text, sizeof text, "%s%.90s%s%s",
                  strcmp(what->key->text, "node") == 0 ? "node " : "", what->text,
-                 probe->what == LAR_PROBE_REACTION ? " reaction" : "");
+                 probe->what == LAR_PROBE_DISPLACEMENT ? "" : " ",
+                 probe->what == LAR_PROBE_REACTION ? "reaction"
+                 : probe->what == LAR_PROBE_MEAN   ? lar_cell_field_table[probe->field].name
+                                                   : "");
     else
         snprintf(text, sizeof text, "probe %d", count);
     for (int i = 0; i < count - 1; i++)

@@ -215,6 +215,9 @@ lar_status lar_predict_critical(const lar_critical_options *o, lar_critical *out
             if (o->tell) o->tell(o->context, scheme, edge);
             status = try_edge(o, scheme, edge, first, out, &left, error);
         }
+        /* Of the largest block no larger one can be asked. */
+        for (int32_t m = 0; m < o->machines && !status; m++)
+            if (!out[m].elements[scheme]) out[m].elements[scheme] = first[m];
     }
     free(first);
     return status;
