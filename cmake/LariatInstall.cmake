@@ -123,7 +123,7 @@ endif()
 
 # What headers and help refer to, with all that these pages lead to but the source.
 install(DIRECTORY docs examples DESTINATION ${CMAKE_INSTALL_DOCDIR})
-install(FILES README.md CONTRIBUTING.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(FILES README.md CONTRIBUTING.md LICENSE CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(FILES include/lariat.h include/lariat_fit.h DESTINATION ${CMAKE_INSTALL_DOCDIR}/include)
 
 # Both package files find the prefix from where they lie, so that an installed tree can be moved.
