@@ -1,6 +1,7 @@
 /* Springs between nodes and where these are at rest: the same bits everywhere, saved and taken up;
  * a body on them swings and rests as it should, no joule is lost, steps know how stiff they are. */
 #include "engine/same_bits_test.h"
+#include "simulation/rest.h"
 
 /* On every node of the list so much for each kilogram of its mass. */
 static void hold_by(lar_model *model, lar_node_list nodes, double square) {
@@ -76,6 +77,18 @@ static void a_body_swings_as_one(void **unused) {
     assert_below(fabs(error[0] / error[1] - 4), 0.05);
 }
 
+/* So damping that is to bring it to rest goes by them. */
+static void its_slowest_motion_is_known(void **unused) {
+    (void)unused;
+    const double omega = 5;
+    lar_model *model = brick_model(&soft_brick);
+    lar_error error;
+    hold_by(model, all_nodes(model), omega * omega);
+    if (lar_model_check(model, &error)) fail_msg("%s", error.message);
+    assert_below(fabs(lar_rest_damping(model) / (1.8 * omega) - 1), 0.02);
+    lar_model_destroy(model);
+}
+
 /* What bears the weight is told as a reaction, beside what is fixed. */
 static void they_bear_the_weight(void **unused) {
     (void)unused;
@@ -142,6 +155,7 @@ int main(void) {
         SAME_BITS_TESTS(body),
         cmocka_unit_test(a_saved_run_goes_on),
         cmocka_unit_test(a_body_swings_as_one),
+        cmocka_unit_test(its_slowest_motion_is_known),
         cmocka_unit_test(they_bear_the_weight),
         cmocka_unit_test(steps_know_them),
         cmocka_unit_test(every_joule_is_accounted_for),

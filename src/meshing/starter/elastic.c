@@ -125,6 +125,8 @@ void lar_elastic_forces(const lar_elastic *elastic, const lar_load_vectors *u,
         modal_forces(e, U, G);
         add_from_modes(G, to);
     }
+    for (int32_t n = 0; elastic->spring && n < elastic->node_count; n++)
+        for (int i = 0; i < 3; i++) LAR_EACH_LOAD f[n][i][l] += elastic->spring[n] * u[n][i][l];
 }
 
 void lar_elastic_diagonal(const lar_elastic *elastic, double (*diagonal)[3]) {
@@ -135,15 +137,17 @@ void lar_elastic_diagonal(const lar_elastic *elastic, double (*diagonal)[3]) {
             diagonal[elastic->element[k].node[row / 3]][row % 3] += K[row][row];
     }
     for (int32_t n = 0; n < elastic->node_count; n++)
-        for (int i = 0; i < 3; i++)
+        for (int i = 0; i < 3; i++) {
+            if (elastic->spring) diagonal[n][i] += elastic->spring[n];
             if (elastic->still[n] >> i & 1) diagonal[n][i] = 0;
+        }
 }
 
 /* ---- the body ------------------------------------------------------------------------------- */
 
 /* Marks what hangs together with nothing that is held. */
 static lar_status find_still(const lar_mesh *mesh, const lar_elastic_material *material,
-                             uint8_t *still, lar_error *error) {
+                             uint8_t *still, const double *spring, lar_error *error) {
     size_t nodes = (size_t)mesh->node_count;
     int32_t *parent = lar_calloc(nodes, sizeof *parent);
     bool *anchored = lar_calloc(nodes, sizeof *anchored);
@@ -153,7 +157,8 @@ static lar_status find_still(const lar_mesh *mesh, const lar_elastic_material *m
         for (int a = 1; a < 8 && material[e].shear > 0; a++)
             lar_union_join(parent, mesh->element[e][0], mesh->element[e][a]);
     for (int32_t n = 0; ready && n < mesh->node_count; n++)
-        if (still[n] == LAR_AXIS_ALL) anchored[lar_union_root(parent, n)] = true;
+        if (still[n] == LAR_AXIS_ALL || (spring && spring[n] > 0))
+            anchored[lar_union_root(parent, n)] = true;
     for (int32_t n = 0; ready && n < mesh->node_count; n++)
         if (!anchored[lar_union_root(parent, n)]) still[n] = LAR_AXIS_ALL;
     free(parent);
@@ -168,15 +173,17 @@ static bool moves(const lar_elastic *elastic, const int32_t node[8]) {
 }
 
 lar_status lar_elastic_create(const lar_mesh *mesh, const lar_elastic_material *material,
-                              uint8_t *still, lar_elastic *elastic, lar_error *error) {
+                              uint8_t *still, const double *spring, lar_elastic *elastic,
+                              lar_error *error) {
     size_t elements = (size_t)mesh->element_count;
     *elastic = (lar_elastic){.mesh = mesh,
                              .node_count = mesh->node_count,
                              .element = lar_calloc(elements, sizeof *elastic->element),
-                             .still = still};
+                             .still = still,
+                             .spring = spring};
     if (!elastic->element)
         return lar_fail_memory(error, elements * sizeof *elastic->element, "a static estimate");
-    lar_status status = find_still(mesh, material, still, error);
+    lar_status status = find_still(mesh, material, still, spring, error);
     for (int32_t e = 0; !status && e < mesh->element_count; e++) {
         if (!(material[e].shear > 0) || !moves(elastic, mesh->element[e])) continue;
         lar_elastic_element *element = &elastic->element[elastic->element_count++];

@@ -44,15 +44,17 @@ typedef struct lar_elastic {
     int32_t node_count, element_count;
     lar_elastic_element *element;
     const uint8_t *still;         /* [nodes] LAR_AXIS bits */
+    const double *spring;         /* [nodes] to where each is, along every axis [N/m]; NULL: none */
     bool (*goes_on)(void *asker); /* asked in every step of solving; NULL: it does */
     void *asker;
 } lar_elastic;
 
-/* material: [elements]; still: [nodes] LAR_AXIS bits of what is held, which stay the caller's, as
- * long as this. Of what hangs together with no node that is held along all axes all is still then:
- * it is left out. The caller frees the elements. */
+/* material: [elements]; still: [nodes] LAR_AXIS bits of what is held; spring: as in lar_elastic;
+ * both stay the caller's, as long as this. Of what hangs together with no node that is held along
+ * all axes, or by a spring, all is still then: it is left out. The caller frees the elements. */
 lar_status lar_elastic_create(const lar_mesh *mesh, const lar_elastic_material *material,
-                              uint8_t *still, lar_elastic *elastic, lar_error *error);
+                              uint8_t *still, const double *spring, lar_elastic *elastic,
+                              lar_error *error);
 
 /* Forces at the nodes, row 3 a + i for axis i of node a, by their displacements [N/m]. */
 void lar_elastic_element_matrix(const lar_elastic_element *element, double K[24][24]);

@@ -140,6 +140,16 @@ static void add_pair(lar_coarse *coarse, const int32_t *node, double K[24][24], 
         }
 }
 
+/* Of a spring on a node. */
+static void add_spring(lar_coarse *coarse, int32_t n, double stiffness) {
+    if (coarse->group[n] < 0) return;
+    lar_factor_block *block = lar_factor_at(&coarse->factor, coarse->group[n], coarse->group[n]);
+    for (int c = 0; c < LAR_RIGID; c++)
+        for (int d = 0; d < LAR_RIGID; d++)
+            for (int i = 0; i < 3; i++)
+                (*block)[c][d] += stiffness * share(coarse, n, i, c) * share(coarse, n, i, d);
+}
+
 static void fill_matrix(lar_coarse *coarse, const lar_elastic *elastic) {
     for (int32_t k = 0; k < elastic->element_count; k++) {
         const lar_elastic_element *e = &elastic->element[k];
@@ -149,6 +159,8 @@ static void fill_matrix(lar_coarse *coarse, const lar_elastic *elastic) {
         for (int a = 0; a < 8; a++)
             for (int b = 0; b < 8; b++) add_pair(coarse, e->node, K, a, b);
     }
+    for (int32_t n = 0; elastic->spring && n < elastic->node_count; n++)
+        if (elastic->spring[n] > 0) add_spring(coarse, n, elastic->spring[n]);
 }
 
 lar_status lar_coarse_create(const lar_elastic *elastic, lar_coarse *coarse, lar_error *error) {

@@ -23,7 +23,7 @@ static lar_status prepare(lar_ways *s, const lar_meshing *m, const bool *held, l
                        (lar_elastic_material){region->shear_modulus, region->bulk_modulus, false});
     }
     for (int32_t n = 0; n < m->mesh.node_count; n++) s->still[n] = held[n] ? LAR_AXIS_ALL : 0;
-    status = lar_elastic_create(&m->mesh, s->material, s->still, &s->elastic, error);
+    status = lar_elastic_create(&m->mesh, s->material, s->still, NULL, &s->elastic, error);
     s->elastic.goes_on = m->goes_on;
     s->elastic.asker = m->asker;
     return status;

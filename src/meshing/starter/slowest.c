@@ -22,6 +22,7 @@ void lar_ways_clear(lar_ways *ways) {
     free(ways->elastic.element);
     free(ways->material);
     free(ways->still);
+    free(ways->spring);
     free(ways->mass);
     free(ways->load);
     free(ways->way);
@@ -56,6 +57,17 @@ static void load_first(lar_ways *ways) {
         }
 }
 
+static lar_status lay_springs(lar_ways *ways, const lar_model *model, lar_error *error) {
+    size_t bytes = (size_t)model->mesh.node_count * sizeof *ways->spring;
+    if (model->spring_count == 0) return LAR_OK;
+    ways->spring = lar_calloc(bytes, 1);
+    if (!ways->spring) return lar_fail_memory(error, bytes, "an estimate of motion");
+    for (int i = 0; i < model->spring_count; i++)
+        for (int32_t k = 0; k < model->spring[i].nodes.count; k++)
+            ways->spring[model->spring[i].nodes.node[k]] += model->spring[i].stiffness[k];
+    return LAR_OK;
+}
+
 double lar_slowest_motion(const lar_model *model) {
     enum { TIMES = 2 };
     lar_ways ways;
@@ -67,9 +79,11 @@ double lar_slowest_motion(const lar_model *model) {
         lar_ways_weigh(&ways, e, of->density,
                        (lar_elastic_material){lar_material_shear(of), lar_material_bulk(of), true});
     }
+    if (!status) status = lay_springs(&ways, model, &ignored);
     if (!status) {
         lar_supports_mark(NULL, model, ways.still);
-        status = lar_elastic_create(ways.mesh, ways.material, ways.still, &ways.elastic, &ignored);
+        status = lar_elastic_create(ways.mesh, ways.material, ways.still, ways.spring,
+                                    &ways.elastic, &ignored);
         load_first(&ways);
     }
     for (int k = 0; !status && k < TIMES; k++) {

@@ -20,6 +20,7 @@ typedef struct lar_ways {
     lar_elastic_material *material; /* [elements] to be filled by lar_ways_weigh */
     uint8_t *still;                 /* [nodes] of `elastic`, to be filled */
     double *mass;                   /* [nodes] */
+    double *spring;                 /* [nodes] as in lar_elastic, or NULL */
     lar_load_vectors *load, *way;   /* [nodes] */
     double work[LAR_LOADS];
 } lar_ways;
@@ -34,9 +35,9 @@ void lar_ways_weigh(lar_ways *ways, lar_gid e, double density, lar_elastic_mater
 /* [1/s] the least of Rayleigh's quotients, 0: nothing moves. */
 double lar_ways_slowest(const lar_ways *ways);
 
-/* [1/s] of what hangs together with a node that the model holds along all axes, never less than it
- * is, and a few per cent more at most; next to nothing where that can still turn freely; 0 where
- * there is no such body or no memory. Fibres are left out. */
+/* [1/s] of what hangs together with a node that the model holds along all axes or by a spring,
+ * never less than it is, and a few per cent more at most; next to nothing where that can still turn
+ * freely; 0 where there is no such body or no memory. Fibres are left out. */
 double lar_slowest_motion(const lar_model *model);
 
 #endif
