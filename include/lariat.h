@@ -1112,6 +1112,10 @@ typedef struct lar_rest {
     lar_rest_window window;
 } lar_rest;
 
+/* A body that nothing damps gets the damping with which it comes to rest soonest [1/s], that of its
+ * slowest motion, as lar_simulation_set_damping; 0: it is damped already, or the model says that it
+ * is not. Solves for that motion: some thousand steps' time. `damping` may be NULL. */
+LAR_API lar_status lar_rest_damp(lar_simulation *simulation, double *damping, lar_error *error);
 LAR_API void lar_rest_begin(lar_rest *rest, const lar_simulation *simulation);
 /* Looks when simulation has come to `rest.next`, otherwise costs nothing; as long as some ten
  * steps. Returns rest.reached. */

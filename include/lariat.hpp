@@ -530,6 +530,11 @@ class Simulation : public detail::Handle<lar_simulation, lar_simulation_destroy>
     void save_to(Saved &saved) const;
     void load_from(const Saved &saved);
 
+    double rest_damp() {
+        double damping = 0;
+        detail::call(lar_rest_damp, get(), &damping);
+        return damping;
+    }
     void rest_begin(lar_rest &rest) const { lar_rest_begin(&rest, get()); }
     bool rest_look(lar_rest &rest) const { return lar_rest_look(&rest, get()) != 0; }
     /* Throws where the recording and the run differ; `report` says where. */

@@ -88,7 +88,22 @@ static PyObject *simulation_rest(PyObject *me, PyObject *args, PyObject *keyword
     return rest_dict(&rest, now - first);
 }
 
+static PyObject *rest_damp(PyObject *me, PyObject *nothing) {
+    (void)nothing;
+    lar_simulation *simulation = python_simulation_look((python_simulation *)me, "rest_damp");
+    double damping;
+    lar_error error;
+    lar_status status;
+    if (!simulation) return NULL;
+    PYTHON_UNLOCKED(status = lar_rest_damp(simulation, &damping, &error));
+    return status ? python_raise(&error) : PyFloat_FromDouble(damping);
+}
+
 PyMethodDef python_rest_methods[] = {
+    {"rest_damp", rest_damp, METH_NOARGS,
+     "rest_damp($self)\n--\n\nGives a body that nothing damps the damping with which it comes to "
+     "rest soonest, and returns it [1/s];\n0.0: it is damped already, or the model says that it "
+     "is not."},
     {"rest", (PyCFunction)(void (*)(void))simulation_rest, METH_VARARGS | METH_KEYWORDS,
      "rest($self, seconds=None, *, callback=None)\n--\n\nAdvances until loads are constant and the "
      "body is at rest: a static answer, in the same step on\nevery grid. A dict: reached, steps "

@@ -13,7 +13,6 @@
 #include "cli/parallel.h"
 #include "cli/stop.h"
 #include "cli/report/run.h"
-#include "simulation/rest.h"
 
 enum { PATH_SIZE = 4096 };
 

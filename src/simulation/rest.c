@@ -124,11 +124,14 @@ double lar_rest_damping(const lar_model *model) {
 }
 
 lar_status lar_rest_damp(lar_simulation *simulation, double *damping, lar_error *error) {
+    if (damping) *damping = 0;
+    if (!simulation)
+        return lar_fail(error, LAR_ERROR_ARGUMENT, "lar_rest_damp needs a simulation, not NULL");
     const lar_model *model = simulation->domain.model;
-    *damping = 0;
     if (lar_simulation_damping(simulation) > 0 || model->damping_line > 0) return LAR_OK;
-    *damping = lar_rest_damping(model);
-    return lar_simulation_set_damping(simulation, *damping, error);
+    double found = lar_rest_damping(model);
+    if (damping) *damping = found;
+    return lar_simulation_set_damping(simulation, found, error);
 }
 
 lar_status lar_model_damp_itself(lar_model **opened, lar_error *error) {

@@ -49,9 +49,6 @@ void lar_rest_energies(const lar_domain *domain, const lar_state *state, double 
 /* The damping with which the model's body comes to rest soonest [1/s]. */
 double lar_rest_damping(const lar_model *model);
 
-/* Gives it to a simulation whose model names none, before the first step; 0: it has one. */
-lar_status lar_rest_damp(lar_simulation *simulation, double *damping, lar_error *error);
-
 /* Gives it to a model that nobody gave a damping, and a notice where it is another one; without
  * memory for that the model is destroyed and NULL. */
 lar_status lar_model_damp_itself(lar_model **model, lar_error *error);
