@@ -139,7 +139,7 @@ static void test_materials(void **state) {
                 second->parameter[2] == 100);
     assert_true(second->density == 1.0);
     assert_int_equal(notices_with(model, "no density"), 1);
-    assert_int_equal(notices_with(model, "<laugon>"), 1);
+    assert_int_equal(notices_with(model, "<laugon>"), 0);
     assert_int_equal(notices_with(model, "material 'b' is not used"), 1);
     lar_model_destroy(model);
 }

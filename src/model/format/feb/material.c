@@ -9,6 +9,7 @@
  */
 #include "model/format/feb/feb.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -410,6 +411,57 @@ static lar_status read_viscous(lar_feb *feb, const xmlNode *node, const xmlNode 
     return status ? status : lar_feb_notice_others(feb, node, v->isochoric ? known : known + 17);
 }
 
+/* ---- augmentation ---------------------------------------------------------------------------- */
+
+/* <laugon> 1 of a material of any depth. */
+static lar_status find_laugon(lar_feb *feb, const xmlNode *node, const xmlNode **at) {
+    bool set;
+    lar_status status = lar_feb_flag(feb, node, "laugon", false, &set);
+    if (set) *at = lar_feb_child(node, "laugon");
+    for (const xmlNode *inner = lar_feb_first(node); inner && !status; inner = lar_feb_next(inner))
+        if (lar_feb_is_any(inner, "solid elastic")) status = find_laugon(feb, inner, at);
+    return status;
+}
+
+/* The same of the domains of a material. */
+static lar_status find_domain_laugon(lar_feb *feb, const lar_feb_material *entry,
+                                     const xmlNode **at) {
+    const xmlNode *section = lar_feb_child(feb->root, "MeshDomains");
+    const xmlNode *domain = section ? lar_feb_first(section) : NULL;
+    lar_status status = LAR_OK;
+    for (; domain && !status; domain = lar_feb_next(domain)) {
+        const lar_feb_material *of;
+        status = lar_feb_part_material(feb, domain, &of);
+        if (!status && of == entry) status = find_laugon(feb, domain, at);
+    }
+    return status;
+}
+
+/* FEBio then adds pressure until the volume stays, whatever k is. Here the bulk modulus is what a
+ * thousandth of pressure changes the volume by: a thousand times what resists shear. */
+static lar_status augment(lar_feb *feb, const lar_feb_material *entry, lar_material *material) {
+    enum { TIMES = 1000 };
+    const lar_law_row *law = &lar_law_table[material->law];
+    const lar_fibre *fibre = &material->fibre;
+    const xmlNode *at = NULL;
+    lar_status status = find_laugon(feb, entry->node, &at);
+    if (!status) status = find_domain_laugon(feb, entry, &at);
+    if (status || !at) return status;
+    if (!law->uncoupled)
+        return lar_feb_notice(feb, at, "<laugon> was left out: the material is not uncoupled");
+    double *bulk = &material->parameter[law->count - 1];
+    double least = TIMES * (lar_material_instant_shear(material) + lar_fibre_modulus(fibre) +
+                            fmax(fabs(fibre->along), fabs(fibre->across)));
+    if (*bulk >= least) return LAR_OK;
+    status = lar_feb_notice(feb, at,
+                            "<laugon> asks for a volume that stays; the bulk modulus becomes %d "
+                            "times what resists shear, %g instead of %g, and time steps %.2g times "
+                            "shorter",
+                            TIMES, least, *bulk, sqrt(least / *bulk));
+    *bulk = least;
+    return status;
+}
+
 static lar_status read_material(lar_feb *feb, lar_feb_material *entry) {
     const char *type;
     lar_status status = lar_feb_need_attribute(feb, entry->node, "type", &type);
@@ -430,6 +482,7 @@ static lar_status read_material(lar_feb *feb, lar_feb_material *entry) {
         status = lar_feb_read_hgo(feb, entry->node, material);
     else
         status = read_law_part(feb, entry->node, NULL, type, material);
+    if (!status) status = augment(feb, entry, material);
     if (status) return status;
     char where[300];
     snprintf(where, sizeof where, "%.200s:%d", feb->path, lar_feb_line(entry->node));

@@ -165,10 +165,13 @@ bool lar_feb_is_any(const xmlNode *element, const char *names) {
 }
 
 lar_status lar_feb_notice_others(const lar_feb *feb, const xmlNode *parent, const char *known) {
+    /* how far augmentation goes; whether it is on is looked for in material.c */
+    static const char augmentation[] = "laugon atol augtol minaug maxaug";
+    const bool augments = lar_feb_is_any(parent, "material solid elastic SolidDomain");
     lar_status status = LAR_OK;
     for (xmlNode *child = lar_feb_first(parent); child && !status; child = lar_feb_next(child)) {
         const char *name = (const char *)child->name;
-        if (!lar_feb_is_any(child, known))
+        if (!lar_feb_is_any(child, known) && !(augments && lar_feb_is_any(child, augmentation)))
             status = lar_feb_notice(feb, child, "<%s> in <%s> is not known and was left out", name,
                                     (const char *)parent->name);
         else if (lar_feb_child(parent, name) != child && !lar_feb_is(child, "solid"))
