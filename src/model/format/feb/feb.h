@@ -159,6 +159,9 @@ bool lar_feb_is_active(const char *type);
 lar_status lar_feb_read_active(lar_feb *feb, const xmlNode *node, const char *type,
                                lar_fibre *fibre);
 lar_status lar_feb_read_activation(lar_feb *feb);
+
+/* ---- direction.c ----------------------------------------------------------------------------- */
+
 /* Turns a direction of element e from its axes, of which the first runs along a and the second in
  * the plane of a and d on d's side, to those of the mesh. */
 lar_status lar_feb_turn(lar_feb *feb, const xmlNode *at, int32_t e, const double a[3],
