@@ -294,8 +294,6 @@ static void test_bad_meshes(void **state) {
                    LAR_ERROR_FORMAT, 14, "node 55");
     expect_failure(WITH_MESH(NODES PARTS "<NodeSet name=\"a\">1</NodeSet>\n<NodeSet name=\"a\"/>"),
                    LAR_ERROR_FORMAT, 13, "second node set");
-    expect_failure(WITH_MESH(NODES PARTS "<Surface name=\"s\">\n<tri3>1,2,3</tri3></Surface>"),
-                   LAR_ERROR_UNSUPPORTED, 13, "<tri3>");
     expect_failure(WITH_MESH(NODES PARTS "<Surface name=\"s\">\n<quad4>1,2,3,7</quad4></Surface>"),
                    LAR_ERROR_FORMAT, 13, "not a face");
     expect_failure(WITH_MESH(NODES), LAR_ERROR_MODEL, 0, "");

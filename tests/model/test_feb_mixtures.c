@@ -345,6 +345,46 @@ static void old_decks_are_read(void **state) {
     lar_model_destroy(model);
 }
 
+/* Initial velocities of all forms, along one axis too; and curves that a condition names. */
+static void old_words_are_read(void **state) {
+    (void)state;
+    lar_model *model = read_deck(
+        OLD("<fix bc=\"x\" node_set=\"wall\" type=\"odd\"/>"
+            "<prescribe bc=\"x\" node_set=\"tip\" type=\"relative\" lc=\"1\"><scale>3</scale>"
+            "<value>2</value></prescribe>",
+            "<Loads><nodal_load bc=\"y\" node_set=\"tip\" lc=\"1\"><scale>4</scale></nodal_load>"
+            "</Loads><Initial><velocity node_set=\"wall\"><value>1,2,3</value></velocity>"
+            "<init bc=\"vy\" node_set=\"tip\"><value>4</value></init>"
+            "<init bc=\"vx\" node_set=\"wall\"><value>-1</value></init></Initial>" OLD_CONTROL
+                OLD_CURVE));
+    assert_true(model->move[0].by == 6 && model->load[0].force[1] == 4);
+    assert_int_equal(model->move[0].curve, model->load[0].curve);
+    assert_true(lar_curve_value(&model->curve[model->load[0].curve], 0.25) == 1.5);
+    assert_int_equal(model->initial_count, 2);
+    const double(*v)[3] = &model->initial[0].velocity;
+    assert_true((*v)[0] == -1 && (*v)[1] == 2 && model->initial[0].nodes.count == 2);
+    assert_true(model->initial[1].velocity[1] == 4 && model->initial[1].velocity[0] == 0);
+    assert_int_equal(notices_with(model, "attribute type of <fix> is not known"), 1);
+    assert_int_equal(notices_with(model, "attribute type of <prescribe> is not known"), 1);
+    assert_int_equal(notices_with(model, "known"), 2);
+    lar_model_destroy(model);
+    expect_failure(OLD("", "<Initial><init bc=\"x\" node_set=\"tip\"><value>1</value></init>"
+                           "</Initial>" OLD_CONTROL),
+                   LAR_ERROR_UNSUPPORTED, 13, "'x' is not one of vx, vy, vz");
+    expect_failure(
+        OLD("", "<Initial><velocity node_set=\"@part:\"><value>1,2,3</value></velocity></Initial>"),
+        LAR_ERROR_FORMAT, 13, "element set ''");
+    expect_failure(OLD("",
+                       "<Initial><velocity node_set=\"@surface:s\"><value>1,2,3</value></velocity>"
+                       "</Initial>"),
+                   LAR_ERROR_FORMAT, 13, "<velocity> names the surface 's'");
+    expect_failure(OLD("<prescribe bc=\"x\" node_set=\"tip\"><scale>1</scale></prescribe>\n"
+                       "<prescribe bc=\"x\" node_set=\"tip\"><scale>2</scale></prescribe>",
+                       OLD_CONTROL),
+                   LAR_ERROR_MODEL, 13,
+                   "<prescribe> moves node 9 along x, which <prescribe> in line 12");
+}
+
 /* Lines stay those of the file. */
 static void old_decks_that_are_refused(void **state) {
     (void)state;
@@ -369,6 +409,7 @@ int main(void) {
         cmocka_unit_test(directions_belong_to_parts),
         cmocka_unit_test(rays_that_are_none),
         cmocka_unit_test(old_decks_are_read),
+        cmocka_unit_test(old_words_are_read),
         cmocka_unit_test(old_decks_that_are_refused),
     };
     return cmocka_run_group_tests_name("feb_mixtures", tests, NULL, NULL);
