@@ -171,6 +171,8 @@ lar_status lar_feb_read_trans_iso(lar_feb *feb, const xmlNode *node, lar_fibre *
 /* The same of what contracts; a curve that its stress follows is looked up when there are curves
  * (lar_feb_read_activation). */
 bool lar_feb_is_active(const char *type);
+/* Type i of both kinds, NULL behind the last one. */
+const char *lar_feb_fibre_name(int i);
 lar_status lar_feb_read_active(lar_feb *feb, const xmlNode *node, const char *type,
                                lar_fibre *fibre);
 lar_status lar_feb_read_activation(lar_feb *feb);

@@ -62,6 +62,13 @@ bool lar_feb_is_active(const char *type) {
     return find_active(type) != NULL;
 }
 
+const char *lar_feb_fibre_name(int i) {
+    const int rest = i - FIBRE_TYPES;
+    if (rest < 0) return fibre_types[i].type;
+    return (size_t)rest < sizeof active_types / sizeof *active_types ? active_types[rest].type
+                                                                     : NULL;
+}
+
 /* The same total stress in both forms: FEBio's uncoupled one is no deviator. */
 lar_status lar_feb_read_active(lar_feb *feb, const xmlNode *node, const char *type,
                                lar_fibre *fibre) {
