@@ -157,7 +157,7 @@ static void augmented_materials_keep_their_volume(void **state) {
                   "<MeshDomains><SolidDomain name=\"left\" mat=\"soft\" type=\"udg-hex\"><hg>2</hg>"
                   "<laugon>1</laugon></SolidDomain><SolidDomain name=\"right\" "
                   "mat=\"soft\"/></MeshDomains>" TAIL);
-    assert_int_equal(notices_with(model, "the type 'udg-hex' of elements was left out"), 1);
+    assert_int_equal(notices_with(model, "the domain type 'udg-hex' was left out"), 1);
     assert_int_equal(notices_with(model, "<hg> in <SolidDomain> is not known"), 1);
     assert_int_equal(notices_with(model, "<laugon> was left out"), 1);
     lar_model_destroy(model);

@@ -199,10 +199,11 @@ static lar_status check_domains(lar_feb *feb) {
                                 "<%s> is not read; Lariat computes solids",
                                 (const char *)domain->name);
         if (type && strcmp(type, "elastic-solid") != 0 && strcmp(type, "three-field-solid") != 0)
-            status = lar_feb_notice(feb, domain,
-                                    "the type '%.60s' of elements was left out; Lariat's are those "
-                                    "of its own",
-                                    type);
+            status =
+                lar_feb_notice(feb, domain,
+                               "the domain type '%.60s' was left out; Lariat computes with its "
+                               "own elements",
+                               type);
         if (!status) status = lar_feb_notice_others(feb, domain, "");
     }
     return status;
