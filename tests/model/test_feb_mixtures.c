@@ -277,6 +277,8 @@ static void directions_belong_to_parts(void **state) {
         {MIX(YZX CONTRACTS("<theta>90</theta><phi>90</phi>")), {0, 0, 1}, 0},
         {MIX(YZX CONTRACTS(YZX)), {0, 0, 1}, 0},
         {MIX(CONTRACTS("<fiber type=\"angles\"><theta>90</theta></fiber>")), {0, 1, 0}, 0},
+        {MIX(YZX EXPANDS("<theta>90</theta><phi>90</phi>")), {0, 0, 1}, 0},
+        {MIX(CONTRACTS("<phi>0</phi>") EXPANDS("<phi>180</phi>")), {0, 0, -1}, 0},
         {MIX(CONTRACTS("") EXPANDS("")), {1, 0, 0}, 2},
         {MIX(YZX CONTRACTS("") EXPANDS("")), {0, 1, 0}, 0},
         {MIX(YZX CONTRACTS("") EXPANDS(FIBER("3,0,0"))), {0, 1, 0}, 0},
@@ -304,6 +306,8 @@ static void directions_belong_to_parts(void **state) {
                        "'prescribed uniaxial active contraction' acts along another direction than "
                        "'fiber-exp-pow' (line 5)");
     expect_failure(MIX(CONTRACTS("<theta>1</theta>" FIBER("1,0,0"))), LAR_ERROR_FORMAT, 5,
+                   "stand beside <fiber>");
+    expect_failure(MIX(EXPANDS("<phi>1</phi>" FIBER("1,0,0"))), LAR_ERROR_FORMAT, 5,
                    "stand beside <fiber>");
 }
 

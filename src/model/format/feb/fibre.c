@@ -69,6 +69,15 @@ const char *lar_feb_fibre_name(int i) {
                                                                      : NULL;
 }
 
+/* Angles are a direction of their own, of fibres in decks of version 2.5 too. */
+static lar_status refuse_both(lar_feb *feb, const xmlNode *node) {
+    if (!lar_feb_child(node, "fiber") ||
+        !(lar_feb_child(node, "theta") || lar_feb_child(node, "phi")))
+        return LAR_OK;
+    return lar_feb_fail(feb, node, LAR_ERROR_FORMAT,
+                        "<theta> and <phi> stand beside <fiber>; keep one of the two");
+}
+
 /* The same total stress in both forms: FEBio's uncoupled one is no deviator. */
 lar_status lar_feb_read_active(lar_feb *feb, const xmlNode *node, const char *type,
                                lar_fibre *fibre) {
@@ -82,10 +91,7 @@ lar_status lar_feb_read_active(lar_feb *feb, const xmlNode *node, const char *ty
     fibre->along = active->along * stress;
     fibre->across = active->across * stress;
     if (!fibre->line) fibre->line = lar_feb_line(node);
-    if (!status && lar_feb_child(node, "fiber") &&
-        (lar_feb_child(node, "theta") || lar_feb_child(node, "phi")))
-        status = lar_feb_fail(feb, node, LAR_ERROR_FORMAT,
-                              "<theta> and <phi> stand beside <fiber>; keep one of the two");
+    if (!status) status = refuse_both(feb, node);
     return status ? status : lar_feb_notice_others(feb, node, known);
 }
 
@@ -162,15 +168,6 @@ static lar_status refuse_unless(lar_feb *feb, const xmlNode *node, const char *n
                         value, fallback);
 }
 
-static lar_status refuse_angles(lar_feb *feb, const xmlNode *node) {
-    const xmlNode *angle = lar_feb_child(node, "theta");
-    if (!angle) angle = lar_feb_child(node, "phi");
-    if (!angle) return LAR_OK;
-    return lar_feb_fail(feb, angle, LAR_ERROR_UNSUPPORTED,
-                        "<%s> of fibres is not read; say along what they run as <fiber>",
-                        (const char *)angle->name);
-}
-
 /* Calcium and sarcomeres; without a scale nothing contracts. */
 static lar_status refuse_calcium(lar_feb *feb, const xmlNode *node) {
     const xmlNode *muscle = lar_feb_child(node, "active_contraction");
@@ -212,9 +209,9 @@ static lar_status read_numbers(lar_feb *feb, const xmlNode *node, const struct f
 lar_status lar_feb_read_fibre(lar_feb *feb, const xmlNode *node, const char *type,
                               lar_fibre *fibre) {
     const struct fibre_type *own = find_type(type);
-    static const char known[] =
-        "density k pressure_model ksi alpha beta c3 c4 c5 lambda fiber mat_axis E lam0 mu";
-    lar_status status = refuse_angles(feb, node);
+    static const char known[] = "density k pressure_model ksi alpha beta c3 c4 c5 lambda fiber "
+                                "mat_axis E lam0 mu theta phi";
+    lar_status status = refuse_both(feb, node);
     if (!status) status = refuse_unless(feb, node, "mu", 0);
     /* Of a power law that goes on straight, lam0 is where it does; of others fibres begin there. */
     if (!status && own->law != LAR_FIBRE_POW_LINEAR) status = refuse_unless(feb, node, "lam0", 1);
