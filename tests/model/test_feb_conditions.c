@@ -61,13 +61,14 @@ static void test_loads(void **state) {
               "<body_load type=\"const\" elem_set=\"@part_list:both\"><x>0</x><z lc=\"1\">9.81</z>"
               "</body_load></Loads><Initial><ic type=\"velocity\" node_set=\"tip\">"
               "<value>0,0,-2</value></ic></Initial>" LINEAR1 TAIL);
-    assert_int_equal(model->load_count, 2);
+    assert_int_equal(model->load_count, 2 + 4); /* and the dead ones */
     assert_true(model->load[0].force[2] == 3.0 && model->load[0].nodes.count == 4);
     assert_true(model->load[1].force[1] == -4.0 && model->load[1].force[0] == 0.0);
-    assert_int_equal(model->pressure_count, 2);
-    assert_true(model->pressure[0].pressure == 50.0 && model->pressure[0].face[0] == 7);
-    assert_true(model->pressure[1].pressure == -50.0 && model->pressure[1].count == 1);
-    assert_int_equal(notices_with(model, "<linear>"), 1);
+    assert_int_equal(model->pressure_count, 1);
+    assert_true(model->pressure[0].pressure == -50.0 && model->pressure[0].count == 1);
+    for (int i = 2; i < 6; i++) /* a quarter each of the face of 1 by 1 */
+        assert_true(fabs(model->load[i].force[0] + 12.5) < 1e-12 && model->load[i].force[1] == 0);
+    assert_int_equal(notices_with(model, "<linear>"), 0);
     assert_int_equal(notices_with(model, "normals into the body"), 1);
     assert_true(model->gravity[2] == -9.81 && model->gravity[0] == 0.0);
     assert_int_equal(model->gravity_curve[2], model->load[0].curve);
@@ -75,6 +76,75 @@ static void test_loads(void **state) {
     assert_int_equal(model->initial_count, 1);
     assert_true(model->initial[0].velocity[2] == -2.0 && model->initial[0].nodes.count == 4);
     lar_model_destroy(model);
+}
+
+/* What says the same in other words, or nothing of solids. */
+static void test_scales_and_shells(void **state) {
+    (void)state;
+    lar_model *model = read_deck(
+        BASE4 "<Boundary><bc type=\"prescribed displacement\" node_set=\"tip\"><dof>x</dof>"
+              "<scale lc=\"1\">2</scale><value>-0.25</value><relative>1</relative></bc>"
+              "<bc type=\"prescribed displacement\" node_set=\"tip\"><dof>u</dof><value>1</value>"
+              "</bc><bc type=\"fix\" node_set=\"wall\"><dofs>x,sx,w</dofs></bc>"
+              "<bc type=\"zero rotation\" node_set=\"wall\"/>"
+              "<bc type=\"zero shell displacement\" node_set=\"wall\"/></Boundary>"
+              "<Loads><nodal_load type=\"nodal_load\" node_set=\"tip\"><dof>z</dof>"
+              "<scale>3</scale><value lc=\"1\">5</value></nodal_load></Loads>" LINEAR1 TAIL);
+    assert_int_equal(model->move_count, 1);
+    assert_true(model->move[0].by == -0.5);
+    assert_true(lar_curve_value(&model->curve[model->move[0].curve], 0.5) == 1.0);
+    assert_int_equal(model->fix_count, 1);
+    assert_int_equal(model->fix[0].axes, LAR_AXIS_X);
+    assert_int_equal(notices_with(model, "degree of freedom of shells"), 3);
+    assert_int_equal(notices_with(model, "holds shells, of which there are none"), 2);
+    assert_true(model->load[0].force[2] == 15);
+    assert_int_equal(model->load[0].curve, model->move[0].curve);
+    lar_model_destroy(model);
+}
+
+#define TRIANGLES                                                                                  \
+    HEAD4 CONTROL("DYNAMIC") MATERIAL                                                              \
+        "<Mesh>\n" NODES PARTS SETS4                                                               \
+        "<Surface name=\"s\">\n<tri3 id=\"1\">1,2,3</tri3></Surface></Mesh>\n" DOMAINS
+
+/* Faces that no hexahedron has matter only where something names them. */
+static void test_other_faces(void **state) {
+    (void)state;
+    lar_model *model = read_deck(TRIANGLES TAIL);
+    assert_int_equal(notices_with(model, "'s' was left out: <tri3> is no face of a hexahedron"), 1);
+    lar_model_destroy(model);
+    expect_failure(TRIANGLES
+                   "<Boundary><bc type=\"fix\" node_set=\"@surface:s\"><dofs>x</dofs></bc>"
+                   "</Boundary>" TAIL,
+                   LAR_ERROR_UNSUPPORTED, 0, "'s', which has faces other than quad4");
+    expect_failure(TRIANGLES "<Loads><surface_load type=\"pressure\" surface=\"s\"><pressure>1"
+                             "</pressure></surface_load></Loads>" TAIL,
+                   LAR_ERROR_UNSUPPORTED, 0, "'s', which has faces other than quad4");
+}
+
+#define MOVE(set, name, by)                                                                        \
+    "<bc type=\"prescribed displacement\" name=\"" name "\" node_set=\"" set                       \
+    "\"><dof>x</dof><value lc=\"1\">" by "</value></bc>\n"
+#define FIX(set)         "<bc type=\"fix\" node_set=\"" set "\"><dofs>x,z</dofs></bc>\n"
+#define HOLD(conditions) BASE4 "<Boundary>\n" conditions "</Boundary>" LINEAR1 TAIL
+
+/* Each axis of a node has one holder; the same twice is one. */
+static void test_holders(void **state) {
+    (void)state;
+    lar_model *model = read_deck(
+        HOLD(MOVE("tip", "a", "1") MOVE("@elem_set:one", "b", "1") FIX("wall") FIX("wall")));
+    assert_int_equal(model->move_count, 2);
+    assert_int_equal(model->move[0].nodes.count, 4);
+    assert_int_equal(model->move[1].nodes.count, 4); /* the other four */
+    assert_int_equal(model->move[1].nodes.node[0], 1);
+    lar_model_destroy(model);
+    expect_failure(HOLD(MOVE("tip", "a", "1") MOVE("@elem_set:one", "b", "2")), LAR_ERROR_MODEL,
+                   BC_LINE + 1,
+                   "<bc> moves node 9 along x, which <bc> 'a' in line 22 moves; leave one");
+    expect_failure(HOLD(MOVE("tip", "a", "1") FIX("tip")), LAR_ERROR_MODEL, BC_LINE + 1,
+                   "<bc> fixes node 9 along x, which <bc> 'a' in line 22 moves");
+    expect_failure(HOLD(FIX("tip") MOVE("tip", "a", "1")), LAR_ERROR_MODEL, BC_LINE + 1,
+                   "<bc> moves node 9 along x, which <bc> in line 22 fixes");
 }
 
 #define BC(type, set, content)                                                                     \
@@ -99,7 +169,7 @@ static void test_bad_supports(void **state) {
                    BC_LINE, "surface 'no'");
     expect_failure(BC("normal displacement", "tip", ""), LAR_ERROR_UNSUPPORTED, BC_LINE,
                    "'normal displacement'");
-    expect_failure(BC("fix", "tip", "<dofs>x,u</dofs>"), LAR_ERROR_UNSUPPORTED, BC_LINE + 1, "'u'");
+    expect_failure(BC("fix", "tip", "<dofs>x,q</dofs>"), LAR_ERROR_UNSUPPORTED, BC_LINE + 1, "'q'");
     expect_failure(BC("prescribed displacement", "tip", "<value lc=\"1\">1</value>"),
                    LAR_ERROR_FORMAT, BC_LINE, "no <dof>");
     expect_failure(BC("prescribed displacement", "tip", "<dof>x</dof>\n"), LAR_ERROR_FORMAT,
@@ -110,14 +180,13 @@ static void test_bad_supports(void **state) {
         BC("prescribed displacement", "tip", "<dof>x</dof>\n<value type=\"map\">m</value>"),
         LAR_ERROR_UNSUPPORTED, BC_LINE + 2, "is a map");
     expect_failure(BC("prescribed displacement", "tip",
-                      "<dof>x</dof><value>1</value>\n<relative>1</relative>"),
-                   LAR_ERROR_UNSUPPORTED, BC_LINE + 2, "<relative>");
+                      "<dof>x</dof><value>1</value>\n<relative>2</relative>"),
+                   LAR_ERROR_FORMAT, BC_LINE + 2, "<relative> is 2");
     expect_failure(BC("prescribed displacement", "tip",
-                      "<dof>x</dof><value>1</value>\n<scale lc=\"1\">1</scale>"),
-                   LAR_ERROR_UNSUPPORTED, BC_LINE + 2, "<scale> stands beside <value>");
-    expect_failure(BASE4 "<Loads>\n<nodal_load type=\"nodal_load\" node_set=\"tip\"><dof>x</dof>"
-                         "<scale>1</scale><value>3</value></nodal_load></Loads>" TAIL,
-                   LAR_ERROR_UNSUPPORTED, BC_LINE, "<scale> stands beside <value>");
+                      "<dof>x</dof><value lc=\"1\">1</value>\n<scale lc=\"1\">1</scale>"),
+                   LAR_ERROR_UNSUPPORTED, BC_LINE + 2, "follow a load curve each");
+    expect_failure(BC("prescribed displacement", "tip", "<dof>x</dof>\n<value node_data=\"map\"/>"),
+                   LAR_ERROR_UNSUPPORTED, BC_LINE + 2, "is a map on nodes, which is not read");
     expect_failure(BASE4 "<Boundary>\n<rigid/></Boundary>" TAIL, LAR_ERROR_UNSUPPORTED, BC_LINE,
                    "<rigid>");
     expect_failure(BASE4 "<Boundary>\n<bc type=\"fix\"><dofs>x</dofs></bc></Boundary>" TAIL,
@@ -144,6 +213,10 @@ static void test_bad_loads(void **state) {
     expect_failure(BASE4 "<Loads>\n<surface_load type=\"pressure\" surface=\"no\"><pressure>1"
                          "</pressure></surface_load></Loads>" TAIL,
                    LAR_ERROR_FORMAT, BC_LINE, "surface 'no'");
+    expect_failure(SURFACE_LOAD("pressure", "end", "<pressure surface_data=\"map\"/>"),
+                   LAR_ERROR_UNSUPPORTED, BC_LINE, "is a map on a surface, which is not read");
+    expect_failure(SURFACE_LOAD("pressure", "end\" lc=\"1", "<pressure>1</pressure>"),
+                   LAR_ERROR_UNSUPPORTED, BC_LINE, "the load curve of this <surface_load>");
     expect_failure(BASE4 "<Loads>\n<body_load type=\"centrifugal\"/></Loads>" TAIL,
                    LAR_ERROR_UNSUPPORTED, BC_LINE, "'centrifugal'");
     expect_failure(BASE4 "<Loads>\n<body_load type=\"const\"/></Loads>" TAIL, LAR_ERROR_FORMAT,
@@ -232,6 +305,12 @@ static void test_bad_curves(void **state) {
                    LAR_ERROR_FORMAT, LINE + 1, "second load controller");
     expect_failure(USE(CURVE("1", "SMOOTH", "CONSTANT", "<pt>0,0</pt><pt>0,1</pt><pt>1,1</pt>")),
                    LAR_ERROR_UNSUPPORTED, LINE, "two points at the same time");
+    expect_failure(HEAD4
+                   "\n" MATERIAL MESH4 DOMAINS
+                   "<Boundary><bc type=\"prescribe\" node_set=\"tip\"><dof>x</dof><scale "
+                   "lc=\"1\">1</scale></bc></Boundary>\n<LoadData>\n" CURVE(
+                       "1", "LINEAR", "EXTRAPOLATE", "<pt>0,0</pt><pt>1,1</pt>") "</LoadData>" TAIL,
+                   LAR_ERROR_UNSUPPORTED, LINE, "the deck has no duration up to which");
     /* unused, it harms nobody */
     lar_model *model = read_deck(BASE4 "<LoadData>" CURVE("1", "CONTROL POINTS", "CONSTANT",
                                                           "<pt>0,0</pt>") "</LoadData>" TAIL);
@@ -241,9 +320,15 @@ static void test_bad_curves(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_supports),   cmocka_unit_test(test_loads),
-        cmocka_unit_test(test_traction),   cmocka_unit_test(test_bad_supports),
-        cmocka_unit_test(test_bad_loads),  cmocka_unit_test(test_curves),
+        cmocka_unit_test(test_supports),
+        cmocka_unit_test(test_loads),
+        cmocka_unit_test(test_traction),
+        cmocka_unit_test(test_bad_supports),
+        cmocka_unit_test(test_scales_and_shells),
+        cmocka_unit_test(test_holders),
+        cmocka_unit_test(test_other_faces),
+        cmocka_unit_test(test_bad_loads),
+        cmocka_unit_test(test_curves),
         cmocka_unit_test(test_bad_curves),
     };
     return cmocka_run_group_tests_name("feb_conditions", tests, NULL, NULL);

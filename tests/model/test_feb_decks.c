@@ -80,7 +80,7 @@ static const expected_deck expected[] = {
      8,
      1,
      LAR_LAW_yeoh,
-     1,
+     2,
      1.0,
      {9, 9, 9},
      {LAR_AXIS_X, LAR_AXIS_Y, LAR_AXIS_Z},

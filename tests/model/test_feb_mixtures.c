@@ -113,6 +113,56 @@ static void moduli_and_densities_add_up(void **state) {
                    LAR_ERROR_UNSUPPORTED, 5, "give the mixture its own");
 }
 
+/* An augmented volume stays: at least a thousand times what resists shear, fibres and what
+ * contracts too; whether a domain, a material or a part of one says so. */
+static void augmented_materials_keep_their_volume(void **state) {
+    (void)state;
+#define LAUGON(on) "<laugon>" on "</laugon><atol>0.01</atol><maxaug>10</maxaug>"
+#define YEOH       "<c1>3</c1><k>7</k>"
+    static const struct {
+        const char *text;
+        double bulk;
+        int notices;
+    } decks[] = {
+        {DECK("Yeoh", YEOH LAUGON("1")), 6000, 1},
+        {DECK("Yeoh", YEOH LAUGON("0")), 7, 0},
+        {DECK("Yeoh", "<c1>3</c1><k>7e4</k>" LAUGON("1")), 7e4, 0},
+        {DECK("uncoupled solid mixture",
+              "<solid type=\"uncoupled fiber-exp-linear\"><c3>2</c3><c4>5</c4><c5>30</c5>"
+              "<lambda>1.2</lambda>" ALONG "</solid><solid type=\"Yeoh\">" YEOH LAUGON(
+                  "1") "</solid><solid type=\"uncoupled prescribed isotropic active "
+                       "contraction\"><T0>8</T0></solid>"),
+         24000, 1},
+        {DECK("uncoupled viscoelastic",
+              LAUGON("1") "<t1>1</t1><g1>0.5</g1><elastic type=\"Yeoh\">" YEOH "</elastic>"),
+         9000, 1},
+        {HEAD4 CONTROL("DYNAMIC") "<Material><material id=\"7\" name=\"soft\" type=\"Yeoh\">"
+                                  "<density>1</density>" YEOH "</material></Material>\n" MESH4
+                                  "<MeshDomains><SolidDomain name=\"left\" mat=\"soft\"/>"
+                                  "<SolidDomain name=\"right\" mat=\"7\" "
+                                  "type=\"three-field-solid\">" LAUGON(
+                                      "1") "</SolidDomain></MeshDomains>" TAIL,
+         6000, 1},
+    };
+    for (size_t i = 0; i < sizeof decks / sizeof *decks; i++) {
+        lar_model *model = read_deck(decks[i].text);
+        double bulk = lar_law_table[model->material[0].law].bulk(model->material[0].parameter);
+        if (fabs(bulk / decks[i].bulk - 1) > 1e-12) fail_msg("deck %zu: bulk modulus %g", i, bulk);
+        assert_int_equal(notices_with(model, "<laugon> asks for"), decks[i].notices);
+        assert_int_equal(notices_with(model, "known"), 0);
+        lar_model_destroy(model);
+    }
+    lar_model *model =
+        read_deck(HEAD4 CONTROL("DYNAMIC") MATERIAL MESH4
+                  "<MeshDomains><SolidDomain name=\"left\" mat=\"soft\" type=\"udg-hex\"><hg>2</hg>"
+                  "<laugon>1</laugon></SolidDomain><SolidDomain name=\"right\" "
+                  "mat=\"soft\"/></MeshDomains>" TAIL);
+    assert_int_equal(notices_with(model, "the domain type 'udg-hex' was left out"), 1);
+    assert_int_equal(notices_with(model, "<hg> in <SolidDomain> is not known"), 1);
+    assert_int_equal(notices_with(model, "<laugon> was left out"), 1);
+    lar_model_destroy(model);
+}
+
 /* What would be another model is refused. */
 static void mixtures_that_are_refused(void **state) {
     (void)state;
@@ -202,6 +252,65 @@ static void rays_that_are_none(void **state) {
                    LAR_ERROR_MODEL, 0, "their direction is 0, 0, 0");
 }
 
+/* A direction belongs to the part that it stands in, in the axes of that part and around it; one of
+ * fibres and one of a contraction must be the same. */
+#define CONTRACTS(inside)                                                                          \
+    "<solid type=\"prescribed uniaxial active contraction\"><T0>200</T0>" inside "</solid>"
+#define EXPANDS(inside)                                                                            \
+    "<solid type=\"fiber-exp-pow\"><ksi>300</ksi><alpha>1.5</alpha><beta>2.5</beta>" inside        \
+    "</solid>"
+#define FIBER(to)  "<fiber type=\"vector\">" to "</fiber>"
+#define YZX        "<mat_axis type=\"vector\"><a>0,2,0</a><d>0,1,3</d></mat_axis>"
+#define MIX(parts) DECK("solid mixture", SOLID parts)
+
+static void directions_belong_to_parts(void **state) {
+    (void)state;
+    static const struct {
+        const char *text;
+        double way[3];
+        int notices;
+    } decks[] = {
+        {MIX(CONTRACTS("")), {1, 0, 0}, 1},
+        {MIX(YZX CONTRACTS("")), {0, 1, 0}, 0},
+        {MIX(CONTRACTS("<theta>90</theta>")), {0, 1, 0}, 0},
+        {MIX(CONTRACTS("<phi>0</phi>")), {0, 0, 1}, 0},
+        {MIX(YZX CONTRACTS("<theta>90</theta><phi>90</phi>")), {0, 0, 1}, 0},
+        {MIX(YZX CONTRACTS(YZX)), {0, 0, 1}, 0},
+        {MIX(CONTRACTS("<fiber type=\"angles\"><theta>90</theta></fiber>")), {0, 1, 0}, 0},
+        {MIX(YZX EXPANDS("<theta>90</theta><phi>90</phi>")), {0, 0, 1}, 0},
+        {MIX(CONTRACTS("<phi>0</phi>") EXPANDS("<phi>180</phi>")), {0, 0, -1}, 0},
+        {MIX(CONTRACTS("") EXPANDS("")), {1, 0, 0}, 2},
+        {MIX(YZX CONTRACTS("") EXPANDS("")), {0, 1, 0}, 0},
+        {MIX(YZX CONTRACTS("") EXPANDS(FIBER("3,0,0"))), {0, 1, 0}, 0},
+        {MIX(CONTRACTS(FIBER("0,0,-1")) EXPANDS(FIBER("0,0,2"))), {0, 0, 1}, 0},
+        {MIX(CONTRACTS(YZX) EXPANDS(FIBER("0,1,0"))), {0, 1, 0}, 0},
+        {MIX(YZX CONTRACTS(YZX) EXPANDS(FIBER("0,1,0"))), {0, 0, 1}, 0},
+    };
+    for (size_t i = 0; i < sizeof decks / sizeof *decks; i++) {
+        lar_model *model = read_deck(decks[i].text);
+        const double *a = lar_model_fibre(model, 1);
+        for (int k = 0; k < 3; k++)
+            if (fabs(a[k] - decks[i].way[k]) > 1e-12)
+                fail_msg("deck %zu: %g %g %g", i, a[0], a[1], a[2]);
+        assert_int_equal(notices_with(model, "it is x, as in FEBio"), decks[i].notices);
+        assert_int_equal(notices_with(model, "known"), 0);
+        lar_model_destroy(model);
+    }
+    static const char *const apart[] = {
+        MIX(CONTRACTS(FIBER("0,1,0")) EXPANDS("")),     MIX(CONTRACTS("") EXPANDS(FIBER("0,1,0"))),
+        MIX(YZX CONTRACTS("") EXPANDS(FIBER("0,1,0"))), MIX(CONTRACTS("") EXPANDS(YZX)),
+        MIX(CONTRACTS(FIBER("1,1e-5,0")) EXPANDS("")),
+    };
+    for (size_t i = 0; i < sizeof apart / sizeof *apart; i++)
+        expect_failure(apart[i], LAR_ERROR_UNSUPPORTED, 5,
+                       "'prescribed uniaxial active contraction' acts along another direction than "
+                       "'fiber-exp-pow' (line 5)");
+    expect_failure(MIX(CONTRACTS("<theta>1</theta>" FIBER("1,0,0"))), LAR_ERROR_FORMAT, 5,
+                   "stand beside <fiber>");
+    expect_failure(MIX(EXPANDS("<phi>1</phi>" FIBER("1,0,0"))), LAR_ERROR_FORMAT, 5,
+                   "stand beside <fiber>");
+}
+
 /* ---- version 2.5 ----------------------------------------------------------------------------- */
 
 #define OLD(boundary, rest)                                                                        \
@@ -240,6 +349,46 @@ static void old_decks_are_read(void **state) {
     lar_model_destroy(model);
 }
 
+/* Initial velocities of all forms, along one axis too; and curves that a condition names. */
+static void old_words_are_read(void **state) {
+    (void)state;
+    lar_model *model = read_deck(
+        OLD("<fix bc=\"x\" node_set=\"wall\" type=\"odd\"/>"
+            "<prescribe bc=\"x\" node_set=\"tip\" type=\"relative\" lc=\"1\"><scale>3</scale>"
+            "<value>2</value></prescribe>",
+            "<Loads><nodal_load bc=\"y\" node_set=\"tip\" lc=\"1\"><scale>4</scale></nodal_load>"
+            "</Loads><Initial><velocity node_set=\"wall\"><value>1,2,3</value></velocity>"
+            "<init bc=\"vy\" node_set=\"tip\"><value>4</value></init>"
+            "<init bc=\"vx\" node_set=\"wall\"><value>-1</value></init></Initial>" OLD_CONTROL
+                OLD_CURVE));
+    assert_true(model->move[0].by == 6 && model->load[0].force[1] == 4);
+    assert_int_equal(model->move[0].curve, model->load[0].curve);
+    assert_true(lar_curve_value(&model->curve[model->load[0].curve], 0.25) == 1.5);
+    assert_int_equal(model->initial_count, 2);
+    const double(*v)[3] = &model->initial[0].velocity;
+    assert_true((*v)[0] == -1 && (*v)[1] == 2 && model->initial[0].nodes.count == 2);
+    assert_true(model->initial[1].velocity[1] == 4 && model->initial[1].velocity[0] == 0);
+    assert_int_equal(notices_with(model, "attribute type of <fix> is not known"), 1);
+    assert_int_equal(notices_with(model, "attribute type of <prescribe> is not known"), 1);
+    assert_int_equal(notices_with(model, "known"), 2);
+    lar_model_destroy(model);
+    expect_failure(OLD("", "<Initial><init bc=\"x\" node_set=\"tip\"><value>1</value></init>"
+                           "</Initial>" OLD_CONTROL),
+                   LAR_ERROR_UNSUPPORTED, 13, "'x' is not one of vx, vy, vz");
+    expect_failure(
+        OLD("", "<Initial><velocity node_set=\"@part:\"><value>1,2,3</value></velocity></Initial>"),
+        LAR_ERROR_FORMAT, 13, "element set ''");
+    expect_failure(OLD("",
+                       "<Initial><velocity node_set=\"@surface:s\"><value>1,2,3</value></velocity>"
+                       "</Initial>"),
+                   LAR_ERROR_FORMAT, 13, "<velocity> names the surface 's'");
+    expect_failure(OLD("<prescribe bc=\"x\" node_set=\"tip\"><scale>1</scale></prescribe>\n"
+                       "<prescribe bc=\"x\" node_set=\"tip\"><scale>2</scale></prescribe>",
+                       OLD_CONTROL),
+                   LAR_ERROR_MODEL, 13,
+                   "<prescribe> moves node 9 along x, which <prescribe> in line 12");
+}
+
 /* Lines stay those of the file. */
 static void old_decks_that_are_refused(void **state) {
     (void)state;
@@ -256,9 +405,15 @@ static void old_decks_that_are_refused(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(mixtures_may_be_viscous),    cmocka_unit_test(moduli_and_densities_add_up),
-        cmocka_unit_test(mixtures_that_are_refused),  cmocka_unit_test(directions_turn),
-        cmocka_unit_test(rays_that_are_none),         cmocka_unit_test(old_decks_are_read),
+        cmocka_unit_test(mixtures_may_be_viscous),
+        cmocka_unit_test(moduli_and_densities_add_up),
+        cmocka_unit_test(augmented_materials_keep_their_volume),
+        cmocka_unit_test(mixtures_that_are_refused),
+        cmocka_unit_test(directions_turn),
+        cmocka_unit_test(directions_belong_to_parts),
+        cmocka_unit_test(rays_that_are_none),
+        cmocka_unit_test(old_decks_are_read),
+        cmocka_unit_test(old_words_are_read),
         cmocka_unit_test(old_decks_that_are_refused),
     };
     return cmocka_run_group_tests_name("feb_mixtures", tests, NULL, NULL);

@@ -1,52 +1,49 @@
-/* FEBio decks: <Boundary>, <Loads>, <Initial>. See feb.h.
+/* FEBio decks: <Boundary>, <Initial>, and what conditions of all kinds have. See feb.h.
  *
- * Signs, as FEBio has them. A pressure p gives the traction -p n, with n the normal that the
- * order of the face's corners makes (right-hand rule): positive pushes against it. A body load b
- * gives the force -rho b per volume: a deck writes z = 9.81 for gravity that pulls downwards, so
- * Lariat's gravity is -b.
+ * Each axis of a node has one holder. Conditions that say the same twice are one; others are
+ * refused here, where their lines are known.
  */
 #include "model/format/feb/feb.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/vector.h"
-
-/* The child that every condition of this kind must have. */
-static lar_status need_child(lar_feb *feb, const xmlNode *parent, const char *name,
-                             const xmlNode **child) {
+lar_status lar_feb_need_child(lar_feb *feb, const xmlNode *parent, const char *name,
+                              const xmlNode **child) {
     *child = lar_feb_child(parent, name);
     if (*child) return LAR_OK;
     return lar_feb_fail(feb, parent, LAR_ERROR_FORMAT, "<%s> has no <%s>; add it",
-                        (const char *)parent->name, name);
+                        lar_feb_name(parent), name);
 }
 
-/* Nodes of the attribute node_set. *list is owned by the caller, also after a failure. */
-static lar_status read_node_set(lar_feb *feb, const xmlNode *at, lar_node_list *list) {
+lar_status lar_feb_nodes_of(lar_feb *feb, const xmlNode *at, lar_node_list *list) {
     const char *reference;
     lar_status status = lar_feb_need_attribute(feb, at, "node_set", &reference);
     return status ? status : lar_feb_node_list(feb, at, reference, list);
 }
 
-/* "x", "y" or "z" as an axis number. */
-static lar_status parse_axis(lar_feb *feb, const xmlNode *at, lar_span word, int *axis) {
-    static const char *const names[] = {"x", "y", "z"};
+lar_status lar_feb_axis_of(lar_feb *feb, const xmlNode *at, lar_span word, int *axis) {
+    static const char *const names[] = {"x", "y", "z", "sx", "sy", "sz", "u", "v", "w"};
     word = lar_span_trim(word);
-    for (*axis = 0; *axis < 3; ++*axis)
-        if (lar_span_equal(word, names[*axis])) return LAR_OK;
+    for (*axis = 0; *axis < 9; ++*axis)
+        if (lar_span_equal(word, names[*axis]))
+            return *axis < 3 ? LAR_OK
+                             : lar_feb_notice(feb, at,
+                                              "%s is a degree of freedom of shells, which solids "
+                                              "do not have; it was left out",
+                                              names[*axis]);
     return lar_feb_fail(feb, at, LAR_ERROR_UNSUPPORTED,
                         "the degree of freedom '%.*s' is not one of x, y, z, all that a solid has; "
                         "remove it",
                         (int)(word.length < 40 ? word.length : 40), word.at);
 }
 
-static lar_status refuse_type(lar_feb *feb, const xmlNode *at, const char *known) {
+lar_status lar_feb_refuse_type(lar_feb *feb, const xmlNode *at, const char *known) {
     const char *type = lar_feb_attribute(feb, at, "type");
     return lar_feb_fail(feb, at, LAR_ERROR_UNSUPPORTED,
                         "<%s> of type '%.60s' is not read and would change the answer; Lariat "
                         "reads %s",
-                        (const char *)at->name, type ? type : "", known);
+                        lar_feb_name(at), type ? type : "", known);
 }
 
 static lar_status refuse_flag(lar_feb *feb, const xmlNode *at, const char *name) {
@@ -57,16 +54,80 @@ static lar_status refuse_flag(lar_feb *feb, const xmlNode *at, const char *name)
                         "<%s> other than 0 is not read; set it to 0", name);
 }
 
-/* Refuses flags that ask for something else than FEBio's default, and a size in two places, which
- * versions of FEBio multiply or do not. */
-static lar_status refuse_extras(lar_feb *feb, const xmlNode *at) {
-    const xmlNode *scale = lar_feb_child(at, "scale");
-    if (scale && lar_feb_child(at, "value"))
-        return lar_feb_fail(feb, scale, LAR_ERROR_UNSUPPORTED,
-                            "<scale> stands beside <value>; write their product into one of them "
-                            "and remove the other");
-    lar_status status = refuse_flag(feb, at, "relative");
+/* A run begins at rest and has one step, so that what is relative to the step before is not. */
+lar_status lar_feb_check_flags(lar_feb *feb, const xmlNode *at) {
+    bool ignored;
+    lar_status status = lar_feb_flag(feb, at, "relative", false, &ignored);
     return status ? status : refuse_flag(feb, at, "shell_bottom");
+}
+
+lar_status lar_feb_scaled(lar_feb *feb, const xmlNode *at, const char *name, double *value,
+                          int count, int *curve) {
+    const xmlNode *size = lar_feb_child(at, name), *scale = lar_feb_child(at, "scale");
+    if (!size && count == 1) size = scale;
+    if (!size) return lar_feb_need_child(feb, at, name, &size);
+    if (size == scale) scale = NULL;
+    const bool scale_follows = scale && lar_feb_attribute(feb, scale, "lc");
+    double factor = 1;
+    lar_status status = LAR_OK;
+    if (scale_follows && lar_feb_attribute(feb, size, "lc"))
+        return lar_feb_fail(feb, scale, LAR_ERROR_UNSUPPORTED,
+                            "<scale> and <%s> follow a load curve each; Lariat's conditions have "
+                            "one, join the two",
+                            name);
+    status = lar_feb_curve_of(feb, size, scale_follows ? NULL : curve);
+    if (!status && scale) status = lar_feb_curve_of(feb, scale, scale_follows ? curve : NULL);
+    if (!status && scale) status = lar_feb_doubles(feb, scale, &factor, 1);
+    if (!status) status = lar_feb_doubles(feb, size, value, count);
+    for (int i = 0; i < count && !status; i++) value[i] *= factor;
+    return status;
+}
+
+/* ---- holders --------------------------------------------------------------------------------- */
+
+static bool is_same(const lar_model *model, const lar_feb_holder *other, const lar_move *move) {
+    if (!move || other->move < 0) return !move && other->move < 0;
+    const lar_move *first = &model->move[other->move];
+    return first->by == move->by && first->curve == move->curve;
+}
+
+static lar_status refuse_holder(lar_feb *feb, const xmlNode *at, const lar_feb_holder *other,
+                                int32_t node, int axis, bool moves) {
+    const char *name = lar_feb_attribute(feb, other->at, "name");
+    return lar_feb_fail(feb, at, LAR_ERROR_MODEL,
+                        "<%s> %s node %lld along %c, which <%s>%s%.60s%s in line %d %s; leave one "
+                        "of the two",
+                        lar_feb_name(at), moves ? "moves" : "fixes",
+                        (long long)feb->mesh->node_id[node], "xyz"[axis], lar_feb_name(other->at),
+                        name ? " '" : "", name ? name : "", name ? "'" : "",
+                        lar_feb_line(other->at), other->move < 0 ? "fixes" : "moves");
+}
+
+/* Writes down who holds the nodes along these axes; `move` NULL: they are fixed. Nodes that move in
+ * the same way already leave the list. */
+static lar_status hold(lar_feb *feb, const xmlNode *at, unsigned axes, lar_node_list *nodes,
+                       const lar_move *move) {
+    if (!feb->held) feb->held = lar_calloc(3 * (size_t)feb->mesh->node_count, sizeof *feb->held);
+    if (!feb->held || !LAR_GROW(feb->holder, feb->holder_room, feb->holder_count))
+        return lar_feb_no_memory(feb, "the supports");
+    feb->holder[feb->holder_count++] = (lar_feb_holder){at, move ? feb->model->move_count : -1};
+    int32_t count = nodes->count;
+    nodes->count = 0;
+    for (int32_t n = 0; n < count; n++) {
+        const int32_t node = nodes->node[n];
+        bool once = true;
+        for (int axis = 0; axis < 3; axis++) {
+            if (!(axes >> axis & 1)) continue;
+            int32_t *holder = &feb->held[3 * (size_t)node + (size_t)axis];
+            const lar_feb_holder *other = *holder ? &feb->holder[*holder - 1] : NULL;
+            if (other && !is_same(feb->model, other, move))
+                return refuse_holder(feb, at, other, node, axis, move != NULL);
+            if (other && move) once = false;
+            if (!other) *holder = feb->holder_count;
+        }
+        if (once) nodes->node[nodes->count++] = node;
+    }
+    return LAR_OK;
 }
 
 /* ---- boundary -------------------------------------------------------------------------------- */
@@ -92,8 +153,8 @@ static lar_status read_axis_list(lar_feb *feb, const xmlNode *dofs, unsigned *ax
     *axes = 0;
     while (!status && lar_feb_list_next(&list, &word)) {
         int axis;
-        status = parse_axis(feb, dofs, word, &axis);
-        if (!status) *axes |= 1u << axis;
+        status = lar_feb_axis_of(feb, dofs, word, &axis);
+        if (!status && axis < 3) *axes |= 1u << axis;
     }
     return status;
 }
@@ -109,14 +170,15 @@ static lar_status read_fix(lar_feb *feb, const xmlNode *at) {
         return lar_feb_fail(feb, at, LAR_ERROR_FORMAT,
                             "<%s> does not say which axes it holds; add <x_dof>, <y_dof> or "
                             "<z_dof> with 1",
-                            (const char *)at->name);
+                            lar_feb_name(at));
     if (!status) status = lar_feb_notice_others(feb, at, dofs ? "dofs" : known);
-    if (!status) status = read_node_set(feb, at, &nodes);
+    if (!status) status = lar_feb_nodes_of(feb, at, &nodes);
     if (!status && (axes == 0 || nodes.count == 0)) {
         free(nodes.node);
-        return lar_feb_notice(feb, at, "<%s> holds no %s and was left out", (const char *)at->name,
+        return lar_feb_notice(feb, at, "<%s> holds no %s and was left out", lar_feb_name(at),
                               axes ? "node" : "axis");
     }
+    if (!status) status = hold(feb, at, axes, &nodes, NULL);
     lar_fix *fix = status ? NULL : LAR_MODEL_APPEND(feb->model, fix);
     if (!status && !fix) status = lar_feb_no_memory(feb, "the supports");
     if (status) {
@@ -141,29 +203,30 @@ static lar_status notice_at_once(lar_feb *feb, const xmlNode *value, double by, 
 static lar_status read_move(lar_feb *feb, const xmlNode *at) {
     static const char known[] = "dof value scale relative shell_bottom";
     const xmlNode *dof, *value = lar_feb_child(at, "value");
-    int axis = 0, curve = 0;
-    double by = 0.0;
-    lar_node_list nodes = {0};
-    lar_status status = need_child(feb, at, "dof", &dof);
-    if (!status) status = parse_axis(feb, dof, lar_feb_text(feb, dof), &axis);
-    if (!status && !value) value = lar_feb_child(at, "scale");
-    if (!status && !value) status = need_child(feb, at, "value", &value);
-    if (!status) status = lar_feb_curve_of(feb, value, &curve);
-    if (!status) status = lar_feb_doubles(feb, value, &by, 1);
-    if (!status) status = notice_at_once(feb, value, by, curve);
-    if (!status) status = refuse_extras(feb, at);
+    int axis = 0;
+    lar_move move = {0};
+    lar_status status = lar_feb_need_child(feb, at, "dof", &dof);
+    if (!status) status = lar_feb_axis_of(feb, dof, lar_feb_text(feb, dof), &axis);
+    if (!status && axis > 2) return LAR_OK;
+    move.axes = 1u << axis;
+    if (!status) status = lar_feb_scaled(feb, at, "value", &move.by, 1, &move.curve);
+    if (!status)
+        status =
+            notice_at_once(feb, value ? value : lar_feb_child(at, "scale"), move.by, move.curve);
+    if (!status) status = lar_feb_check_flags(feb, at);
     if (!status) status = lar_feb_notice_others(feb, at, known);
-    if (!status) status = read_node_set(feb, at, &nodes);
-    lar_move *move = status || nodes.count == 0 ? NULL : LAR_MODEL_APPEND(feb->model, move);
-    if (move) {
-        *move = (lar_move){nodes, 1u << axis, by, curve};
+    if (!status) status = lar_feb_nodes_of(feb, at, &move.nodes);
+    const bool none = move.nodes.count == 0;
+    if (!status && none)
+        status = lar_feb_notice(feb, at, "<%s> holds no node and was left out", lar_feb_name(at));
+    if (!status && !none) status = hold(feb, at, move.axes, &move.nodes, &move);
+    lar_move *to = status || move.nodes.count == 0 ? NULL : LAR_MODEL_APPEND(feb->model, move);
+    if (to) {
+        *to = move;
         return LAR_OK;
     }
-    free(nodes.node);
-    if (status) return status;
-    return nodes.count ? lar_feb_no_memory(feb, "the supports")
-                       : lar_feb_notice(feb, at, "<%s> holds no node and was left out",
-                                        (const char *)at->name);
+    free(move.nodes.node);
+    return status || move.nodes.count == 0 ? status : lar_feb_no_memory(feb, "the supports");
 }
 
 static lar_status read_bc(lar_feb *feb, const xmlNode *bc) {
@@ -173,16 +236,19 @@ static lar_status read_bc(lar_feb *feb, const xmlNode *bc) {
         return lar_feb_fail(feb, bc, LAR_ERROR_UNSUPPORTED,
                             "<%s> in <Boundary> is not read and would change the answer; Lariat "
                             "reads <bc>",
-                            (const char *)bc->name);
+                            lar_feb_name(bc));
     const char *type;
     lar_status status = lar_feb_need_attribute(feb, bc, "type", &type);
     if (status) return status;
     if (strcmp(type, "zero displacement") == 0 || strcmp(type, "fixed displacement") == 0 ||
         strcmp(type, "fix") == 0)
         return read_fix(feb, bc);
+    if (strcmp(type, "zero shell displacement") == 0 || strcmp(type, "zero rotation") == 0)
+        return lar_feb_notice(feb, bc,
+                              "a %s holds shells, of which there are none; it was left out", type);
     if (strcmp(type, "prescribed displacement") == 0 || strcmp(type, "prescribe") == 0)
         return read_move(feb, bc);
-    return refuse_type(feb, bc, known);
+    return lar_feb_refuse_type(feb, bc, known);
 }
 
 lar_status lar_feb_read_boundary(lar_feb *feb, const xmlNode *section) {
@@ -192,343 +258,84 @@ lar_status lar_feb_read_boundary(lar_feb *feb, const xmlNode *section) {
     return status;
 }
 
-/* ---- loads ----------------------------------------------------------------------------------- */
-
-/* The force vector and curve of a nodal load of either form. */
-static lar_status read_nodal_force(lar_feb *feb, const xmlNode *at, const char *type,
-                                   double force[3], int *curve) {
-    const xmlNode *value, *dof;
-    lar_status status;
-    if (strcmp(type, "nodal_force") == 0) {
-        status = need_child(feb, at, "value", &value);
-        if (!status) status = lar_feb_curve_of(feb, value, curve);
-        if (!status) status = lar_feb_doubles(feb, value, force, 3);
-        return status;
-    }
-    int axis = 0;
-    status = need_child(feb, at, "dof", &dof);
-    if (!status) status = parse_axis(feb, dof, lar_feb_text(feb, dof), &axis);
-    if (!status) status = need_child(feb, at, "scale", &value);
-    if (!status) status = lar_feb_curve_of(feb, value, curve);
-    if (!status) status = lar_feb_doubles(feb, value, &force[axis], 1);
-    return status;
-}
-
-static lar_status read_nodal_load(lar_feb *feb, const xmlNode *at) {
-    static const char known[] = "value dof scale relative shell_bottom";
-    const char *type;
-    lar_status status = lar_feb_need_attribute(feb, at, "type", &type);
-    if (status) return status;
-    if (strcmp(type, "nodal_force") != 0 && strcmp(type, "nodal_load") != 0)
-        return refuse_type(feb, at, "nodal_force and nodal_load");
-    lar_nodal_load entry = {0};
-    status = read_nodal_force(feb, at, type, entry.force, &entry.curve);
-    if (!status) status = refuse_extras(feb, at);
-    if (!status) status = lar_feb_notice_others(feb, at, known);
-    if (!status) status = read_node_set(feb, at, &entry.nodes);
-    lar_nodal_load *load = status ? NULL : LAR_MODEL_APPEND(feb->model, load);
-    if (!status && !load) status = lar_feb_no_memory(feb, "the loads");
-    if (status) {
-        free(entry.nodes.node);
-        return status;
-    }
-    *load = entry;
-    return LAR_OK;
-}
-
-/* +1 when the corners go round the face as lar_face_node does (normal outwards), -1 when the
- * other way, 0 when they do not go round it. */
-static int winding(const lar_mesh *mesh, int32_t face, const int64_t corner[4]) {
-    const int32_t *element = mesh->element[face / 6];
-    int64_t own[4];
-    for (int a = 0; a < 4; a++) own[a] = mesh->node_id[element[lar_face_node[face % 6][a]]];
-    for (int a = 0; a < 4; a++) {
-        if (own[a] != corner[0]) continue;
-        if (own[(a + 2) % 4] != corner[2]) return 0;
-        if (own[(a + 1) % 4] == corner[1] && own[(a + 3) % 4] == corner[3]) return 1;
-        if (own[(a + 3) % 4] == corner[1] && own[(a + 1) % 4] == corner[3]) return -1;
-    }
-    return 0;
-}
-
-/* Sorts the faces of a surface by winding: those outwards to the front of `face`, the others
- * behind. The mesh's set has the faces in the order of the file. */
-static lar_status split_by_winding(lar_feb *feb, const xmlNode *surface, const lar_set *set,
-                                   int32_t *face, int32_t *outward_count) {
-    int32_t i = 0, front = 0, back = set->count;
-    for (xmlNode *quad = lar_feb_first(surface); quad; quad = lar_feb_next(quad), i++) {
-        int64_t corner[4];
-        lar_status status = lar_feb_ids(feb, quad, corner, 4);
-        if (status) return status;
-        int way = i < set->count ? winding(feb->mesh, set->index[i], corner) : 0;
-        if (way == 0)
-            return lar_feb_fail(feb, quad, LAR_ERROR_FORMAT,
-                                "this face stands twice in its surface, or its corners do not go "
-                                "round it; correct the surface");
-        face[way > 0 ? front++ : --back] = set->index[i];
-    }
-    *outward_count = front;
-    return LAR_OK;
-}
-
-/* Appends `count` faces with one pressure; copies them. */
-static lar_status add_pressure(lar_feb *feb, const int32_t *face, int32_t count, double pressure,
-                               int curve) {
-    if (count == 0) return LAR_OK;
-    int32_t *copy = lar_calloc((size_t)count, sizeof *copy);
-    lar_pressure_load *load = copy ? LAR_MODEL_APPEND(feb->model, pressure) : NULL;
-    if (!load) {
-        free(copy);
-        return lar_feb_no_memory(feb, "the pressures");
-    }
-    memcpy(copy, face, (size_t)count * sizeof *copy);
-    *load = (lar_pressure_load){count, copy, pressure, curve};
-    return LAR_OK;
-}
-
-static lar_status no_surface(lar_feb *feb, const xmlNode *at, const char *name) {
-    return lar_feb_fail(feb, at, LAR_ERROR_FORMAT,
-                        "<surface_load> names the surface '%.100s', which the mesh does not "
-                        "define; define it or correct the name",
-                        name);
-}
-
-static lar_status add_pressures(lar_feb *feb, const xmlNode *at, const char *name, double pressure,
-                                int curve) {
-    const lar_set *set = lar_mesh_find_set(feb->mesh, name, LAR_SET_FACES);
-    const xmlNode *surface = lar_feb_find_surface(feb, name);
-    if (!set || !surface) return no_surface(feb, at, name);
-    int32_t *face = lar_calloc((size_t)set->count, sizeof *face), outward = 0;
-    if (!face) return lar_feb_no_memory(feb, "the pressures");
-    lar_status status = split_by_winding(feb, surface, set, face, &outward);
-    if (!status) status = add_pressure(feb, face, outward, pressure, curve);
-    if (!status) status = add_pressure(feb, face + outward, set->count - outward, -pressure, curve);
-    if (!status && outward < set->count)
-        status = lar_feb_notice(feb, surface,
-                                "%d faces of surface '%.100s' are listed with their normals into "
-                                "the body; their pressure changes sign, as in FEBio",
-                                (int)(set->count - outward), name);
-    free(face);
-    return status;
-}
-
-static lar_status read_pressure(lar_feb *feb, const xmlNode *at, const char *surface) {
-    static const char known[] = "pressure linear symmetric_stiffness shell_bottom";
-    const xmlNode *value;
-    int curve = 0;
-    double pressure = 0.0;
-    bool linear = false;
-    lar_status status = need_child(feb, at, "pressure", &value);
-    if (!status) status = lar_feb_curve_of(feb, value, &curve);
-    if (!status) status = lar_feb_doubles(feb, value, &pressure, 1);
-    if (!status) status = refuse_extras(feb, at);
-    if (!status) status = lar_feb_notice_others(feb, at, known);
-    if (!status) status = lar_feb_flag(feb, at, "linear", false, &linear);
-    if (!status && linear)
-        status = lar_feb_notice(feb, lar_feb_child(at, "linear"),
-                                "<linear> is left out: the pressure follows the deformed faces");
-    return status ? status : add_pressures(feb, at, surface, pressure, curve);
-}
-
-/* A face's area at rest, shared among its corners as by the element's shape functions: two by two
- * Gauss points are exact where the face is flat. */
-static void share_area(const lar_mesh *mesh, int32_t face, double *area) {
-    static const double at[2] = {-0.57735026918962576, 0.57735026918962576};
-    static const int sign[4][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
-    const int32_t *element = mesh->element[face / 6];
-    for (int point = 0; point < 4; point++) {
-        double r = at[point % 2], s = at[point / 2], along[2][3] = {{0}}, normal[3];
-        for (int a = 0; a < 4; a++)
-            for (int i = 0; i < 3; i++) {
-                double x = 0.25 * mesh->position[element[lar_face_node[face % 6][a]]][i];
-                along[0][i] += sign[a][0] * (1 + sign[a][1] * s) * x;
-                along[1][i] += sign[a][1] * (1 + sign[a][0] * r) * x;
-            }
-        lar_cross(along[0], along[1], normal);
-        for (int a = 0; a < 4; a++)
-            area[element[lar_face_node[face % 6][a]]] +=
-                0.25 * (1 + sign[a][0] * r) * (1 + sign[a][1] * s) * sqrt(lar_dot(normal, normal));
-    }
-}
-
-static lar_status add_node_load(lar_feb *feb, int32_t node, double area, const double traction[3],
-                                int curve) {
-    int32_t *only = lar_calloc(1, sizeof *only);
-    lar_nodal_load *load = only ? LAR_MODEL_APPEND(feb->model, load) : NULL;
-    if (!load) {
-        free(only);
-        return lar_feb_no_memory(feb, "the loads");
-    }
-    *only = node;
-    *load = (lar_nodal_load){.nodes = {1, only}, .curve = curve};
-    for (int i = 0; i < 3; i++) load->force[i] = area * traction[i];
-    return LAR_OK;
-}
-
-static lar_status add_traction(lar_feb *feb, const xmlNode *at, const char *name,
-                               const double traction[3], int curve) {
-    const lar_mesh *mesh = feb->mesh;
-    const lar_set *set = lar_mesh_find_set(mesh, name, LAR_SET_FACES);
-    if (!set) return no_surface(feb, at, name);
-    double *area = lar_calloc((size_t)mesh->node_count, sizeof *area);
-    if (!area) return lar_feb_no_memory(feb, "the loads");
-    lar_status status = LAR_OK;
-    for (int32_t i = 0; i < set->count; i++) share_area(mesh, set->index[i], area);
-    for (int32_t n = 0; n < mesh->node_count && !status; n++)
-        if (area[n] > 0) status = add_node_load(feb, n, area[n], traction, curve);
-    free(area);
-    return status;
-}
-
-/* A dead load per area at rest, `traction` times `scale`: FEBio's with `linear`. */
-static lar_status read_traction(lar_feb *feb, const xmlNode *at, const char *surface) {
-    static const char known[] = "traction scale linear shell_bottom";
-    const xmlNode *value, *scale = lar_feb_child(at, "scale");
-    double traction[3], factor = 1;
-    int curve = 0;
-    bool linear;
-    lar_status status = lar_feb_flag(feb, at, "linear", false, &linear);
-    if (!status && !linear)
-        status = lar_feb_notice(feb, at,
-                                "the traction acts on the area at rest, as with <linear>1</linear>;"
-                                " FEBio's goes with the area of the deformed faces");
-    if (!status) status = need_child(feb, at, "traction", &value);
-    if (!status) status = lar_feb_doubles(feb, value, traction, 3);
-    if (!status && scale) status = lar_feb_doubles(feb, scale, &factor, 1);
-    if (!status && scale && lar_feb_attribute(feb, scale, "lc")) {
-        if (lar_feb_attribute(feb, value, "lc"))
-            return lar_feb_fail(feb, scale, LAR_ERROR_UNSUPPORTED,
-                                "<scale> and <traction> follow a load curve each; Lariat's loads "
-                                "have one, join the two");
-        value = scale;
-    }
-    if (!status) status = lar_feb_curve_of(feb, value, &curve);
-    if (!status) status = refuse_extras(feb, at);
-    if (!status) status = lar_feb_notice_others(feb, at, known);
-    for (int i = 0; i < 3; i++) traction[i] *= factor;
-    return status ? status : add_traction(feb, at, surface, traction, curve);
-}
-
-static lar_status read_surface_load(lar_feb *feb, const xmlNode *at) {
-    const char *type, *surface;
-    lar_status status = lar_feb_need_attribute(feb, at, "type", &type);
-    if (status) return status;
-    bool pressure = strcmp(type, "pressure") == 0;
-    if (!pressure && strcmp(type, "traction") != 0)
-        return refuse_type(feb, at, "pressure and traction");
-    status = lar_feb_need_attribute(feb, at, "surface", &surface);
-    if (status) return status;
-    return pressure ? read_pressure(feb, at, surface) : read_traction(feb, at, surface);
-}
-
-/* Adds an acceleration -value on one axis. */
-static lar_status add_gravity(lar_feb *feb, const xmlNode *at, int axis, double value, int curve) {
-    lar_model *model = feb->model;
-    if (value == 0.0 && model->gravity[axis] != 0.0) return LAR_OK;
-    if (model->gravity[axis] != 0.0 && model->gravity_curve[axis] != curve)
-        return lar_feb_fail(feb, at, LAR_ERROR_UNSUPPORTED,
-                            "a second body load acts along %c with another load curve; join the "
-                            "two into one",
-                            "xyz"[axis]);
-    model->gravity[axis] -= value;
-    model->gravity_curve[axis] = curve;
-    return LAR_OK;
-}
-
-/* <x>, <y>, <z> with a curve each, or <force> (version 4, "body force") with one. */
-static lar_status read_body_values(lar_feb *feb, const xmlNode *at) {
-    static const char *const names[] = {"x", "y", "z"};
-    const xmlNode *vector = lar_feb_child(at, "force");
-    double value[3] = {0};
-    int curve = 0;
-    lar_status status = LAR_OK;
-    if (vector) {
-        status = lar_feb_curve_of(feb, vector, &curve);
-        if (!status) status = lar_feb_doubles(feb, vector, value, 3);
-        for (int i = 0; i < 3 && !status; i++)
-            status = add_gravity(feb, vector, i, value[i], curve);
-        return status;
-    }
-    int found = 0;
-    for (int i = 0; i < 3 && !status; i++) {
-        const xmlNode *child = lar_feb_child(at, names[i]);
-        if (!child) continue;
-        found++;
-        status = lar_feb_curve_of(feb, child, &curve);
-        if (!status) status = lar_feb_doubles(feb, child, value, 1);
-        if (!status) status = add_gravity(feb, child, i, value[0], curve);
-    }
-    if (!status && !found)
-        status = lar_feb_fail(feb, at, LAR_ERROR_FORMAT,
-                              "<body_load> has neither <x>, <y>, <z> nor <force>; add them");
-    return status;
-}
-
-static lar_status read_body_load(lar_feb *feb, const xmlNode *at) {
-    static const char known[] = "x y z force";
-    const char *type, *part = lar_feb_attribute(feb, at, "elem_set");
-    bool whole = true;
-    lar_status status = lar_feb_need_attribute(feb, at, "type", &type);
-    if (status) return status;
-    if (strcmp(type, "const") != 0 && strcmp(type, "gravity") != 0 &&
-        strcmp(type, "body force") != 0)
-        return refuse_type(feb, at, "const, gravity and body force");
-    status = lar_feb_notice_others(feb, at, known);
-    if (!status && part && *part) status = lar_feb_is_whole_mesh(feb, at, part, &whole);
-    if (!status && !whole)
-        status = lar_feb_fail(feb, at, LAR_ERROR_UNSUPPORTED,
-                              "the body load acts on '%.100s' only; Lariat's gravity acts on the "
-                              "whole model",
-                              part);
-    return status ? status : read_body_values(feb, at);
-}
-
-lar_status lar_feb_read_loads(lar_feb *feb, const xmlNode *section) {
-    lar_status status = LAR_OK;
-    for (xmlNode *load = lar_feb_first(section); load && !status; load = lar_feb_next(load)) {
-        if (lar_feb_is(load, "nodal_load"))
-            status = read_nodal_load(feb, load);
-        else if (lar_feb_is(load, "surface_load"))
-            status = read_surface_load(feb, load);
-        else if (lar_feb_is(load, "body_load"))
-            status = read_body_load(feb, load);
-        else
-            status = lar_feb_fail(feb, load, LAR_ERROR_UNSUPPORTED,
-                                  "<%s> in <Loads> is not read and would change the answer; Lariat "
-                                  "reads nodal_load, surface_load and body_load",
-                                  (const char *)load->name);
-    }
-    return status;
-}
-
 /* ---- initial --------------------------------------------------------------------------------- */
 
+/* How many nodes two lists, both ascending, share. */
+static int32_t count_shared(const lar_node_list *a, const lar_node_list *b) {
+    int32_t shared = 0;
+    for (int32_t i = 0, k = 0; i < a->count && k < b->count;) {
+        const int32_t first = a->node[i], second = b->node[k];
+        shared += first == second;
+        i += first <= second;
+        k += second <= first;
+    }
+    return shared;
+}
+
+/* "init_dof" is a velocity along one axis. Of a node's entries the last one counts, so those of the
+ * same nodes become one. */
+static lar_status join_initial(lar_feb *feb, const xmlNode *ic, const lar_initial_velocity *entry,
+                               int axis, bool *joined) {
+    for (int i = feb->model->initial_count; i > 0 && !*joined; i--) {
+        lar_initial_velocity *other = &feb->model->initial[i - 1];
+        const int32_t shared = count_shared(&other->nodes, &entry->nodes);
+        if (shared == 0) continue;
+        if (shared != other->nodes.count || shared != entry->nodes.count)
+            return lar_feb_fail(feb, ic, LAR_ERROR_UNSUPPORTED,
+                                "some of these nodes have an initial velocity already, along "
+                                "other axes; give all of them to the same nodes");
+        other->velocity[axis] = entry->velocity[axis];
+        *joined = true;
+    }
+    return LAR_OK;
+}
+
+/* "vx", "vy" or "vz" in <dof> as an axis number. */
+static lar_status velocity_axis(lar_feb *feb, const xmlNode *ic, int *axis) {
+    static const char names[] = "xyz";
+    const xmlNode *dof;
+    lar_status status = lar_feb_need_child(feb, ic, "dof", &dof);
+    if (status) return status;
+    lar_span word = lar_feb_text(feb, dof);
+    const char *found = word.length == 2 && *word.at == 'v' ? strchr(names, word.at[1]) : NULL;
+    if (!found)
+        return lar_feb_fail(feb, ic, LAR_ERROR_UNSUPPORTED,
+                            "'%.*s' is not one of vx, vy, vz, all that a run begins with",
+                            (int)(word.length < 40 ? word.length : 40), word.at);
+    *axis = (int)(found - names);
+    return LAR_OK;
+}
+
 static lar_status read_ic(lar_feb *feb, const xmlNode *ic) {
-    static const char known[] = "value";
+    static const char known[] = "value dof";
     const char *type;
     lar_status status = lar_feb_need_attribute(feb, ic, "type", &type);
     if (status) return status;
-    if ((!lar_feb_is(ic, "ic") && !lar_feb_is(ic, "init")) ||
-        (strcmp(type, "velocity") != 0 && strcmp(type, "initial velocity") != 0))
-        return refuse_type(feb, ic, "<ic> of type velocity");
+    const bool one = strcmp(type, "init_dof") == 0;
+    if (!lar_feb_is_any(ic, "ic init") ||
+        (!one && strcmp(type, "velocity") != 0 && strcmp(type, "initial velocity") != 0))
+        return lar_feb_refuse_type(feb, ic, "<ic> of type velocity");
     const xmlNode *value;
     lar_initial_velocity entry = {0};
-    status = need_child(feb, ic, "value", &value);
-    if (!status && (lar_feb_attribute(feb, value, "lc") || lar_feb_attribute(feb, value, "type")))
+    int axis = 0;
+    bool joined = false;
+    status = lar_feb_need_child(feb, ic, "value", &value);
+    if (!status) status = lar_feb_curve_of(feb, value, NULL);
+    if (!status && lar_feb_attribute(feb, value, "lc"))
         status = lar_feb_fail(feb, value, LAR_ERROR_UNSUPPORTED,
-                              "an initial velocity with a curve or a map is not read; give it "
-                              "three numbers");
-    if (!status) status = lar_feb_doubles(feb, value, entry.velocity, 3);
+                              "an initial velocity with a curve is not read; give it numbers");
+    if (!status && one) status = velocity_axis(feb, ic, &axis);
+    if (!status) status = lar_feb_doubles(feb, value, &entry.velocity[axis], one ? 1 : 3);
     if (!status) status = lar_feb_notice_others(feb, ic, known);
-    if (!status) status = read_node_set(feb, ic, &entry.nodes);
-    lar_initial_velocity *initial = status ? NULL : LAR_MODEL_APPEND(feb->model, initial);
-    if (!status && !initial) status = lar_feb_no_memory(feb, "the initial velocities");
-    if (status) {
+    if (!status) status = lar_feb_nodes_of(feb, ic, &entry.nodes);
+    if (!status && one) status = join_initial(feb, ic, &entry, axis, &joined);
+    lar_initial_velocity *initial = status || joined ? NULL : LAR_MODEL_APPEND(feb->model, initial);
+    if (!status && !joined && !initial) status = lar_feb_no_memory(feb, "the initial velocities");
+    if (initial)
+        *initial = entry;
+    else
         free(entry.nodes.node);
-        return status;
-    }
-    *initial = entry;
-    return LAR_OK;
+    return status;
 }
 
 lar_status lar_feb_read_initial(lar_feb *feb, const xmlNode *section) {

@@ -193,9 +193,13 @@ static lar_status make_curve(lar_feb *feb, lar_feb_controller *entry, points *li
     if ((how == SMOOTH && list->count > 2) || (how == SMOOTH_STEP && list->count > 1))
         enough = sample(list, how);
     if (enough && !extend(feb, beyond, how, list, &enough)) {
-        entry->problem = "is extended beyond its points in a way that is not read (CONSTANT is; "
-                         "from time 0 on REPEAT and REPEAT OFFSET, and EXTRAPOLATE of LINEAR); add "
-                         "points up to the end of the run";
+        entry->problem =
+            !(feb->model->duration > 0)
+                ? "goes on beyond its points, and the deck has no duration up to which; give it "
+                  "<time_steps> and <step_size>"
+                : "is extended beyond its points in a way that is not read (CONSTANT is; "
+                  "from time 0 on REPEAT and REPEAT OFFSET, and EXTRAPOLATE of LINEAR); add "
+                  "points up to the end of the run";
         return LAR_OK;
     }
     if (!enough) return lar_feb_no_memory(feb, "a load curve");
@@ -275,6 +279,12 @@ lar_status lar_feb_curve_of(lar_feb *feb, const xmlNode *value, int *curve) {
         return lar_feb_fail(feb, value, LAR_ERROR_UNSUPPORTED,
                             "<%s> is a %.40s, which is not read; give it a number",
                             (const char *)value->name, type);
+    if (lar_feb_attribute(feb, value, "node_data") || lar_feb_attribute(feb, value, "surface_data"))
+        return lar_feb_fail(feb, value, LAR_ERROR_UNSUPPORTED,
+                            "<%s> is a map on %s, which is not read; give it a number",
+                            (const char *)value->name,
+                            lar_feb_attribute(feb, value, "node_data") ? "nodes" : "a surface");
+    if (!curve) return LAR_OK;
     if (!lar_feb_attribute(feb, value, "lc")) return constant_curve(feb, curve);
     int64_t id;
     lar_status status = lar_feb_id_attribute(feb, value, "lc", &id);

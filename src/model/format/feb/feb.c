@@ -186,16 +186,27 @@ static lar_status find_step(lar_feb *feb, const xmlNode **step) {
     return LAR_OK;
 }
 
-/* Domains that are no solids have elements of other types. */
+/* Domains that are no solids have elements of other types. What a domain says of its elements is
+ * left out but for <laugon>, which belongs to the material. */
 static lar_status check_domains(lar_feb *feb) {
     const xmlNode *section = lar_feb_child(feb->root, "MeshDomains");
     xmlNode *domain = section ? lar_feb_first(section) : NULL;
-    for (; domain; domain = lar_feb_next(domain))
+    lar_status status = LAR_OK;
+    for (; domain && !status; domain = lar_feb_next(domain)) {
+        const char *type = lar_feb_attribute(feb, domain, "type");
         if (!lar_feb_is(domain, "SolidDomain"))
             return lar_feb_fail(feb, domain, LAR_ERROR_UNSUPPORTED,
                                 "<%s> is not read; Lariat computes solids",
                                 (const char *)domain->name);
-    return LAR_OK;
+        if (type && strcmp(type, "elastic-solid") != 0 && strcmp(type, "three-field-solid") != 0)
+            status =
+                lar_feb_notice(feb, domain,
+                               "the domain type '%.60s' was left out; Lariat computes with its "
+                               "own elements",
+                               type);
+        if (!status) status = lar_feb_notice_others(feb, domain, "");
+    }
+    return status;
 }
 
 /* ---- the whole ------------------------------------------------------------------------------- */

@@ -36,6 +36,12 @@ typedef struct lar_feb_controller {
     const char *problem;
 } lar_feb_controller;
 
+/* A condition that holds nodes: where it stands, and in lar_model.move, -1: it fixes them. */
+typedef struct lar_feb_holder {
+    const xmlNode *at;
+    int move;
+} lar_feb_holder;
+
 typedef struct lar_feb {
     const char *path;
     lar_error *error;
@@ -55,6 +61,10 @@ typedef struct lar_feb {
     int controller_count;
     size_t controller_room;
     lar_feb_controller *controller;
+    int holder_count;
+    size_t holder_room;
+    lar_feb_holder *holder;
+    int32_t *held; /* per node and axis 1 + its holder, 0: none; NULL before the first one */
 } lar_feb;
 
 /* ---- xml.c: the tree, its messages and its values --------------------------------------- */
@@ -64,7 +74,8 @@ typedef struct lar_feb {
 lar_status lar_feb_open(lar_feb *feb, const char *path, const lar_bytes *bytes, lar_error *error);
 void lar_feb_clear(lar_feb *feb);
 
-/* old.c: a tree of version 2.5 in the words of 4.0. */
+/* old.c: a tree of version 2.5 in the words of 4.0. A type that is none there keeps this name. */
+#define LAR_FEB_OLD_TYPE "old-type"
 lar_status lar_feb_renew(lar_feb *feb);
 
 /* A failure and a notice that begin with FILE:LINE: of an element. */
@@ -87,6 +98,8 @@ xmlNode *lar_feb_first(const xmlNode *parent);
 xmlNode *lar_feb_next(const xmlNode *element);
 xmlNode *lar_feb_child(const xmlNode *parent, const char *name);
 bool lar_feb_is(const xmlNode *element, const char *name);
+/* What the deck calls it, also where old.c has renamed it. */
+const char *lar_feb_name(const xmlNode *element);
 bool lar_feb_is_any(const xmlNode *element, const char *names); /* with spaces in between */
 
 /* Value of an attribute, NULL when it is missing. Lives as long as `feb`. */
@@ -127,6 +140,8 @@ lar_status lar_feb_node_list(lar_feb *feb, const xmlNode *at, const char *refere
                              lar_node_list *list);
 /* True in *all when an element reference (set, part, @part_list:, @elem_set:) is the whole mesh. */
 lar_status lar_feb_is_whole_mesh(lar_feb *feb, const xmlNode *at, const char *reference, bool *all);
+/* Something names a set that the mesh does not define, or a surface of other faces than quad4. */
+lar_status lar_feb_no_set(lar_feb *feb, const xmlNode *at, const char *kind, const char *name);
 /* The <Surface> of that name, NULL when there is none. */
 xmlNode *lar_feb_find_surface(lar_feb *feb, const char *name);
 
@@ -156,9 +171,14 @@ lar_status lar_feb_read_trans_iso(lar_feb *feb, const xmlNode *node, lar_fibre *
 /* The same of what contracts; a curve that its stress follows is looked up when there are curves
  * (lar_feb_read_activation). */
 bool lar_feb_is_active(const char *type);
+/* Type i of both kinds, NULL behind the last one. */
+const char *lar_feb_fibre_name(int i);
 lar_status lar_feb_read_active(lar_feb *feb, const xmlNode *node, const char *type,
                                lar_fibre *fibre);
 lar_status lar_feb_read_activation(lar_feb *feb);
+
+/* ---- direction.c ----------------------------------------------------------------------------- */
+
 /* Turns a direction of element e from its axes, of which the first runs along a and the second in
  * the plane of a and d on d's side, to those of the mesh. */
 lar_status lar_feb_turn(lar_feb *feb, const xmlNode *at, int32_t e, const double a[3],
@@ -184,13 +204,31 @@ lar_status lar_feb_lay_pairs(lar_feb *feb, const xmlNode *node, const xmlNode *r
 /* Reads <LoadData>; the model's duration must be known. */
 lar_status lar_feb_read_curves(lar_feb *feb);
 /* The curve that the `lc` of a value names, or the constant one. Refuses values that are maps or
- * expressions. */
+ * expressions, and only that where `curve` is NULL. */
 lar_status lar_feb_curve_of(lar_feb *feb, const xmlNode *value, int *curve);
 
 /* ---- conditions.c ---------------------------------------------------------------------------- */
 
+/* The child that every condition of this kind must have. */
+lar_status lar_feb_need_child(lar_feb *feb, const xmlNode *parent, const char *name,
+                              const xmlNode **child);
+/* Nodes of the attribute node_set. *list is owned by the caller, also after a failure. */
+lar_status lar_feb_nodes_of(lar_feb *feb, const xmlNode *at, lar_node_list *list);
+/* "x", "y" or "z" as an axis number; more than 2, with a notice, for those of shells. */
+lar_status lar_feb_axis_of(lar_feb *feb, const xmlNode *at, lar_span word, int *axis);
+lar_status lar_feb_refuse_type(lar_feb *feb, const xmlNode *at, const char *known);
+/* Refuses flags that ask for something else than FEBio's default. */
+lar_status lar_feb_check_flags(lar_feb *feb, const xmlNode *at);
+/* The child `name`, `count` numbers, times <scale>, which may also stand alone for one number, and
+ * the curve that either of them follows. */
+lar_status lar_feb_scaled(lar_feb *feb, const xmlNode *at, const char *name, double *value,
+                          int count, int *curve);
+
 lar_status lar_feb_read_boundary(lar_feb *feb, const xmlNode *section);
-lar_status lar_feb_read_loads(lar_feb *feb, const xmlNode *section);
 lar_status lar_feb_read_initial(lar_feb *feb, const xmlNode *section);
+
+/* ---- loads.c --------------------------------------------------------------------------------- */
+
+lar_status lar_feb_read_loads(lar_feb *feb, const xmlNode *section);
 
 #endif

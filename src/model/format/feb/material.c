@@ -9,6 +9,8 @@
  */
 #include "model/format/feb/feb.h"
 
+#include <ctype.h>
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -190,6 +192,13 @@ static lar_status check_value(lar_feb *feb, const xmlNode *node, const lar_law_r
     return LAR_OK;
 }
 
+/* FEBio's default is 0, and 1 for the powers of Ogden's law. Of a first constant that is a law when
+ * there is another one. */
+static bool has_default(const xmlNode *node, lar_law law, int i) {
+    return i == 0 && (law == LAR_LAW_ogden || law == LAR_LAW_mooney_rivlin) &&
+           (lar_feb_child(node, "c2") || lar_feb_child(node, "c3"));
+}
+
 /* `outer`: the uncoupled material around it, which says the bulk modulus, or NULL. */
 static lar_status read_law(lar_feb *feb, const xmlNode *node, const xmlNode *outer, lar_law law,
                            bool trans_iso, lar_material *material) {
@@ -203,7 +212,7 @@ static lar_status read_law(lar_feb *feb, const xmlNode *node, const xmlNode *out
     lar_status status = check_pressure_model(feb, node, dialect);
     for (int i = 0; i < dialect->count && !status; i++) {
         const lar_law_parameter *of = &dialect->parameter[i];
-        bool needed = !lar_law_may_miss(dialect->parameter, i);
+        bool needed = !lar_law_may_miss(dialect->parameter, i) && !has_default(node, law, i);
         bool outside = outer && strcmp(of->name, "k") == 0;
         length += snprintf(known + length, sizeof known - (size_t)length, " %s", of->name);
         status = outside ? add_bulk(feb, outer, &given[i])
@@ -213,6 +222,8 @@ static lar_status read_law(lar_feb *feb, const xmlNode *node, const xmlNode *out
                                   "the material has no parameter <k>, nor has what is within it; "
                                   "add it");
     }
+    for (int i = 0; law == LAR_LAW_ogden && i < 3; i++)
+        if (given[i] != 0 && !lar_feb_child(node, dialect->parameter[3 + i].name)) given[3 + i] = 1;
     for (int i = 0; i < dialect->count && !status; i++)
         status = check_value(feb, node, &lar_law_table[law], &dialect->parameter[i], given[i]);
     if (status) return status;
@@ -229,22 +240,67 @@ static lar_law find_law(const char *type) {
     return (lar_law)law;
 }
 
+/* Letters to change, insert or leave out, of whichever case; many where a word is long. */
+static int count_typos(const char *word, const char *name) {
+    enum { LONGEST = 60 };
+    const size_t m = strlen(name);
+    int row[LONGEST + 1];
+    if (m > LONGEST || strlen(word) > LONGEST) return LONGEST;
+    for (size_t j = 0; j <= m; j++) row[j] = (int)j;
+    for (; *word; word++) {
+        int diagonal = row[0]++;
+        for (size_t j = 1; j <= m; j++) {
+            int best =
+                diagonal + (tolower((unsigned char)*word) != tolower((unsigned char)name[j - 1]));
+            diagonal = row[j];
+            if (diagonal + 1 < best) best = diagonal + 1;
+            if (row[j - 1] + 1 < best) best = row[j - 1] + 1;
+            row[j] = best;
+        }
+    }
+    return row[m];
+}
+
+/* Types that are no laws and stand in no other table. */
+static const char *const other_types[] = {"Holzapfel-Gasser-Ogden",     "trans iso Mooney-Rivlin",
+                                          "trans iso Veronda-Westmann", "viscoelastic",
+                                          "uncoupled viscoelastic",     "solid mixture",
+                                          "uncoupled solid mixture"};
+
+/* Type i of all that are read, NULL behind the last one. */
+static const char *type_name(int i) {
+    const int others = sizeof other_types / sizeof *other_types;
+    if (i < LAR_LAW_COUNT) return lar_law_table[i].febio->name ? lar_law_table[i].febio->name : "";
+    i -= LAR_LAW_COUNT;
+    return i < others ? other_types[i] : lar_feb_fibre_name(i - others);
+}
+
 static lar_status refuse_type(lar_feb *feb, const xmlNode *node, const char *type) {
-    const char *name[LAR_LAW_COUNT];
-    char list[300];
-    int count = 0;
-    for (int law = 0; law < LAR_LAW_COUNT; law++)
-        if (lar_law_table[law].febio->name) name[count++] = lar_law_table[law].febio->name;
-    lar_text_list(name, count, list, sizeof list);
+    const char *law[LAR_LAW_COUNT], *near = NULL, *name;
+    char list[300], meant[100] = "";
+    int count = 0, least = 3;
     if (lar_feb_is_hgo(type))
         return lar_feb_fail(feb, node, LAR_ERROR_UNSUPPORTED,
                             "the material %s is read where it stands alone, not within another "
                             "one; take it out, or write the model as a scene",
                             type);
-    return lar_feb_fail(feb, node, LAR_ERROR_UNSUPPORTED,
-                        "material type '%.60s' is not read; of FEBio's, Lariat has %s; and "
-                        "Holzapfel-Gasser-Ogden",
-                        type, list);
+    for (int i = 0; (name = type_name(i)); i++) {
+        if (!*name) continue;
+        const int typos = count_typos(type, name);
+        if (i < LAR_LAW_COUNT) law[count++] = name;
+        if (typos < least) near = name, least = typos;
+    }
+    lar_text_list(law, count, list, sizeof list);
+    if (near && strcmp(near, type) == 0)
+        snprintf(meant, sizeof meant, " here");
+    else if (near)
+        snprintf(meant, sizeof meant, " (did you mean '%s'?)", near);
+    return lar_feb_fail(
+        feb, node, LAR_ERROR_UNSUPPORTED,
+        "material type '%.60s' is not read%s; of FEBio's, Lariat has %s; "
+        "Holzapfel-Gasser-Ogden and trans iso; and mixtures, viscoelasticity, fibers "
+        "and contractions of them, as docs/formats.md lists them",
+        type, meant, list);
 }
 
 /* ---- fibres ---------------------------------------------------------------------------------- */
@@ -410,6 +466,57 @@ static lar_status read_viscous(lar_feb *feb, const xmlNode *node, const xmlNode 
     return status ? status : lar_feb_notice_others(feb, node, v->isochoric ? known : known + 17);
 }
 
+/* ---- augmentation ---------------------------------------------------------------------------- */
+
+/* <laugon> 1 of a material of any depth. */
+static lar_status find_laugon(lar_feb *feb, const xmlNode *node, const xmlNode **at) {
+    bool set;
+    lar_status status = lar_feb_flag(feb, node, "laugon", false, &set);
+    if (set) *at = lar_feb_child(node, "laugon");
+    for (const xmlNode *inner = lar_feb_first(node); inner && !status; inner = lar_feb_next(inner))
+        if (lar_feb_is_any(inner, "solid elastic")) status = find_laugon(feb, inner, at);
+    return status;
+}
+
+/* The same of the domains of a material. */
+static lar_status find_domain_laugon(lar_feb *feb, const lar_feb_material *entry,
+                                     const xmlNode **at) {
+    const xmlNode *section = lar_feb_child(feb->root, "MeshDomains");
+    const xmlNode *domain = section ? lar_feb_first(section) : NULL;
+    lar_status status = LAR_OK;
+    for (; domain && !status; domain = lar_feb_next(domain)) {
+        const lar_feb_material *of;
+        status = lar_feb_part_material(feb, domain, &of);
+        if (!status && of == entry) status = find_laugon(feb, domain, at);
+    }
+    return status;
+}
+
+/* FEBio then adds pressure until the volume stays, whatever k is. Here the bulk modulus is what a
+ * thousandth of pressure changes the volume by: a thousand times what resists shear. */
+static lar_status augment(lar_feb *feb, const lar_feb_material *entry, lar_material *material) {
+    enum { TIMES = 1000 };
+    const lar_law_row *law = &lar_law_table[material->law];
+    const lar_fibre *fibre = &material->fibre;
+    const xmlNode *at = NULL;
+    lar_status status = find_laugon(feb, entry->node, &at);
+    if (!status) status = find_domain_laugon(feb, entry, &at);
+    if (status || !at) return status;
+    if (!law->uncoupled)
+        return lar_feb_notice(feb, at, "<laugon> was left out: the material is not uncoupled");
+    double *bulk = &material->parameter[law->count - 1];
+    double least = TIMES * (lar_material_instant_shear(material) + lar_fibre_modulus(fibre) +
+                            fmax(fabs(fibre->along), fabs(fibre->across)));
+    if (*bulk >= least) return LAR_OK;
+    status = lar_feb_notice(feb, at,
+                            "<laugon> asks for a volume that stays; the bulk modulus becomes %d "
+                            "times what resists shear, %g instead of %g, and time steps %.2g times "
+                            "shorter",
+                            TIMES, least, *bulk, sqrt(least / *bulk));
+    *bulk = least;
+    return status;
+}
+
 static lar_status read_material(lar_feb *feb, lar_feb_material *entry) {
     const char *type;
     lar_status status = lar_feb_need_attribute(feb, entry->node, "type", &type);
@@ -430,6 +537,7 @@ static lar_status read_material(lar_feb *feb, lar_feb_material *entry) {
         status = lar_feb_read_hgo(feb, entry->node, material);
     else
         status = read_law_part(feb, entry->node, NULL, type, material);
+    if (!status) status = augment(feb, entry, material);
     if (status) return status;
     char where[300];
     snprintf(where, sizeof where, "%.200s:%d", feb->path, lar_feb_line(entry->node));

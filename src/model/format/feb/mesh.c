@@ -178,10 +178,6 @@ static lar_status read_surface(mesh_reader *reader, const xmlNode *surface) {
     lar_status status = LAR_OK;
     if (lar_mesh_builder_has_solids(reader->builder)) return LAR_OK; /* only its parts count */
     for (xmlNode *face = lar_feb_first(surface); face && !status; face = lar_feb_next(face)) {
-        if (!lar_feb_is(face, "quad4"))
-            return lar_feb_fail(feb, face, LAR_ERROR_UNSUPPORTED,
-                                "<%s> in a surface is not read; the faces of hexahedra are quad4",
-                                (const char *)face->name);
         int64_t corner[4];
         status = lar_feb_ids(feb, face, corner, 4);
         if (!status)
@@ -191,13 +187,26 @@ static lar_status read_surface(mesh_reader *reader, const xmlNode *surface) {
     return status;
 }
 
-/* A named set of any kind. */
+/* The first face of a surface that is not one of a hexahedron, NULL: all are. */
+static const xmlNode *foreign_face(const xmlNode *surface) {
+    const xmlNode *face = lar_feb_first(surface);
+    while (face && lar_feb_is(face, "quad4")) face = lar_feb_next(face);
+    return face;
+}
+
+/* A named set of any kind. A surface of other faces is none, which matters where one names it. */
 static lar_status read_set(mesh_reader *reader, const xmlNode *set, const char *kind_name,
                            lar_set_kind kind) {
     lar_feb *feb = reader->feb;
     const char *name;
     lar_status status = lar_feb_need_attribute(feb, set, "name", &name);
     if (!status && kind != LAR_SET_NODES) status = define_name(reader, set, kind_name, name);
+    const xmlNode *foreign = status || kind != LAR_SET_FACES ? NULL : foreign_face(set);
+    if (foreign && !lar_mesh_builder_has_solids(reader->builder))
+        return lar_feb_notice(feb, foreign,
+                              "the surface '%.100s' was left out: <%s> is no face of a hexahedron, "
+                              "which quad4 is",
+                              name, (const char *)foreign->name);
     if (!status) status = lar_mesh_builder_set(reader->builder, name, kind, feb->error);
     if (status) return status;
     if (kind == LAR_SET_NODES) return read_set_ids(reader, set, "node n");
@@ -279,17 +288,23 @@ static const char *after_prefix(const char *text, const char *prefix) {
     return strncmp(text, prefix, length) == 0 ? text + length : NULL;
 }
 
-static lar_status unknown_set(lar_feb *feb, const xmlNode *at, const char *kind, const char *name) {
+lar_status lar_feb_no_set(lar_feb *feb, const xmlNode *at, const char *kind, const char *name) {
+    const xmlNode *surface = lar_feb_find_surface(feb, name);
+    if (surface && foreign_face(surface) && strcmp(kind, "surface") == 0)
+        return lar_feb_fail(feb, at, LAR_ERROR_UNSUPPORTED,
+                            "<%s> names the surface '%.100s', which has faces other than quad4 "
+                            "(line %d); the faces of hexahedra are quad4",
+                            lar_feb_name(at), name, lar_feb_line(foreign_face(surface)));
     return lar_feb_fail(feb, at, LAR_ERROR_FORMAT,
                         "<%s> names the %s '%.100s', which the mesh does not define; define it or "
                         "correct the name",
-                        (const char *)at->name, kind, name);
+                        lar_feb_name(at), kind, name);
 }
 
 /* Marks the elements of one set or part. */
 static lar_status mark_elements(lar_feb *feb, const xmlNode *at, const char *name, char *mark) {
     const lar_set *set = lar_mesh_find_set(feb->mesh, name, LAR_SET_ELEMENTS);
-    if (!set) return unknown_set(feb, at, "element set", name);
+    if (!set) return lar_feb_no_set(feb, at, "element set", name);
     for (int32_t i = 0; i < set->count; i++) mark[set->index[i]] = 1;
     return LAR_OK;
 }
@@ -348,7 +363,7 @@ static lar_status mark_nodes(lar_feb *feb, const xmlNode *at, const char *refere
     const char *name = after_prefix(reference, "@surface:");
     if (name) {
         const lar_set *set = lar_mesh_find_set(mesh, name, LAR_SET_FACES);
-        if (!set) return unknown_set(feb, at, "surface", name);
+        if (!set) return lar_feb_no_set(feb, at, "surface", name);
         for (int32_t i = 0; i < set->count; i++)
             for (int a = 0; a < 4; a++)
                 mark[mesh->element[set->index[i] / 6][lar_face_node[set->index[i] % 6][a]]] = 1;
@@ -390,7 +405,7 @@ lar_status lar_feb_node_list(lar_feb *feb, const xmlNode *at, const char *refere
         status = mark_nodes(feb, at, reference, mark);
     } else {
         const lar_set *set = lar_mesh_find_set(feb->mesh, reference, LAR_SET_NODES);
-        if (!set) status = unknown_set(feb, at, "node set", reference);
+        if (!set) status = lar_feb_no_set(feb, at, "node set", reference);
         for (int32_t i = 0; set && i < set->count; i++) mark[set->index[i]] = 1;
     }
     if (!status) status = collect_marked(feb, mark, list);

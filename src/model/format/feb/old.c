@@ -6,10 +6,13 @@
  *     <fix bc="x,y" node_set="a"/>                    <bc type="zero displacement" ...>  <dofs>
  *     <prescribe bc="x" node_set="a"><scale lc="1">   <bc type="prescribed displacement" ...> <dof>
  *     <nodal_load bc="x" node_set="a"><scale lc="1">  <nodal_load type="nodal_load" ...>  <dof>
+ *     <init bc="vx" node_set="a">                     <ic type="init_dof" ...>  <dof>
+ *     <velocity node_set="a">                         <ic type="velocity" node_set="a">
  *     <loadcurve id="1" type="smooth"><point>         <load_controller ...><points><pt>
  *
- * What is not among these stays as it is, and the readers say what they say of it. New elements
- * have the line of those that they are made of.
+ * A curve that a condition names (lc) becomes that of its size. What is not among these stays as it
+ * is, and the readers say what they say of it. New elements have the line of those that they are
+ * made of.
  */
 #include "model/format/feb/feb.h"
 
@@ -26,15 +29,31 @@ static xmlNode *add_child(xmlNode *parent, const char *name, const char *text) {
     return child;
 }
 
-/* Calls it `name` of this type, and says its attribute `from` as a child `to` instead. */
-static bool rename_as(xmlNode *node, const char *name, const char *type, const char *from,
-                      const char *to) {
-    xmlChar *value = xmlGetProp(node, chars(from));
-    bool good = xmlSetProp(node, chars("type"), chars(type)) &&
-                (!value || add_child(node, to, (const char *)value));
+/* Calls what is `old` in the deck `name` of this type, and says its attribute `from` as a child
+ * `to` instead. */
+static bool rename_as(xmlNode *node, const char *old, const char *name, const char *type,
+                      const char *from, const char *to) {
+    xmlChar *value = xmlGetProp(node, chars(from)), *own = xmlGetProp(node, chars("type"));
+    bool good =
+        (!own || strcmp(from, "type") == 0 || xmlSetProp(node, chars(LAR_FEB_OLD_TYPE), own)) &&
+        xmlSetProp(node, chars("type"), chars(type)) &&
+        (!value || add_child(node, to, (const char *)value));
     xmlFree(value);
+    xmlFree(own);
     xmlNodeSetName(node, chars(name));
+    node->_private = (void *)(uintptr_t)old; /* lar_feb_name */
     return good;
+}
+
+/* The curve of a condition is that of its size. */
+static bool pass_curve(lar_feb *feb, xmlNode *node) {
+    const char *curve = lar_feb_attribute(feb, node, "lc");
+    for (xmlNode *size = lar_feb_first(node); size && curve; size = lar_feb_next(size)) {
+        if (!lar_feb_is_any(size, "scale value pressure traction")) continue;
+        if (lar_feb_attribute(feb, size, "lc")) return true; /* refused: there are two */
+        return xmlSetProp(size, chars("lc"), chars(curve)) && xmlUnsetProp(node, chars("lc")) == 0;
+    }
+    return true;
 }
 
 static bool renew_curve(lar_feb *feb, xmlNode *curve) {
@@ -49,17 +68,25 @@ static bool renew_curve(lar_feb *feb, xmlNode *curve) {
         xmlAddChild(points, point);
     }
     xmlAddChild(curve, points);
-    return rename_as(curve, "load_controller", "loadcurve", "type", "interpolate") &&
+    return rename_as(curve, "loadcurve", "load_controller", "loadcurve", "type", "interpolate") &&
            (!extend || add_child(curve, "extend", extend));
 }
 
 /* One condition, or what has them. */
 static bool renew(lar_feb *feb, xmlNode *node) {
-    if (lar_feb_is(node, "fix")) return rename_as(node, "bc", "zero displacement", "bc", "dofs");
-    if (lar_feb_is(node, "prescribe"))
-        return rename_as(node, "bc", "prescribed displacement", "bc", "dof");
-    if (lar_feb_is(node, "nodal_load"))
-        return rename_as(node, "nodal_load", "nodal_load", "bc", "dof");
+    static const char *const names[][5] = {
+        {"fix", "bc", "zero displacement", "bc", "dofs"},
+        {"prescribe", "bc", "prescribed displacement", "bc", "dof"},
+        {"nodal_load", "nodal_load", "nodal_load", "bc", "dof"},
+        {"init", "ic", "init_dof", "bc", "dof"},
+        {"velocity", "ic", "velocity", "bc", "dof"},
+    };
+    if (!pass_curve(feb, node)) return false;
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        const char *const *n = names[i];
+        if (lar_feb_is(node, n[0]) && (i != 3 || lar_feb_attribute(feb, node, "bc")))
+            return rename_as(node, n[0], n[1], n[2], n[3], n[4]);
+    }
     return lar_feb_is(node, "loadcurve") ? renew_curve(feb, node) : true;
 }
 
@@ -67,8 +94,7 @@ static bool renew_sections(lar_feb *feb, xmlNode *parent) {
     bool good = true;
     for (xmlNode *section = lar_feb_first(parent); section && good;
          section = lar_feb_next(section)) {
-        bool holds = lar_feb_is(section, "Boundary") || lar_feb_is(section, "Loads") ||
-                     lar_feb_is(section, "LoadData");
+        bool holds = lar_feb_is_any(section, "Boundary Loads Initial LoadData");
         if (lar_feb_is(section, "Geometry")) xmlNodeSetName(section, chars("Mesh"));
         if (lar_feb_is(section, "Step")) {
             good = renew_sections(feb, section);

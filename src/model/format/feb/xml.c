@@ -93,6 +93,8 @@ void lar_feb_clear(lar_feb *feb) {
     if (feb->strings) xmlDictFree(feb->strings);
     free(feb->material);
     free(feb->controller);
+    free(feb->holder);
+    free(feb->held);
     *feb = (lar_feb){0};
 }
 
@@ -151,6 +153,10 @@ bool lar_feb_is(const xmlNode *element, const char *name) {
     return strcmp((const char *)element->name, name) == 0;
 }
 
+const char *lar_feb_name(const xmlNode *element) {
+    return element->_private ? element->_private : (const char *)element->name;
+}
+
 static bool is_among(const xmlChar *word, const char *names) {
     lar_span rest = {names, strlen(names)}, name;
     for (bool more = true; more;) {
@@ -165,16 +171,19 @@ bool lar_feb_is_any(const xmlNode *element, const char *names) {
 }
 
 lar_status lar_feb_notice_others(const lar_feb *feb, const xmlNode *parent, const char *known) {
+    /* how far augmentation goes; whether it is on is looked for in material.c */
+    static const char augmentation[] = "laugon atol augtol minaug maxaug";
+    const bool augments = lar_feb_is_any(parent, "material solid elastic SolidDomain");
     lar_status status = LAR_OK;
     for (xmlNode *child = lar_feb_first(parent); child && !status; child = lar_feb_next(child)) {
         const char *name = (const char *)child->name;
-        if (!lar_feb_is_any(child, known))
+        if (!lar_feb_is_any(child, known) && !(augments && lar_feb_is_any(child, augmentation)))
             status = lar_feb_notice(feb, child, "<%s> in <%s> is not known and was left out", name,
-                                    (const char *)parent->name);
+                                    lar_feb_name(parent));
         else if (lar_feb_child(parent, name) != child && !lar_feb_is(child, "solid"))
             status = lar_feb_fail(feb, child, LAR_ERROR_FORMAT,
                                   "a second <%s> in one <%s>; remove one of them", name,
-                                  (const char *)parent->name);
+                                  lar_feb_name(parent));
     }
     return status;
 }
@@ -200,17 +209,25 @@ lar_status lar_feb_refuse_files(lar_feb *feb, const xmlNode *parent) {
 lar_status lar_feb_notice_attributes(const lar_feb *feb, const xmlNode *parent) {
     static const char known[] = "id name type node_set surface elem_set mat bc extend";
     static const char with_curve[] = "value scale force traction pressure x y z T0 dtmax";
+    static const char loads[] = "nodal_load surface_load body_load";
     static const char not_looked_at[] = "Module Globals MeshData Output";
     lar_status status = LAR_OK;
     for (xmlNode *child = lar_feb_first(parent); child && !status; child = lar_feb_next(child)) {
         if (lar_feb_is_any(child, not_looked_at) || lar_feb_is_any(child, many)) continue;
         const bool curve = lar_feb_is_any(child, with_curve);
-        for (const xmlAttr *one = child->properties; one && !status; one = one->next)
-            if (!is_among(one->name, known) &&
-                !(curve && xmlStrEqual(one->name, (const xmlChar *)"lc")))
-                status = lar_feb_notice(feb, child,
-                                        "the attribute %s of <%s> is not known and was left out",
-                                        (const char *)one->name, (const char *)child->name);
+        for (const xmlAttr *one = child->properties; one && !status; one = one->next) {
+            const char *name = (const char *)one->name;
+            const bool follows = strcmp(name, "lc") == 0;
+            if (is_among(one->name, known) || (curve && follows)) continue;
+            if (follows && (lar_feb_is_any(child, loads) || lar_feb_child(child, "dof")))
+                return lar_feb_fail(feb, child, LAR_ERROR_UNSUPPORTED,
+                                    "the load curve of this <%s> is not followed; name it where "
+                                    "its size stands",
+                                    lar_feb_name(child));
+            status = lar_feb_notice(
+                feb, child, "the attribute %s of <%s> is not known and was left out",
+                strcmp(name, LAR_FEB_OLD_TYPE) == 0 ? "type" : name, lar_feb_name(child));
+        }
         if (!status) status = lar_feb_notice_attributes(feb, child);
     }
     return status;
@@ -238,8 +255,8 @@ lar_status lar_feb_need_attribute(lar_feb *feb, const xmlNode *element, const ch
     const char *found = lar_feb_attribute(feb, element, name);
     if (!found || !*found)
         return lar_feb_fail(feb, element, LAR_ERROR_FORMAT,
-                            "<%s> has no attribute %s; add %s=\"...\"", (const char *)element->name,
-                            name, name);
+                            "<%s> has no attribute %s; add %s=\"...\"", lar_feb_name(element), name,
+                            name);
     *value = found;
     return LAR_OK;
 }
