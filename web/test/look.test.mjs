@@ -528,3 +528,49 @@ test('gravity, damping and stiffness are set by slider and by keyboard, and go b
     await other.close();
     await v.close();
 });
+
+test('an instrument is taken at its outline and the organ beside it, and the cursor says which', async (t) => {
+    const own = await mock();
+    t.after(() => own.close());
+    Object.assign(own.poses[0], { position: [0, -0.06, 0.03], orientation: [1, 0, 0, 0] }); // upright before the organ
+    const v = await openPage(browser, own.url);
+    await v.page.waitForTimeout(400);
+    const row = Array.from({ length: 190 }, (_, i) => [450 + i, 240]);
+    const metal = (await colours(v.page, row)).map(([r, , b]) => r - b < 15);
+    const [left, right] = [450 + metal.indexOf(true), 450 + metal.lastIndexOf(true)];
+    assert.ok(right - left > 5 && right - left < 70, `the shaft is drawn from ${left} to ${right}`);
+    const cursor = async (x) => {
+        await v.page.mouse.move(x, 240);
+        await v.page.waitForTimeout(150);
+        return v.page.locator('#picture').evaluate((canvas) => getComputedStyle(canvas).cursor);
+    };
+    assert.equal(await cursor((left + right) / 2), 'pointer');
+    assert.equal(await cursor(left - 3), 'pointer');
+    assert.equal(await cursor(right + 3), 'pointer');
+    for (const x of [left - 12, right + 12]) {
+        assert.equal(await cursor(x), 'grab');
+        await v.page.mouse.down();
+        await v.until(() => window.lariat.hand === 'holding');
+        await v.page.mouse.up();
+    }
+    // Behind the organ it is not taken, wherever it is.
+    own.poses[0].position = [0, 0.06, 0.03];
+    await v.page.waitForTimeout(400);
+    assert.equal(await cursor((left + right) / 2 + 1), 'grab');
+    await v.close();
+});
+
+test('a pull ends when the button that began it is up, also while another one is down', async (t) => {
+    const own = await mock();
+    t.after(() => own.close());
+    const v = await openPage(browser, own.url);
+    await drag(v.page, 500, 320, 40, -40);
+    await v.until(() => window.lariat.hand === 'holding');
+    await v.page.mouse.down({ button: 'right' });
+    await v.page.waitForTimeout(100);
+    assert.equal(await v.get('hand'), 'holding', 'the other button does nothing');
+    await v.page.mouse.up({ button: 'left' });
+    await v.until(() => window.lariat.hand === 'free');
+    await v.page.mouse.up({ button: 'right' });
+    await v.close();
+});

@@ -109,6 +109,11 @@ export class Endoscope {
         return this.ray.ray;
     }
 
+    /* How wide a pixel is, per distance from the eye, of a picture that is so many high. */
+    pixel(height: number): number {
+        return (2 * Math.tan((this.camera.fov * Math.PI) / 360)) / height;
+    }
+
     private fitting(): number {
         const narrow = Math.min(1, this.camera.aspect);
         return (this.home.size * 1.02) / (Math.tan((this.camera.fov * Math.PI) / 360) * narrow);
