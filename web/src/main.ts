@@ -61,7 +61,7 @@ function start(): void {
             addTool.setHello(hello);
             hand.forget();
             element('watching').hidden = !hello.watches;
-            force.clear();
+            force.setHello(hello);
             instrument.choose(-1);
             stopped = '';
             recoveries = placed = -1;
@@ -71,6 +71,7 @@ function start(): void {
             const { materials, view: from } = session.hello!;
             view.setSurface(surface, materials.map((material) => material.name), from);
             colours.setHello(session.hello!);
+            addTool.setSurface(surface);
             element('fine-row').hidden = true;
             element('fibres-row').hidden = surface.families === 0;
             element('fibres-second').hidden = surface.families < 2;
@@ -127,7 +128,10 @@ function start(): void {
         slice(slice) {
             scan.take(slice);
         },
-        note,
+        note(text) {
+            note(text);
+            addTool.refused(text);
+        },
         lost(loss) {
             pointer.end();
             hand.forget();

@@ -420,6 +420,9 @@ test('a tool is added by keyboard, presses the organ, is felt, and is removed', 
     await v.page.locator('#add-radius').fill('4000');
     await keys.press('Enter');
     await v.page.getByText('too large for a body').waitFor();
+    await v.page.getByText('the field has the one that it names').waitFor();
+    const named = Number(await v.page.locator('#add-radius').inputValue());
+    assert.ok(named > 10 && named < 500, `${named} mm`);
     // A reset keeps it, above the body.
     await v.page.locator('#picture').focus();
     await fresh();

@@ -91,6 +91,7 @@ export function mock({ port = 0, surface = null, riding = false, token = null, w
     const speed = new Float32Array(rest.length);
     const low = Math.min(...mesh.x.filter((_, i) => i % 3 === 2));
     const high = Math.max(...mesh.x.filter((_, i) => i % 3 === 2));
+    const bound = (of) => [0, 1, 2].map((axis) => mesh.x.reduce((best, v, i) => (i % 3 === axis ? of(best, v) : best), mesh.x[axis]));
     const materials = 1 + Math.max(...mesh.m);
 
     const state = {
@@ -176,7 +177,7 @@ export function mock({ port = 0, surface = null, riding = false, token = null, w
         surface: { nodes: n, faces },
         ...(fine ? { riding: { vertices: fine.vertices, triangles: fine.triangles.length / 3, nodes: n } } : {}),
         ...(scan ? { scan: { size: SCAN, labels: [{ label: 1, name: 'uterus' }, { label: 2, name: 'bone' }] } } : {}),
-        lower: [0, 0, 0], upper: [1, 1, 1], time_step: 0.0001, tick: 0.001,
+        lower: bound(Math.min), upper: bound(Math.max), time_step: 0.0001, tick: 0.001,
         isa: 'mock', processors: 4, threads: 1,
         materials: ['uterus', 'tubes', 'ovaries', 'ligaments'].slice(0, materials).map((name, i) => ({ ...(active.includes(i) ? { active: true } : {}),
             name, law: 'neo-hookean', elements: 1, density: 1050, shear_modulus: 1500, bulk_modulus: 3e5 })),
