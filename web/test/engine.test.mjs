@@ -180,6 +180,8 @@ test('a recording is played: listed, paused, scrubbed, left; and it outlives the
         return window.lariat.state === 'paused' && end - here < 0.02;
     });
     assert.equal(await p.page.locator('#replay-trouble').innerText(), '', 'all hashes are equal');
+    await slider.fill(await slider.getAttribute('max'));
+    await p.page.getByText('all hashes agreed').waitFor();
     await p.page.keyboard.press('x');
     await p.page.locator('#replay').waitFor({ state: 'hidden' });
     await p.page.keyboard.press('Space');

@@ -77,7 +77,7 @@ function fineSurface(mesh, pieces = 4, off = 0.12) {
     return { inner, weights, carriers, triangles, material, vertices: known.size };
 }
 
-export function mock({ port = 0, surface = null, riding = false, token = null, watchToken = null, organs = null, active = [], scan = false, fibres = 0, dist = join(here, '../dist') } = {}) {
+export function mock({ port = 0, surface = null, riding = false, token = null, watchToken = null, organs = null, active = [], scan = false, fibres = 0, toolName = 'probe', dist = join(here, '../dist') } = {}) {
     const mesh = surface ? JSON.parse(readFileSync(surface, 'utf8')) : pear();
     // Two organs, one above the other.
     if (organs === 'halves')
@@ -104,7 +104,7 @@ export function mock({ port = 0, surface = null, riding = false, token = null, w
         asked: [], // for tools to be added and removed
         refused: [], // what those who may only watch have asked for
     };
-    const tool = { name: 'probe', shape: 'grasper', radius: 0.0025, length: 0.014, spread: 1.0,
+    const tool = { name: toolName, shape: 'grasper', radius: 0.0025, length: 0.014, spread: 1.0,
         rest: { position: [0.05, -0.03, 0.08], orientation: turned(), opening: 1 } };
     const none = { name: '', shape: 'none', radius: 0, length: 0, spread: 0, rest: { position: [0, 0, 0], orientation: [1, 0, 0, 0], opening: 1 } };
     const tools = [tool, hand('hand 1'), hand('hand 2'), none, none];

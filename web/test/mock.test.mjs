@@ -313,10 +313,15 @@ test('an embedded surface is drawn instead of the mesh, painted and pulled; one 
 });
 
 test('nothing overlaps, from phones to wide windows, also low ones', async (t) => {
-    const own = await mock({ scan: true });
+    const own = await mock({ scan: true, toolName: 'a probe with a name of sixty-three characters, as scenes may have' });
     t.after(() => own.close());
     const always = ['header', '#slow', '#force', '#looks', '#transport'];
     const v = await openPage(browser, own.url);
+    await v.page.getByRole('radio', { name: 'a probe' }).click(); // whose name is longer than its card
+    const name = v.page.locator('#force-name');
+    assert.equal(await name.getAttribute('title'), await name.innerText());
+    const oneLine = await name.evaluate((e) => e.clientHeight < 30 && e.scrollWidth > e.clientWidth);
+    assert.ok(oneLine, 'one line, that ends with an ellipsis');
     Object.assign(own.state, { slow: true, saved: ['pear-1.checkpoint'], recordings: ['pear-1.recording'] });
     await v.page.locator('#slow').waitFor({ state: 'visible' });
     await v.page.evaluate(() => {
@@ -329,6 +334,15 @@ test('nothing overlaps, from phones to wide windows, also low ones', async (t) =
     own.state.replay = { name: 'pear-1.recording', time: 0.4, length: 2 };
     await v.page.locator('#replay').waitFor({ state: 'visible' });
     await laidOut(v, [...always, '#replay'], 'replay');
+    const agreed = v.page.locator('#replay-agreed');
+    assert.equal(await agreed.innerText(), '', 'not before its end');
+    own.state.replay.time = 2;
+    await agreed.getByText('all hashes agreed').waitFor();
+    own.state.message = 'the hash of step 100 is not the recorded one';
+    await v.page.locator('#replay-trouble').getByText('not the recorded one').waitFor();
+    own.state.message = '';
+    await v.page.waitForTimeout(300);
+    assert.equal(await agreed.innerText(), '', 'one that differed is not forgotten');
     own.state.replay = null;
     await v.page.locator('#replay').waitFor({ state: 'hidden' });
     // Every panel unfolded and full: it scrolls, and is nowhere wider than its column.

@@ -18,6 +18,7 @@ export class ForceCard {
 
     name(text: string): void {
         write(element('force-name'), text);
+        element('force-name').title = text; // a long one is cut off with an ellipsis
     }
 
     setHello(hello: Hello): void {
