@@ -2,6 +2,7 @@
 import { AddTool } from './cards/addtool';
 import { BodyCard } from './cards/bodycard';
 import { Colours } from './cards/colours';
+import { Desk, covers } from './cards/desk';
 import { element } from './dom';
 import { ForceCard } from './cards/forcecard';
 import { Hand } from './hands/hand';
@@ -37,7 +38,8 @@ function start(): void {
             { text: 'Try again', do: () => location.reload() },
         );
     }
-    const view = new View(canvas);
+    const view = new View(canvas, covers);
+    new Desk(() => view.arrangeInWindow());
     const force = new ForceCard();
     const panel = new Panel();
     const line = new StateLine();
@@ -137,6 +139,7 @@ function start(): void {
             hand.forget();
             transport.enable(false);
             line.lost();
+            panel.lost();
             hints.silence(true);
             const again = { text: 'Try now', do: () => session.connect() };
             if (!loss.again)

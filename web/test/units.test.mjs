@@ -13,7 +13,7 @@ const parts = {};
 
 before(async () => {
     const files = [
-        'picture/surface', 'picture/fibreLines', 'picture/embedded', 'picture/palette', 'picture/tissueNoise', 'picture/camera', 'hands/pick',
+        'picture/surface', 'picture/fibreLines', 'picture/embedded', 'picture/palette', 'picture/tissueNoise', 'picture/camera', 'picture/freepart', 'hands/pick',
         'inspect/measurecard', 'inspect/capture', 'inspect/plots', 'inspect/scan', 'cards/graph', 'cards/panel', 'cards/toolcard', 'cards/range', 'cards/bodycard', 'cards/addtool', 'link/protocol', 'dom',
     ];
     await build({
@@ -417,6 +417,34 @@ test('the first look is from where the scene says, or from low y', () => {
     endoscope.reset(true);
     endoscope.update(0);
     assert.ok(Math.abs(endoscope.camera.position.x - 1) < 1e-6);
+    delete globalThis.matchMedia;
+});
+
+test('the organ is placed where cards and bars leave room, and all of it is there', () => {
+    const { freePart } = parts.freepart;
+    const covers = [{ left: 750, top: 0, right: 1000, bottom: 570 }, { left: 380, top: 570, right: 980, bottom: 626 }, { left: 18, top: 400, right: 268, bottom: 626 }];
+    const free = freePart(1000, 640, covers);
+    assert.deepEqual(free, { left: 274, top: 0, right: 744, bottom: 564 });
+    assert.deepEqual(freePart(300, 300, [{ left: 0, top: 20, right: 300, bottom: 280 }]), { left: 0, top: 0, right: 300, bottom: 300 }, 'nothing is free: the window');
+    globalThis.matchMedia = () => ({ matches: false });
+    for (const view of [[-0.14, -0.925, 0.352], [0, 0.8, 0.6], [0.6, 0, -0.8]]) {
+        const endoscope = new parts.camera.Endoscope();
+        const half = [0.05, 0.02, 0.01];
+        endoscope.resize(1000, 640, free);
+        endoscope.frame([1, 2, 3], Math.hypot(...half), view, half);
+        endoscope.update(0);
+        const { camera } = endoscope;
+        const matrix = camera.projectionMatrix.clone().multiply(camera.matrixWorld.clone().invert()).elements;
+        const pixel = (p) => {
+            const [x, y, , w] = [0, 1, 2, 3].map((row) => matrix[row] * p[0] + matrix[4 + row] * p[1] + matrix[8 + row] * p[2] + matrix[12 + row]);
+            return [500 * (1 + x / w), 320 * (1 - y / w)];
+        };
+        const corners = Array.from({ length: 8 }, (_, c) => pixel([1, 2, 3].map((v, k) => v + (c & (1 << k) ? half[k] : -half[k]))));
+        for (const [x, y] of corners) assert.ok(x > free.left && x < free.right && y > free.top && y < free.bottom, `${x}, ${y}`);
+        const wide = Math.max(...corners.map(([x]) => x)) - Math.min(...corners.map(([x]) => x));
+        const high = Math.max(...corners.map(([, y]) => y)) - Math.min(...corners.map(([, y]) => y));
+        assert.ok(wide > 0.7 * 470 || high > 0.7 * 564, `it fills the part: ${wide} x ${high}`);
+    }
     delete globalThis.matchMedia;
 });
 

@@ -1,5 +1,6 @@
 /* Instruments that are added to a run and removed from it: a form below the list of tools. Which there
  * are is said by the engine, so all pages show the same. */
+import { showCards } from './desk';
 import { element, scaleFor, write, type Scale } from '../dom';
 import type { Instrument } from '../hands/instrument';
 import { ONLY_WATCHES, type Session } from '../link/session';
@@ -123,6 +124,7 @@ export class AddTool {
     open(): void {
         if (!this.possible) return this.say('No tool can be added to this run.');
         if (this.session.watches) return this.say(ONLY_WATCHES);
+        showCards();
         element<HTMLDetailsElement>('tools').open = this.part.open = true;
         this.shape.focus();
     }

@@ -105,6 +105,11 @@ export class Panel {
         });
     }
 
+    /* Nothing is known any more. */
+    lost(): void {
+        write(element('panel-short'), '');
+    }
+
     private late(status: Status): boolean {
         return (status.tick_us.p999 ?? 0) > this.tick * 1e6;
     }

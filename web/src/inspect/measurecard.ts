@@ -2,6 +2,7 @@
  * from the engine, for the node of the mesh and the element that are nearest; distances are the picture's. */
 import * as THREE from 'three';
 import { check, radios } from '../cards/colours';
+import { showCards } from '../cards/desk';
 import { element, scaleFor, withUnit, write } from '../dom';
 import { follow, nearestNode, type Hit } from '../hands/pick';
 import { sizeOfBody, type Hello, type Read, type Values } from '../link/protocol';
@@ -95,6 +96,7 @@ export class MeasureCard {
     }
 
     take(hit: Hit): void {
+        showCards();
         this.card.open = true;
         this.card.scrollIntoView({ block: 'nearest' });
         this.marked = this.press;
