@@ -376,6 +376,9 @@ static void greet(view *v) {
     fprintf(out, "Open this address in a browser; Ctrl-C ends.\n");
     if (*watch) fprintf(out, "%s\nWho opens that one can only watch.\n", watch);
     fflush(out);
+    double duration = lar_model_duration(v->model);
+    if (duration > 0)
+        cli_complain(&cli_view, CLI_DONE, "note: the scene lasts %g s; view goes on", duration);
     if (v->settings.open && v->url) open_browser(v);
 }
 
@@ -509,8 +512,8 @@ const cli_command cli_view = {
         "Simulates a scene in real time and serves a viewer, whose address is "
         "printed:\n"
         "take hold of the organ with the mouse and pull. Only this machine can reach it unless\n"
-        "--listen says otherwise. Ctrl-C ends it with a report; when the run breaks, the viewer\n"
-        "shows why, and its reset begins again.",
+        "--listen says otherwise. Ctrl-C ends it with a report, the scene's duration does not;\n"
+        "when the run breaks, the viewer shows why, and its reset begins again.",
     .examples =
         "  lariat view demo/uterus_live.yaml\n"
         "  lariat view demo/uterus_live.yaml --open --save-folder demo/saved\n"

@@ -1,5 +1,6 @@
 #include "server/message.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -73,7 +74,7 @@ static const key_row key_table[KEYS] = {[KEY_DO] = {"do", IS_STRING, 0, 0, 0},
                                         [KEY_HAND] = {"hand", IS_WHOLE, 0, LAR_VIEWER_HANDS - 1, 0},
                                         [KEY_AFTER] = {"after", IS_WHOLE, 0, 9007199254740991.0, 0},
                                         [KEY_STEPS] = {"steps", IS_WHOLE, 1, 100000, 0},
-                                        [KEY_VALUE] = {"value", IS_REAL, 0, 1e6, 0},
+                                        [KEY_VALUE] = {"value", IS_REAL, -DBL_MAX, DBL_MAX, 0},
                                         [KEY_TIME] = {"time", IS_REAL, 0, 1e9, 0},
                                         [KEY_OPENING] = {"opening", IS_REAL, 0, 1, 0},
                                         [KEY_ON] = {"on", IS_BOOLEAN, 0, 0, 0},
@@ -298,12 +299,14 @@ static bool set_tool(reader *r, int32_t tools, lar_command *command) {
     return true;
 }
 
-static bool set_pace(reader *r, lar_command *command) {
-    double pace = r->number[KEY_VALUE][0];
-    if (command->kind != LAR_COMMAND_PACE) return true;
-    command->pace = pace;
-    if (pace == 0 || (pace >= 0.001 && pace <= 100)) return true;
-    return refuse(r, LAR_CLOSE_POLICY, "value must lie between 0.001 and 100, or be 0");
+/* What it may be depends on what it is of. */
+static bool set_value(reader *r, lar_command *command) {
+    double value = r->number[KEY_VALUE][0];
+    bool pace = command->kind == LAR_COMMAND_PACE;
+    command->value = command->pace = value;
+    if (value == 0 || (value >= (pace ? 0.001 : 0) && value <= (pace ? 100 : 1e6))) return true;
+    return refuse(r, LAR_CLOSE_POLICY, "value must lie between %s",
+                  pace ? "0.001 and 100, or be 0" : "0 and 1e+06");
 }
 
 static bool set_rest(reader *r, lar_command *command) {
@@ -322,7 +325,6 @@ static bool set_rest(reader *r, lar_command *command) {
     command->axis = (int32_t)r->number[KEY_AXIS][0];
     command->index = (int32_t)r->number[KEY_INDEX][0];
     command->valued = r->seen & (BIT(TO) | BIT(VALUE));
-    command->value = r->number[KEY_VALUE][0];
     command->material = r->seen & BIT(MATERIAL) ? (int32_t)r->number[KEY_MATERIAL][0] : -1;
     command->energy = r->number[KEY_ENERGY][0] != 0;
     memcpy(command->name, r->text[KEY_NAME], sizeof command->name);
@@ -342,7 +344,7 @@ lar_close lar_command_read(const char *text, size_t length, int32_t tools, lar_c
     }
     bool good = r.close == LAR_CLOSE_NOT && read_object(&r) && check_keys(&r, &found.kind) &&
                 set_field(&r, &found) && set_shape(&r, &found) && set_tool(&r, tools, &found) &&
-                set_pace(&r, &found) && set_rest(&r, &found);
+                set_value(&r, &found) && set_rest(&r, &found);
     if (good) *command = found;
     return r.close;
 }

@@ -28,6 +28,12 @@ double lar_two_digits(double count) {
     return floor(count / unit) * unit;
 }
 
+/* What is no longer the same model is no advice. */
+static bool is_a_mesh(double ratio, double elements) {
+    static const double RATIO_MAX = 10.01, ELEMENTS_MIN = 20;
+    return ratio < RATIO_MAX && elements >= ELEMENTS_MIN;
+}
+
 /* Much slower than steps of that length alone would make it. */
 static bool is_busy_besides(double slower, double pace, const lar_session_status *status) {
     double now = status->real_time_factor_now;
@@ -38,16 +44,20 @@ static void advise_smaller(const lar_advice *a, double pace, double min, double 
                            lar_session_status *status) {
     double ratio = min / allowed;
     double wanted = ceil(ratio * a->busy / EFFICIENCY);
-    char way[64] = "";
+    double elements = lar_two_digits(a->elements / ratio);
+    char way[64] = "", other[64];
     if (a->cores > a->busy && wanted <= a->cores) {
         char grid[32];
         name_grid((int32_t)wanted, grid);
         snprintf(way, sizeof way, "--grid %s, ", grid);
     }
+    if (is_a_mesh(ratio, elements))
+        snprintf(other, sizeof other, "a mesh of about %.0f elements, or a slower pace", elements);
+    else
+        snprintf(other, sizeof other, "%sa pace of %.2g", *way ? "or " : "", 0.95 * pace / ratio);
     snprintf(status->slow_advice, sizeof status->slow_advice,
-             "a step takes %.3g us and stands for %.3g us of the clock; what would hold: %sa mesh "
-             "of about %.0f elements, or a slower pace%s",
-             1e6 * min, 1e6 * allowed / ROOM, way, lar_two_digits(a->elements / ratio),
+             "a step takes %.3g us and stands for %.3g us of the clock; what would hold: %s%s%s",
+             1e6 * min, 1e6 * allowed / ROOM, way, other,
              is_busy_besides(ratio, pace, status) ? "; and other programs keep the processor busy"
                                                   : "");
 }
@@ -60,11 +70,12 @@ void lar_advise(const lar_advice *a, double pace, lar_session_status *status) {
     if (min > allowed && status->step_parts > 1 && min / status->step_parts <= allowed) {
         status->slow_cause = LAR_SLOW_DIVISION;
         bool stiffer = a->stiffer >= status->step_parts;
-        const char *why = stiffer
-                              ? "because the body was made stiffer than the model has it; make "
-                                "it softer"
-                              : "while tissue is strained or tools press hard; let go, or pull, "
-                                "press and load it less";
+        const char *why = stiffer ? "because the body was made stiffer than the model has it; make "
+                                    "it softer"
+                          : a->touched
+                              ? "while tissue is strained or tools press hard; let go, or pull, "
+                                "press and load it less"
+                              : "while tissue is strained; load it less";
         snprintf(status->slow_advice, sizeof status->slow_advice,
                  "steps are divided by %d %s, or choose a slower pace", (int)status->step_parts,
                  why);

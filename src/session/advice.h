@@ -12,6 +12,8 @@
 #ifndef LAR_SESSION_ADVICE_H
 #define LAR_SESSION_ADVICE_H
 
+#include <stdbool.h>
+
 #include "lariat.h"
 
 /* What the advice depends on, and is constant. */
@@ -21,6 +23,7 @@ typedef struct lar_advice {
     int32_t busy, cores; /* threads that compute; cores of this machine that they may use */
     int priority;        /* lar_session_options.priority */
     int32_t stiffer;     /* not constant: parts of a step that stiffer materials take; 0, 1: none */
+    bool touched;        /* not constant: somebody pulls or presses */
 } lar_advice;
 
 /* A number of elements that is an estimate: two digits, rounded down; at least 1. */

@@ -16,6 +16,12 @@ static const int64_t FAR = 20000000;
 
 /* ---- telling ------------------------------------------------------------------------------- */
 
+static bool is_touched(const lar_session *session) {
+    for (int32_t i = 0; i < session->tools; i++)
+        if (session->tool[i].force.touching + session->tool[i].force.held > 0) return true;
+    return false;
+}
+
 void lar_session_publish(lar_session *session, bool quantiles) {
     lar_session_status *status = &session->status;
     status->step = lar_simulation_steps(session->simulation);
@@ -31,6 +37,7 @@ void lar_session_publish(lar_session *session, bool quantiles) {
     status->heavier_share = heavier.share;
     lar_pace_report(&session->pace, quantiles, lar_clock_ns(), status);
     session->advice.stiffer = session->simulation->tools.division.base;
+    session->advice.touched = is_touched(session);
     if (quantiles) lar_advise(&session->advice, session->pace.pace, status);
     const lar_player *player = session->player;
     status->replaying = player != NULL;

@@ -33,6 +33,13 @@ static void a_step_that_is_too_long_names_grid_and_elements(void **unused) {
     /* No grid where there are no cores for it. */
     s = slow(&organ, 1, 9e-4, 1);
     has(&s, "what would hold: a mesh of about 1300 elements");
+    /* No mesh that is another model: the pace that would hold. */
+    s = slow(&organ, 1, 1e-3, 1);
+    has(&s, "what would hold: a pace of 0.085");
+    lar_advice few = organ;
+    few.elements = 27;
+    s = slow(&few, 1, 1.6e-4, 1);
+    has(&s, "what would hold: --grid 3x1x1, or a pace of 0.53");
     /* Five times as slow as steps alone would make it. */
     lar_session_status busy = {
         .slow_motion = 1, .step_min = 2e-4, .step_parts = 1, .real_time_factor_now = 0.09};
@@ -49,10 +56,14 @@ static void a_step_that_is_too_long_names_grid_and_elements(void **unused) {
 
 static void strained_tissue_is_named(void **unused) {
     (void)unused;
-    lar_session_status s = slow(&organ, 1, 1.6e-4, 4);
+    lar_advice held = organ;
+    held.touched = true;
+    lar_session_status s = slow(&held, 1, 1.6e-4, 4);
     assert_int_equal(s.slow_cause, LAR_SLOW_DIVISION);
     has(&s, "divided by 4");
-    has(&s, "tissue is strained");
+    has(&s, "tissue is strained or tools press hard; let go, or pull, press and load it less");
+    s = slow(&organ, 1, 1.6e-4, 4); /* nobody has it in hand */
+    has(&s, "divided by 4 while tissue is strained; load it less, or choose a slower pace");
     lar_advice stiffer = organ;
     stiffer.stiffer = 4;
     s = slow(&stiffer, 1, 1.6e-4, 4);

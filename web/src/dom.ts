@@ -12,7 +12,7 @@ export function write(where: Element, text: string): void {
 }
 
 const PREFIXES: [number, string][] = [
-    [1e6, 'M'], [1e3, 'k'], [1, ''], [1e-3, 'm'], [1e-6, 'µ'],
+    [1e9, 'G'], [1e6, 'M'], [1e3, 'k'], [1, ''], [1e-3, 'm'], [1e-6, 'µ'], [1e-9, 'n'], [1e-12, 'p'],
 ];
 
 /* Three digits and a unit: 1.25 kPa, 3.40 mm. */
@@ -28,6 +28,27 @@ function digits(value: number): string {
     const size = Math.abs(value);
     if (size < 0.005) return '0';
     return value.toFixed(size >= 100 ? 0 : size >= 10 ? 1 : 2).replace('-', '−');
+}
+
+/* One unit for numbers up to `largest`, small ones from a tenth of it on, with the places that three digits of the
+ * largest take: numbers that change do not jump from unit to unit. */
+export interface Scale {
+    unit: string; // with its prefix
+    factor: number; // of it
+    text(value: number): string;
+    short(value: number): string; // without zeros at its end: for axes
+}
+
+export function scaleFor(largest: number, unit: string): Scale {
+    const size = largest > 0 ? largest : 1;
+    const [factor, prefix] = PREFIXES.find(([f]) => size >= f * (f > 1 ? 0.9995 : 0.0995)) ?? PREFIXES[PREFIXES.length - 1]!;
+    const places = Math.max(0, 2 - Math.floor(Math.log10(size / factor) + 1e-9));
+    return {
+        unit: prefix + unit,
+        factor,
+        text: (value) => (value / factor).toFixed(Math.min(20, places)).replace('-', '−'),
+        short: (value) => String(Number((value / factor).toPrecision(2))),
+    };
 }
 
 /* A number of the engine that may be missing. */

@@ -2,6 +2,7 @@
 import { AddTool } from './cards/addtool';
 import { BodyCard } from './cards/bodycard';
 import { Colours } from './cards/colours';
+import { Desk, covers } from './cards/desk';
 import { element } from './dom';
 import { ForceCard } from './cards/forcecard';
 import { Hand } from './hands/hand';
@@ -37,7 +38,8 @@ function start(): void {
             { text: 'Try again', do: () => location.reload() },
         );
     }
-    const view = new View(canvas);
+    const view = new View(canvas, covers);
+    new Desk(() => view.arrangeInWindow());
     const force = new ForceCard();
     const panel = new Panel();
     const line = new StateLine();
@@ -61,7 +63,7 @@ function start(): void {
             addTool.setHello(hello);
             hand.forget();
             element('watching').hidden = !hello.watches;
-            force.clear();
+            force.setHello(hello);
             instrument.choose(-1);
             stopped = '';
             recoveries = placed = -1;
@@ -71,6 +73,7 @@ function start(): void {
             const { materials, view: from } = session.hello!;
             view.setSurface(surface, materials.map((material) => material.name), from);
             colours.setHello(session.hello!);
+            addTool.setSurface(surface);
             element('fine-row').hidden = true;
             element('fibres-row').hidden = surface.families === 0;
             element('fibres-second').hidden = surface.families < 2;
@@ -127,12 +130,16 @@ function start(): void {
         slice(slice) {
             scan.take(slice);
         },
-        note,
+        note(text) {
+            note(text);
+            addTool.refused(text);
+        },
         lost(loss) {
             pointer.end();
             hand.forget();
             transport.enable(false);
             line.lost();
+            panel.lost();
             hints.silence(true);
             const again = { text: 'Try now', do: () => session.connect() };
             if (!loss.again)

@@ -32,6 +32,7 @@ export function publish(session: Session, view: View, hand: Hand, force: ForceCa
         get scan() { return scan.shown; },
         get body() { return session.status?.body ?? null; },
         get distance() { return view.endoscope.distance; },
+        get fit() { return view.endoscope.fit; },
         get surface() { return view.finer ? 'fine' : 'mesh'; },
         get fibres() { return view.fibreLines; },
         get others() { return view.others.shown; },

@@ -77,8 +77,24 @@ export async function openPage(browser, url, { drawn = true, expected = [] } = {
     return look;
 }
 
-/* Colours of points of the picture, from a screenshot that the page itself decodes. */
-export async function colours(page, points) {
+/* Places are told for a window of 1000 x 640 that the organ has for itself: its middle in the window's, and
+ * from as far as a ball around it fits the height. Where that is on the page, whose cards leave a part of it. */
+export async function placing(page) {
+    const { fit, height } = await page.evaluate(() => ({ fit: window.lariat.fit, height: innerHeight }));
+    const scale = ((fit.size * 1.02) / Math.tan((16 * Math.PI) / 180) / fit.distance) * (height / 640);
+    return { scale, at: ([x, y]) => [fit.x + (x - 500) * scale, fit.y + (y - 320) * scale] };
+}
+
+/* In narrow windows the cards are folded into a button. */
+export async function unfold(page) {
+    const button = page.locator('#cards');
+    if ((await button.isVisible()) && (await button.getAttribute('aria-expanded')) === 'false') await button.click();
+}
+
+/* Colours of such places of the picture, from a screenshot that the page itself decodes. */
+export async function colours(page, places) {
+    const { at: placed } = await placing(page);
+    const points = places.map((place) => placed(place).map(Math.round));
     const shot = (await page.screenshot({ scale: 'css' })).toString('base64');
     return page.evaluate(
         async ([data, at]) => {
@@ -98,12 +114,18 @@ export async function colours(page, points) {
 
 export const difference = (a, b) => Math.max(...a.map((v, i) => Math.abs(v - b[i])));
 
+export async function click(page, x, y) {
+    await page.mouse.click(...(await placing(page)).at([x, y]));
+}
+
 /* Presses at a place, drags by some pixels within several moves, and holds. */
-export async function drag(page, x, y, dx, dy, moves = 6) {
+export async function drag(page, fromX, fromY, dx, dy, moves = 6) {
+    const { scale, at } = await placing(page);
+    const [x, y] = at([fromX, fromY]);
     await page.mouse.move(x, y);
     await page.mouse.down();
     for (let i = 1; i <= moves; i++) {
-        await page.mouse.move(x + (dx * i) / moves, y + (dy * i) / moves);
+        await page.mouse.move(x + (dx * scale * i) / moves, y + (dy * scale * i) / moves);
         await page.waitForTimeout(30);
     }
 }

@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import { mkdirSync, readdirSync, statSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { OUT, colours, difference, drag, openBrowser, openPage } from './browser.mjs';
+import { click, OUT, colours, difference, drag, openBrowser, openPage, unfold } from './browser.mjs';
 import { demo, endAll, rider, scanned, tornDemo, view } from './engine.mjs';
 
 mkdirSync(OUT, { recursive: true });
@@ -180,6 +180,7 @@ test('a recording is played: listed, paused, scrubbed, left; and it outlives the
         return window.lariat.state === 'paused' && end - here < 0.02;
     });
     assert.equal(await p.page.locator('#replay-trouble').innerText(), '', 'all hashes are equal');
+    await p.page.getByText('all hashes agreed').waitFor();
     await p.page.keyboard.press('x');
     await p.page.locator('#replay').waitFor({ state: 'hidden' });
     await p.page.keyboard.press('Space');
@@ -320,7 +321,7 @@ test('values of a node and an element are those of the engine', async () => {
     await fresh();
     await v.page.locator('#picture').focus();
     await v.page.keyboard.press('i');
-    await v.page.mouse.click(...FUNDUS);
+    await click(v.page, ...FUNDUS);
     await v.until(() => window.lariat.reading.node > 0 && window.lariat.reading.element > 0);
     await v.page.keyboard.press('i');
     await drag(v.page, ...FUNDUS, 40, -60);
@@ -420,6 +421,9 @@ test('a tool is added by keyboard, presses the organ, is felt, and is removed', 
     await v.page.locator('#add-radius').fill('4000');
     await keys.press('Enter');
     await v.page.getByText('too large for a body').waitFor();
+    await v.page.getByText('the field has the one that it names').waitFor();
+    const named = Number(await v.page.locator('#add-radius').inputValue());
+    assert.ok(named > 10 && named < 500, `${named} mm`);
     // A reset keeps it, above the body.
     await v.page.locator('#picture').focus();
     await fresh();
@@ -428,6 +432,7 @@ test('a tool is added by keyboard, presses the organ, is felt, and is removed', 
     assert.ok((await v.get('displacement')) < 1e-3);
     for (const [width, height] of [[390, 780], [800, 700], [1600, 900]]) {
         await v.page.setViewportSize({ width, height });
+        await unfold(v.page);
         await v.page.locator('#add-tool').scrollIntoViewIfNeeded();
         await v.page.waitForTimeout(400);
         await v.shot(`tool-added-${width}`);

@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
-import { colours, difference, drag, openBrowser, openPage } from './browser.mjs';
+import { click, colours, difference, drag, openBrowser, openPage, placing, unfold } from './browser.mjs';
 import { mock } from './mock.mjs';
 
 let browser;
@@ -160,7 +160,7 @@ test('values of a node and its element are read where one presses, also by keybo
     const v = await openPage(browser, own.url);
     await v.page.locator('#measure').evaluate((card) => (card.open = true));
     await v.page.getByRole('radio', { name: 'read values' }).click();
-    await v.page.mouse.click(500, 250);
+    await click(v.page, 500, 250);
     await v.until(() => window.lariat.reading.node >= 1000);
     assert.equal(await v.get('hand'), 'free', 'a press reads and does not pull');
     const first = await v.get('reading');
@@ -199,9 +199,9 @@ test('a distance is measured between two places, now and at rest, and follows th
     const v = await openPage(browser, own.url);
     await v.page.locator('#picture').focus();
     await v.page.keyboard.press('d');
-    await v.page.mouse.click(500, 160);
+    await click(v.page, 500, 160);
     await v.page.getByText('One end is set.').waitFor();
-    await v.page.mouse.click(500, 480);
+    await click(v.page, 500, 480);
     await v.until(() => window.lariat.measured > 0);
     const still = await v.get('measured');
     // The pear is 90 mm high.
@@ -220,8 +220,8 @@ test('a distance is measured between two places, now and at rest, and follows th
     await v.until(() => window.lariat?.frames > 1);
     await v.page.locator('#picture').focus();
     await v.page.keyboard.press('d');
-    await v.page.mouse.click(500, 160);
-    await v.page.mouse.click(500, 480);
+    await click(v.page, 500, 160);
+    await click(v.page, 500, 480);
     await v.until(() => window.lariat.measured > 0);
     await v.page.waitForTimeout(300);
     const [line] = await colours(v.page, [[500, 320]]);
@@ -470,6 +470,7 @@ test('gravity, damping and stiffness are set by slider and by keyboard, and go b
     assert.equal(await v.page.locator('#gravity-direction').inputValue(), '-z');
     for (const width of [390, 1024]) {
         await v.page.setViewportSize({ width, height: 780 });
+        await unfold(v.page);
         await v.page.locator('#body-reset').scrollIntoViewIfNeeded();
         await v.page.waitForTimeout(150);
         await v.shot(`body-${width}`);
@@ -526,5 +527,53 @@ test('gravity, damping and stiffness are set by slider and by keyboard, and go b
     await v.until(() => document.getElementById('gravity-text').textContent === '9.81 m/s²');
     assert.deepEqual(own.faults, []);
     await other.close();
+    await v.close();
+});
+
+test('an instrument is taken at its outline and the organ beside it, and the cursor says which', async (t) => {
+    const own = await mock();
+    t.after(() => own.close());
+    Object.assign(own.poses[0], { position: [0, -0.06, 0.03], orientation: [1, 0, 0, 0] }); // upright before the organ
+    const v = await openPage(browser, own.url);
+    await v.page.waitForTimeout(400);
+    const row = Array.from({ length: 190 }, (_, i) => [450 + i, 240]);
+    const metal = (await colours(v.page, row)).map(([r, , b]) => r - b < 15);
+    const [left, right] = [450 + metal.indexOf(true), 450 + metal.lastIndexOf(true)];
+    assert.ok(right - left > 5 && right - left < 70, `the shaft is drawn from ${left} to ${right}`);
+    const { at } = await placing(v.page);
+    const cursor = async (place, pixels) => {
+        const [x, y] = at([place, 240]);
+        await v.page.mouse.move(x + pixels, y);
+        await v.page.waitForTimeout(150);
+        return v.page.locator('#picture').evaluate((canvas) => getComputedStyle(canvas).cursor);
+    };
+    assert.equal(await cursor((left + right) / 2, 0), 'pointer');
+    assert.equal(await cursor(left, -3), 'pointer');
+    assert.equal(await cursor(right, 3), 'pointer');
+    for (const [edge, pixels] of [[left, -11], [right, 11]]) {
+        assert.equal(await cursor(edge, pixels), 'grab');
+        await v.page.mouse.down();
+        await v.until(() => window.lariat.hand === 'holding');
+        await v.page.mouse.up();
+    }
+    // Behind the organ it is not taken, wherever it is.
+    own.poses[0].position = [0, 0.06, 0.03];
+    await v.page.waitForTimeout(400);
+    assert.equal(await cursor((left + right) / 2, 1), 'grab');
+    await v.close();
+});
+
+test('a pull ends when the button that began it is up, also while another one is down', async (t) => {
+    const own = await mock();
+    t.after(() => own.close());
+    const v = await openPage(browser, own.url);
+    await drag(v.page, 500, 320, 40, -40);
+    await v.until(() => window.lariat.hand === 'holding');
+    await v.page.mouse.down({ button: 'right' });
+    await v.page.waitForTimeout(100);
+    assert.equal(await v.get('hand'), 'holding', 'the other button does nothing');
+    await v.page.mouse.up({ button: 'left' });
+    await v.until(() => window.lariat.hand === 'free');
+    await v.page.mouse.up({ button: 'right' });
     await v.close();
 });

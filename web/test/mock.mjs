@@ -77,7 +77,7 @@ function fineSurface(mesh, pieces = 4, off = 0.12) {
     return { inner, weights, carriers, triangles, material, vertices: known.size };
 }
 
-export function mock({ port = 0, surface = null, riding = false, token = null, watchToken = null, organs = null, active = [], scan = false, fibres = 0, dist = join(here, '../dist') } = {}) {
+export function mock({ port = 0, surface = null, riding = false, token = null, watchToken = null, organs = null, active = [], scan = false, fibres = 0, toolName = 'probe', dist = join(here, '../dist') } = {}) {
     const mesh = surface ? JSON.parse(readFileSync(surface, 'utf8')) : pear();
     // Two organs, one above the other.
     if (organs === 'halves')
@@ -91,6 +91,7 @@ export function mock({ port = 0, surface = null, riding = false, token = null, w
     const speed = new Float32Array(rest.length);
     const low = Math.min(...mesh.x.filter((_, i) => i % 3 === 2));
     const high = Math.max(...mesh.x.filter((_, i) => i % 3 === 2));
+    const bound = (of) => [0, 1, 2].map((axis) => mesh.x.reduce((best, v, i) => (i % 3 === axis ? of(best, v) : best), mesh.x[axis]));
     const materials = 1 + Math.max(...mesh.m);
 
     const state = {
@@ -103,7 +104,7 @@ export function mock({ port = 0, surface = null, riding = false, token = null, w
         asked: [], // for tools to be added and removed
         refused: [], // what those who may only watch have asked for
     };
-    const tool = { name: 'probe', shape: 'grasper', radius: 0.0025, length: 0.014, spread: 1.0,
+    const tool = { name: toolName, shape: 'grasper', radius: 0.0025, length: 0.014, spread: 1.0,
         rest: { position: [0.05, -0.03, 0.08], orientation: turned(), opening: 1 } };
     const none = { name: '', shape: 'none', radius: 0, length: 0, spread: 0, rest: { position: [0, 0, 0], orientation: [1, 0, 0, 0], opening: 1 } };
     const tools = [tool, hand('hand 1'), hand('hand 2'), none, none];
@@ -176,7 +177,7 @@ export function mock({ port = 0, surface = null, riding = false, token = null, w
         surface: { nodes: n, faces },
         ...(fine ? { riding: { vertices: fine.vertices, triangles: fine.triangles.length / 3, nodes: n } } : {}),
         ...(scan ? { scan: { size: SCAN, labels: [{ label: 1, name: 'uterus' }, { label: 2, name: 'bone' }] } } : {}),
-        lower: [0, 0, 0], upper: [1, 1, 1], time_step: 0.0001, tick: 0.001,
+        lower: bound(Math.min), upper: bound(Math.max), time_step: 0.0001, tick: 0.001,
         isa: 'mock', processors: 4, threads: 1,
         materials: ['uterus', 'tubes', 'ovaries', 'ligaments'].slice(0, materials).map((name, i) => ({ ...(active.includes(i) ? { active: true } : {}),
             name, law: 'neo-hookean', elements: 1, density: 1050, shear_modulus: 1500, bulk_modulus: 3e5 })),

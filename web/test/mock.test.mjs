@@ -1,7 +1,7 @@
 // The page against the stand-in for the server: what the engine does too rarely to test with it.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
-import { colours, difference, drag, openBrowser, openPage } from './browser.mjs';
+import { colours, difference, drag, openBrowser, openPage, unfold } from './browser.mjs';
 import { mock } from './mock.mjs';
 
 const REFUSED = [/WebSocket connection to/];
@@ -30,8 +30,16 @@ test('slow motion is announced so that nobody misses it, and only while it lasts
     assert.match(await v.page.locator('#slow').innerText(), /A step takes 250 µs .* --grid 2x2x1, a mesh of about 700 elements/);
     await v.shot('slow-motion');
     server.state.slow = 1.01;
-    await v.page.locator('#slow').getByText('catching up with the clock').waitFor();
-    assert.doesNotMatch(await v.page.locator('#slow').innerText(), /1\.01/);
+    // Catching up is not slow motion, and at no time do badge and banner say different things.
+    const said = await v.page.evaluate(async () => {
+        const seen = new Set();
+        for (let i = 0; i < 40; i++) {
+            seen.add(`${document.getElementById('state-text').textContent}, ${document.getElementById('slow').hidden ? 'no banner' : 'banner'}`);
+            await new Promise((resolve) => setTimeout(resolve, 50));
+        }
+        return [...seen];
+    });
+    assert.deepEqual(said, ['slow motion, banner', 'catching up with the clock, no banner']);
     // Every row of the engine's panel says what it is.
     await v.page.locator('#panel').evaluate((card) => (card.open = true));
     const rows = await v.page.locator('#panel tr').evaluateAll((all) => all.map((row) => [row.innerText, row.title]));
@@ -236,7 +244,7 @@ test('an organ at rest has one colour: the range has a floor', async (t) => {
     own.state.noise = true; // values of rounding, as a body at rest has them
     const v = await openPage(browser, own.url);
     const places = [[470, 300], [530, 300], [500, 250], [500, 380]];
-    for (const [name, max] of [['displacement', '100 µm'], ['von Mises stress', '1.00 Pa'], ['pressure', '1.00 Pa']]) {
+    for (const [name, max] of [['displacement', '50.0 µm'], ['von Mises stress', '1.00 Pa'], ['pressure', '1.00 Pa']]) {
         await v.page.getByRole('radio', { name }).click();
         await v.until((text) => document.getElementById('legend-most').innerText === text, max);
         await v.page.waitForTimeout(300);
@@ -305,10 +313,15 @@ test('an embedded surface is drawn instead of the mesh, painted and pulled; one 
 });
 
 test('nothing overlaps, from phones to wide windows, also low ones', async (t) => {
-    const own = await mock({ scan: true });
+    const own = await mock({ scan: true, toolName: 'a probe with a name of sixty-three characters, as scenes may have' });
     t.after(() => own.close());
     const always = ['header', '#slow', '#force', '#looks', '#transport'];
     const v = await openPage(browser, own.url);
+    await v.page.getByRole('radio', { name: 'a probe' }).click(); // whose name is longer than its card
+    const name = v.page.locator('#force-name');
+    assert.equal(await name.getAttribute('title'), await name.innerText());
+    const oneLine = await name.evaluate((e) => e.clientHeight < 30 && e.scrollWidth > e.clientWidth);
+    assert.ok(oneLine, 'one line, that ends with an ellipsis');
     Object.assign(own.state, { slow: true, saved: ['pear-1.checkpoint'], recordings: ['pear-1.recording'] });
     await v.page.locator('#slow').waitFor({ state: 'visible' });
     await v.page.evaluate(() => {
@@ -321,6 +334,15 @@ test('nothing overlaps, from phones to wide windows, also low ones', async (t) =
     own.state.replay = { name: 'pear-1.recording', time: 0.4, length: 2 };
     await v.page.locator('#replay').waitFor({ state: 'visible' });
     await laidOut(v, [...always, '#replay'], 'replay');
+    const agreed = v.page.locator('#replay-agreed');
+    assert.equal(await agreed.innerText(), '', 'not before its end');
+    own.state.replay.time = 2;
+    await agreed.getByText('all hashes agreed').waitFor();
+    own.state.message = 'the hash of step 100 is not the recorded one';
+    await v.page.locator('#replay-trouble').getByText('not the recorded one').waitFor();
+    own.state.message = '';
+    await v.page.waitForTimeout(300);
+    assert.equal(await agreed.innerText(), '', 'one that differed is not forgotten');
     own.state.replay = null;
     await v.page.locator('#replay').waitFor({ state: 'hidden' });
     // Every panel unfolded and full: it scrolls, and is nowhere wider than its column.
@@ -339,6 +361,7 @@ test('nothing overlaps, from phones to wide windows, also low ones', async (t) =
     await laidOut(v, always, 'unfolded');
     for (const width of [390, 800, 1024, 1600]) {
         await v.page.setViewportSize({ width, height: 780 });
+        await unfold(v.page);
         await v.page.waitForTimeout(150);
         const wide = await v.page.evaluate(() => {
             const looks = document.getElementById('looks');
@@ -377,17 +400,20 @@ test('nothing overlaps, from phones to wide windows, also low ones', async (t) =
 
 /** The parts of the page lie inside the window, beside each other and not squeezed, at many sizes. */
 async function laidOut(v, parts, name) {
-    for (const [width, height] of [[390, 780], [640, 480], [640, 900], [800, 600], [900, 700], [1024, 600], [1024, 420], [1320, 700], [1600, 900]]) {
+    for (const [width, height] of [[320, 240], [390, 780], [500, 320], [640, 480], [640, 900], [800, 600], [900, 700], [1024, 600], [1024, 420], [1320, 700], [1600, 900]]) {
         await v.page.setViewportSize({ width, height });
         await v.page.waitForTimeout(150);
+        // In a narrow window the button that cards are folded into takes their place; in a low one a note the hint's.
+        const there = await v.page.evaluate((all) => all.filter((part) => part !== '#hint' || innerHeight > 400)
+            .map((part) => (part === '#looks' && document.getElementById('cards').offsetWidth ? '#cards' : part)), parts);
         const boxes = await v.page.evaluate((all) => all.map((part) => {
             const { left, top, right, bottom } = document.querySelector(part).getBoundingClientRect();
             return { part, left, top, right, bottom };
-        }), parts);
+        }), there);
         const say = (a) => `${a.part} (${[a.left, a.top, a.right, a.bottom].map(Math.round)})`;
         for (const a of boxes) {
             assert.ok(a.left >= 0 && a.top >= 0 && a.right <= width + 0.5 && a.bottom <= height + 0.5, `${say(a)} at ${width} x ${height}`);
-            assert.ok(a.bottom - a.top > 20 && a.right - a.left > 40, `${say(a)} is squeezed at ${width} x ${height}`);
+            assert.ok(a.bottom - a.top > 16 && a.right - a.left > 40, `${say(a)} is squeezed at ${width} x ${height}`);
             for (const b of boxes)
                 assert.ok(a === b || a.right <= b.left + 1 || b.right <= a.left + 1 || a.bottom <= b.top + 1 || b.bottom <= a.top + 1,
                     `${say(a)} and ${say(b)} overlap at ${width} x ${height}`);
@@ -406,7 +432,7 @@ test('tools are added and removed, by mouse and by keys, and what cannot be is s
     await v.page.getByText('Add a tool', { exact: true }).click();
     assert.equal(await v.page.locator('#add-length-row').isVisible(), false);
     assert.ok(Number(await v.page.locator('#add-radius').inputValue()) > 0);
-    for (const [radius, because] of [['0', 'more than zero'], ['-3', 'more than zero'], ['', 'in millimetres']]) {
+    for (const [radius, because] of [['0', 'more than zero'], ['-3', 'more than zero'], ['', 'in mm']]) {
         await v.page.locator('#add-radius').fill(radius);
         await v.page.getByRole('button', { name: 'Add', exact: true }).click();
         await v.page.locator('#add-trouble').getByText(because).waitFor();

@@ -13,7 +13,7 @@ const parts = {};
 
 before(async () => {
     const files = [
-        'picture/surface', 'picture/fibreLines', 'picture/embedded', 'picture/palette', 'picture/tissueNoise', 'picture/camera', 'hands/pick',
+        'picture/surface', 'picture/fibreLines', 'picture/embedded', 'picture/palette', 'picture/tissueNoise', 'picture/camera', 'picture/freepart', 'hands/pick',
         'inspect/measurecard', 'inspect/capture', 'inspect/plots', 'inspect/scan', 'cards/graph', 'cards/panel', 'cards/toolcard', 'cards/range', 'cards/bodycard', 'cards/addtool', 'link/protocol', 'dom',
     ];
     await build({
@@ -282,6 +282,7 @@ test('17,000 embedded vertices are moved and lit; how long that takes is printed
 test('the range of the force is a round number not below the peak', () => {
     const { niceRange } = parts.graph;
     assert.deepEqual([0.01, 0.05, 0.06, 0.3, 0.51, 1.2, 3, 7].map((v) => niceRange(v)), [0.05, 0.05, 0.1, 0.5, 1, 2, 5, 10]);
+    assert.equal(niceRange(1.3e-6, 5e-9), 2e-6);
 });
 
 test('the history keeps the last ticks in order, beyond its size too', () => {
@@ -331,22 +332,41 @@ test('numbers are written with three digits and a unit', () => {
     assert.equal(withUnit(-1250, 'Pa'), '−1.25 kPa');
     assert.equal(withUnit(0, 'Pa'), '0 Pa');
     assert.equal(withUnit(999.9, 'Pa'), '1.00 kPa');
+    assert.equal(withUnit(1.31e-9, 'N'), '1.31 nN');
+});
+
+test('numbers of one kind share a unit and places, whatever the size of the body', () => {
+    const { scaleFor } = parts.dom;
+    const says = (value, largest, unit) => `${scaleFor(largest, unit).text(value)} ${scaleFor(largest, unit).unit}`;
+    assert.equal(says(0, 0.2, 'N'), '0.000 N');
+    assert.equal(says(1.306, 5, 'N'), '1.31 N');
+    assert.equal(says(1.31e-6, 2e-6, 'N'), '1.31 µN');
+    assert.equal(says(4e-10, 5e-9, 'N'), '0.40 nN');
+    assert.equal(says(13, 200, 'N'), '13 N');
+    assert.equal(scaleFor(0.02, 'N').short(0.02), '20');
+    const { placeText } = parts.measurecard;
+    assert.equal(placeText([0.0123, -0.2, 0], 0.35), '12.30, −200.00, 0.00 mm');
+    assert.equal(placeText([4e-5, 1.25e-6, 0], 69e-6), '40.00, 1.25, 0.00 µm');
 });
 
 test('the range of a resting organ has a floor, so that rounding is not spread over all colours', () => {
-    const { follow, floorOf } = parts.range;
-    assert.deepEqual([['m', 1e-4], ['Pa', 1], ['J/m³', 0.01]].map(([unit]) => floorOf(unit)), [1e-4, 1, 0.01]);
-    assert.equal(floorOf(''), 0);
+    const { follow, floorOf, forceFloor } = parts.range;
+    assert.deepEqual(['m', 'Pa', 'J/m³', ''].map((unit) => floorOf(unit, 0.35)), [1e-4, 1, 0.01, 0]);
+    assert.equal(floorOf('m', 69e-6), 2e-8, 'that of a length is a part of the body');
+    const body = (size, ...moduli) => ({ lower: [0, 0, 0], upper: [size, 0, 0], materials: moduli.map((shear_modulus) => ({ shear_modulus })) });
+    assert.equal(forceFloor(body(0.35, 4e3)), 0.2);
+    assert.equal(forceFloor(body(69e-6, 9e9, 2e3)), 5e-9);
+    assert.equal(forceFloor(body(1, 8e10)), 0.2);
     const still = { min: 0, max: 0 };
-    assert.deepEqual(follow(still, 3e-19, 4e-18, 'm', false), { min: 0, max: 1e-4 });
-    assert.deepEqual(follow(still, -2e-9, 1e-9, 'Pa', true), { min: -1, max: 1 });
-    assert.deepEqual(follow(still, 0, 250, 'Pa', false), { min: 0, max: 250 });
-    assert.deepEqual(follow(still, -250, 100, 'Pa', true), { min: -250, max: 250 });
+    assert.deepEqual(follow(still, 3e-19, 4e-18, 1e-4, false), { min: 0, max: 1e-4 });
+    assert.deepEqual(follow(still, -2e-9, 1e-9, 1, true), { min: -1, max: 1 });
+    assert.deepEqual(follow(still, 0, 250, 1, false), { min: 0, max: 250 });
+    assert.deepEqual(follow(still, -250, 100, 1, true), { min: -250, max: 250 });
     // Downwards slowly, and never below the floor.
     let range = { min: 0, max: 250 };
-    range = follow(range, 0, 0, 'Pa', false);
+    range = follow(range, 0, 0, 1, false);
     assert.ok(range.max < 250 && range.max > 230);
-    for (let i = 0; i < 500; i++) range = follow(range, 0, 0, 'Pa', false);
+    for (let i = 0; i < 500; i++) range = follow(range, 0, 0, 1, false);
     assert.ok(Math.abs(range.max - 1) < 1e-6, `${range.max}`);
 });
 
@@ -362,8 +382,9 @@ test('times are written in milliseconds, and slow motion is never faster than as
     const { span, slowness } = parts.panel;
     assert.deepEqual([21, 99.95, 231, 1520, 99920, null].map(span), ['21.0 µs', '0.10 ms', '0.23 ms', '1.52 ms', '99.9 ms', '–']);
     assert.equal(slowness({ pace: 1, real_time_factor_now: 0.82 }), '0.82 × real time');
-    assert.equal(slowness({ pace: 1, real_time_factor_now: 1.01 }), 'catching up with the clock');
-    assert.equal(slowness({ pace: 0.5, real_time_factor_now: 0.499 }), 'catching up with the clock');
+    assert.equal(slowness({ pace: 1, real_time_factor_now: null }), '', 'not known yet');
+    assert.equal(slowness({ pace: 1, real_time_factor_now: 1.01 }), null, 'it catches up');
+    assert.equal(slowness({ pace: 0.5, real_time_factor_now: 0.499 }), null);
 });
 
 test('the badge says real time only where it is', () => {
@@ -399,13 +420,42 @@ test('the first look is from where the scene says, or from low y', () => {
     delete globalThis.matchMedia;
 });
 
+test('the organ is placed where cards and bars leave room, and all of it is there', () => {
+    const { freePart } = parts.freepart;
+    const covers = [{ left: 750, top: 0, right: 1000, bottom: 570 }, { left: 380, top: 570, right: 980, bottom: 626 }, { left: 18, top: 400, right: 268, bottom: 626 }];
+    const free = freePart(1000, 640, covers);
+    assert.deepEqual(free, { left: 274, top: 0, right: 744, bottom: 564 });
+    assert.deepEqual(freePart(300, 300, [{ left: 0, top: 20, right: 300, bottom: 280 }]), { left: 0, top: 0, right: 300, bottom: 300 }, 'nothing is free: the window');
+    globalThis.matchMedia = () => ({ matches: false });
+    for (const view of [[-0.14, -0.925, 0.352], [0, 0.8, 0.6], [0.6, 0, -0.8]]) {
+        const endoscope = new parts.camera.Endoscope();
+        const half = [0.05, 0.02, 0.01];
+        endoscope.resize(1000, 640, free);
+        endoscope.frame([1, 2, 3], Math.hypot(...half), view, half);
+        endoscope.update(0);
+        const { camera } = endoscope;
+        const matrix = camera.projectionMatrix.clone().multiply(camera.matrixWorld.clone().invert()).elements;
+        const pixel = (p) => {
+            const [x, y, , w] = [0, 1, 2, 3].map((row) => matrix[row] * p[0] + matrix[4 + row] * p[1] + matrix[8 + row] * p[2] + matrix[12 + row]);
+            return [500 * (1 + x / w), 320 * (1 - y / w)];
+        };
+        const corners = Array.from({ length: 8 }, (_, c) => pixel([1, 2, 3].map((v, k) => v + (c & (1 << k) ? half[k] : -half[k]))));
+        for (const [x, y] of corners) assert.ok(x > free.left && x < free.right && y > free.top && y < free.bottom, `${x}, ${y}`);
+        const wide = Math.max(...corners.map(([x]) => x)) - Math.min(...corners.map(([x]) => x));
+        const high = Math.max(...corners.map(([, y]) => y)) - Math.min(...corners.map(([, y]) => y));
+        assert.ok(wide > 0.7 * 470 || high > 0.7 * 564, `it fills the part: ${wide} x ${high}`);
+    }
+    delete globalThis.matchMedia;
+});
+
 test('a tool says its force, its limit, and when that is reached', () => {
     const { load } = parts.toolcard;
     const rest = { force: [0, 0, 0], limit: 4.39, depth: 0, limited: false, grasp: 0 };
     assert.equal(load(rest), '0.00 of 4.39 N');
     assert.equal(load({ ...rest, force: [3, 0, 4], depth: 0.00112, limited: true }),
         '5.00 of 4.39 N, 1.12 mm deep, limit reached');
-    assert.equal(load({ ...rest, force: [0.3, 0, 0.4], limit: 0 }), '0.50 N');
+    assert.equal(load({ ...rest, force: [0.3, 0, 0.4], limit: 0 }), '0.500 N');
+    assert.equal(load({ ...rest, force: [1e-6, 0, 0], limit: 2e-6 }), '1.00 of 2.00 µN');
     assert.equal(load({ ...rest, grasp: 0.126, depth: 0.0004 }), '0.00 of 4.39 N, grasp 0.13 N, 400 µm deep');
 });
 
@@ -467,12 +517,25 @@ test('sliders of the body: what they say is what they show, and nothing is lost 
 });
 
 test('sizes of tools fit the body, and what is no size is said', () => {
-    const { usual, fault } = parts.addtool;
-    assert.deepEqual(usual('sphere', 0.2), { radius: 6, length: 0 });
-    assert.deepEqual(usual('capsule', 0.2), { radius: 4, length: 100 });
-    assert.deepEqual(usual('grasper', 0.2), { radius: 2, length: 20 });
-    assert.equal(fault('radius', 0.1), '');
-    assert.match(fault('radius', 0), /more than zero/);
-    assert.match(fault('length', -1), /length must be more/);
-    assert.match(fault('length', NaN), /in millimetres/);
+    const { usual, fault, longestEdge, namedSize } = parts.addtool;
+    assert.deepEqual(usual('sphere', 0.2, 0.005), { radius: 0.006, length: 0 });
+    assert.deepEqual(usual('capsule', 0.2, 0.005), { radius: 0.004, length: 0.1 });
+    assert.deepEqual(usual('grasper', 0.2, 0.005), { radius: 0.002, length: 0.02 });
+    // Large faces would not feel what is thinner than a part of their edges, and half the body is too thick.
+    for (const shape of ['sphere', 'capsule', 'grasper'])
+        for (const [size, edge] of [[0.2, 0.1], [1.73, 1], [0.02, 0.0133], [69e-6, 4e-5]]) {
+            const { radius } = usual(shape, size, edge);
+            assert.ok(radius > (1.1 * edge * Math.SQRT1_2) / 6 && radius < 0.5 * size, `${shape} in ${size}: ${radius}`);
+        }
+    const { x, quads } = cube(4, false);
+    assert.ok(Math.abs(longestEdge({ rest: x, faces: quads }) - 0.5) < 1e-6);
+    assert.deepEqual(namedSize('a radius of 0.2 mm is too thin: large faces of this body would not feel the tool everywhere; give it 1.24 mm or more'),
+        { what: 'radius', size: 1.24 / 1000 });
+    assert.deepEqual(namedSize('a length of 2000 mm is too large for a body that is 200 mm across; give the tool 990 mm at most'),
+        { what: 'length', size: 0.99 });
+    assert.equal(namedSize('no place is left'), null);
+    assert.equal(fault('radius', 0.1, 'mm'), '');
+    assert.match(fault('radius', 0, 'mm'), /more than zero/);
+    assert.match(fault('length', -1, 'mm'), /length must be more/);
+    assert.match(fault('length', NaN, 'µm'), /in µm/);
 });

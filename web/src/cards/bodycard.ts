@@ -1,5 +1,6 @@
 /* The body while it runs: gravity, damping, stiffness and how active muscle is, as sliders. What somebody else sets is shown here,
  * too: the engine says what holds. */
+import { showCards } from './desk';
 import { element, write } from '../dom';
 import { ONLY_WATCHES, type Session } from '../link/session';
 import type { Hello, Request, Status } from '../link/protocol';
@@ -104,6 +105,7 @@ export class BodyCard {
     open(): void {
         if (this.card.hidden) return this.say('This engine cannot change the body while it runs.');
         if (this.session.watches) return this.say(ONLY_WATCHES);
+        showCards();
         this.card.open = true;
         this.gravity.focus();
     }

@@ -1,8 +1,8 @@
 /* What the colours show: tissue, or one of the engine's fields with its map, legend, range and unit. */
 import { element, withUnit, write } from '../dom';
 import { STEPS, colourMap, css, organColour, processorColour, type MapName, type Rgb } from '../picture/palette';
-import { follow } from './range';
-import type { FieldInfo, Frame, Hello } from '../link/protocol';
+import { floorOf, follow } from './range';
+import { sizeOfBody, type FieldInfo, type Frame, type Hello } from '../link/protocol';
 import type { View } from '../picture/view';
 
 const PROCESSOR = 'processor';
@@ -67,9 +67,13 @@ export class Colours {
     frame(frame: Frame): void {
         if (!this.chosen || this.legend.hidden || frame.field !== this.chosen.number) return;
         if (this.auto.checked)
-            Object.assign(this, follow(this, frame.min, frame.max, this.chosen.unit, this.map === 'signed'));
+            Object.assign(this, follow(this, frame.min, frame.max, this.floor, this.map === 'signed'));
         this.view.tissue.showValues(this.map, this.min, this.max);
         this.labels();
+    }
+
+    private get floor(): number {
+        return floorOf(this.chosen?.unit ?? '', this.hello ? sizeOfBody(this.hello) : 0);
     }
 
     private get map(): MapName {

@@ -1,11 +1,13 @@
-/* Force in newtons: number, bar with the peak of the last seconds, graph. */
-import { element, write } from '../dom';
+/* Force: number, bar with the peak of the last seconds, graph. */
+import { element, scaleFor, write } from '../dom';
 import { ForceHistory, Graph, niceRange } from './graph';
-import type { Forces } from '../link/protocol';
+import { forceFloor } from './range';
+import type { Forces, Hello } from '../link/protocol';
 
 export class ForceCard {
     readonly history = new ForceHistory();
-    range = 0.2;
+    range = 0.2; // N
+    private floor = 0.2;
     private readonly graph = new Graph(element<HTMLCanvasElement>('graph'));
     private readonly bar = element('bar');
     private readonly fill = element('bar-fill');
@@ -16,11 +18,13 @@ export class ForceCard {
 
     name(text: string): void {
         write(element('force-name'), text);
+        element('force-name').title = text; // a long one is cut off with an ellipsis
     }
 
-    clear(): void {
+    setHello(hello: Hello): void {
+        this.floor = forceFloor(hello);
         this.history.clear();
-        this.range = 0.2;
+        this.range = this.floor;
         this.draw();
     }
 
@@ -33,18 +37,19 @@ export class ForceCard {
         const now = this.history.ago(0);
         const peak = this.history.peak();
         // The range follows the peak upwards at once; downwards only when it is far too large.
-        const wanted = Math.max(0.2, niceRange(peak * 0.99));
+        const wanted = niceRange(peak * 0.99, this.floor);
         if (wanted > this.range || wanted < this.range / 4) this.range = wanted;
-        write(this.value, `${now.toFixed(2)} N`);
-        write(this.rangeText, `${this.range} N`);
+        const scale = scaleFor(this.range, 'N');
+        write(this.value, `${scale.text(now)} ${scale.unit}`);
+        write(this.rangeText, `${scale.short(this.range)} ${scale.unit}`);
         this.fill.style.transform = `scaleX(${Math.min(1, now / this.range).toFixed(4)})`;
         this.peak.style.left = `calc(${(Math.min(1, peak / this.range) * 100).toFixed(2)}% - 2px)`;
         this.peak.hidden = peak < this.range * 0.01;
         if (performance.now() > this.nextAria) {
             this.nextAria = performance.now() + 500;
             this.bar.setAttribute('aria-valuemax', String(this.range));
-            this.bar.setAttribute('aria-valuenow', now.toFixed(3));
+            this.bar.setAttribute('aria-valuenow', String(Number(now.toPrecision(3))));
         }
-        this.graph.draw(this.history, this.range);
+        this.graph.draw(this.history, this.range, scale);
     }
 }

@@ -1,6 +1,8 @@
 /* The force over the last five seconds, one value per tick, and the range that bar, graph and arrow
  * share. A ring of numbers; drawing takes the least and greatest of each column of pixels. */
 
+import type { Scale } from '../dom';
+
 const SECONDS = 5;
 const MOST = 8192;
 
@@ -37,10 +39,11 @@ export class ForceHistory {
     }
 }
 
-/* The least of 1, 2, 5, 10, 20 ... times `from` that is not below `value`. */
+/* The least of 1, 2, 5, 10, 20 ... and their tenths that is below neither. */
 export function niceRange(value: number, from = 0.05): number {
-    let range = from;
-    for (let i = 0; range < value && i < 30; i++) range *= i % 3 === 2 ? 2.5 : 2;
+    const wanted = Math.max(value, from);
+    const decade = 10 ** Math.floor(Math.log10(wanted));
+    const range = [1, 2, 5, 10].find((one) => one * decade >= wanted * (1 - 1e-9))! * decade;
     return Number(range.toPrecision(2));
 }
 
@@ -55,16 +58,16 @@ export class Graph {
         this.resize();
     }
 
-    draw(history: ForceHistory, range: number): void {
+    draw(history: ForceHistory, range: number, scale: Scale): void {
         const pen = this.pen;
         if (!pen || !this.width) return;
-        const left = 36;
+        const left = 44; // room for `0.5 mN`
         const bottom = this.height - 17;
         const top = 7;
         const wide = this.width - left - 4;
         const tall = bottom - top;
         pen.clearRect(0, 0, this.width, this.height);
-        this.axes(pen, left, top, wide, tall, range);
+        this.axes(pen, left, top, wide, tall, range, scale);
 
         const shown = history.shown;
         const have = Math.min(history.count, shown);
@@ -110,6 +113,7 @@ export class Graph {
         wide: number,
         tall: number,
         range: number,
+        scale: Scale,
     ): void {
         pen.font = '11px system-ui, "DejaVu Sans", sans-serif';
         pen.fillStyle = '#a3abb5';
@@ -123,7 +127,7 @@ export class Graph {
             pen.moveTo(left, y);
             pen.lineTo(left + wide, y);
             pen.stroke();
-            pen.fillText(label((range * (2 - i)) / 2) + (i === 0 ? ' N' : ''), left - 5, y);
+            pen.fillText(scale.short((range * (2 - i)) / 2) + (i === 0 ? ` ${scale.unit}` : ''), left - 5, y);
         }
         pen.textBaseline = 'alphabetic';
         pen.textAlign = 'center';
@@ -148,5 +152,3 @@ export class Graph {
         this.pen?.setTransform(ratio, 0, 0, ratio, 0, 0);
     }
 }
-
-const label = (value: number): string => String(Number(value.toPrecision(2)));

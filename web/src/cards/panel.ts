@@ -105,6 +105,11 @@ export class Panel {
         });
     }
 
+    /* Nothing is known any more. */
+    lost(): void {
+        write(element('panel-short'), '');
+    }
+
     private late(status: Status): boolean {
         return (status.tick_us.p999 ?? 0) > this.tick * 1e6;
     }
@@ -125,11 +130,12 @@ export function playing(status: Pick<Status, 'pace' | 'real_time_factor_now'>): 
     return { text: status.pace === 1 ? 'real time' : `${status.pace} × real time, as asked for`, slow: false };
 }
 
-/* What the banner says beside the words slow motion: a factor only where it is below what is asked for. */
-export function slowness(status: Pick<Status, 'pace' | 'real_time_factor_now'>): string {
+/* What the banner says beside the words slow motion, '' while no second has passed. null: the run is behind
+ * the clock, but as fast as asked for or faster. It catches up, which is not slow. */
+export function slowness(status: Pick<Status, 'pace' | 'real_time_factor_now'>): string | null {
     const factor = status.real_time_factor_now;
-    if (factor !== null && factor > 0 && factor < 0.99 * (status.pace || 1)) return `${factor.toFixed(2)} × real time`;
-    return 'catching up with the clock';
+    if (factor === null || factor <= 0) return '';
+    return factor < 0.99 * (status.pace || 1) ? `${factor.toFixed(2)} × real time` : null;
 }
 
 const sentence = (text: string): string => (text ? text[0]!.toUpperCase() + text.slice(1).replaceAll(' us', ' µs') + '.' : '');
@@ -154,17 +160,25 @@ export class StateLine {
             paused: 'paused',
             stopped: 'stopped',
         };
-        const slow = status.slow_motion && status.state === 'playing';
-        this.line.className = slow || (run.slow && status.state === 'playing') ? 'slow' : status.state;
-        write(this.text, slow ? 'slow motion' : texts[status.state]);
+        const runs = status.state === 'playing';
+        const late = status.slow_motion && runs;
+        const slow = late ? slowness(status) : null;
+        const banner = this.bannerStays(slow !== null, runs);
+        // Badge and banner say the same: as long as the one is there the other says so, too.
+        this.line.className = banner || late || (run.slow && runs) ? 'slow' : status.state;
+        write(this.text, banner ? 'slow motion' : late ? 'catching up with the clock' : texts[status.state]);
+        this.slow.hidden = !banner;
+        if (slow === null) return;
+        write(element('slow-text'), slow);
+        write(element('slow-advice'), sentence(status.slow_advice));
+    }
+
+    /* For a second after the last slow moment, so that it can be read. */
+    private bannerStays(slow: boolean, runs: boolean): boolean {
         const now = performance.now();
         if (slow) this.shownSince = now;
-        // Stays for a second, so that it can be read.
-        this.slow.hidden =
-            status.state !== 'playing' || (!slow && (this.shownSince === 0 || now - this.shownSince > 1000));
-        if (!slow) return;
-        write(element('slow-text'), slowness(status));
-        write(element('slow-advice'), sentence(status.slow_advice));
+        if (!runs) this.shownSince = 0;
+        return this.shownSince > 0 && now - this.shownSince <= 1000;
     }
 
     lost(): void {

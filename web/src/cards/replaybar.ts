@@ -5,6 +5,7 @@ import type { Session } from '../link/session';
 import type { Status } from '../link/protocol';
 
 const SEEK_MS = 80;
+const AGREED = 'At its end: all hashes agreed with the recorded ones.';
 const HEARD_MS = 400; // the user's choice stands until the engine has heard of it
 
 export class ReplayBar {
@@ -15,6 +16,8 @@ export class ReplayBar {
     private movedAt = 0;
     private length = 0;
     private at = 0;
+    private name = '';
+    private differed = false; // a hash of this recording, since it is played
 
     constructor(private readonly session: Session) {
         this.slider.addEventListener('input', () => {
@@ -53,7 +56,11 @@ export class ReplayBar {
     update(status: Status): void {
         const replay = status.replay;
         this.bar.hidden = !replay;
+        if (!replay) this.name = '';
         if (!replay) return;
+        if (replay.name !== this.name) this.differed = false;
+        this.name = replay.name;
+        this.differed ||= status.message !== '';
         this.slider.disabled = element<HTMLButtonElement>('replay-leave').disabled = this.session.watches;
         this.length = replay.length;
         this.at = replay.time;
@@ -62,6 +69,7 @@ export class ReplayBar {
         if (performance.now() - this.movedAt > HEARD_MS) this.slider.value = String(replay.time);
         write(element('replay-time'), `${replay.time.toFixed(2)} of ${replay.length.toFixed(2)} s`);
         write(element('replay-trouble'), status.message);
+        write(element('replay-agreed'), this.ended && !this.differed ? AGREED : '');
     }
 
     /* Once per animation frame: the engine hears of a slider a dozen times a second. */

@@ -1,4 +1,5 @@
 /* What was saved: states to go on from, and recordings to play. They outlive the session. */
+import { showCards } from './desk';
 import { element } from '../dom';
 import type { Session } from '../link/session';
 import type { Hello, Status } from '../link/protocol';
@@ -29,6 +30,7 @@ export class SavedCard {
 
     toggle(): void {
         this.card.open = !this.card.open;
+        if (this.card.open) showCards();
         if (this.card.open) this.card.querySelector<HTMLElement>('button, summary')?.focus();
     }
 

@@ -1,15 +1,16 @@
 /* The list of tools: the hand, the scene's instruments, and those that were added. */
 import { check, radios } from './colours';
-import { element, withUnit, write } from '../dom';
+import { element, scaleFor, withUnit, write } from '../dom';
 import type { Instrument } from '../hands/instrument';
 import type { Hello, Status, ToolInfo, ToolStatus } from '../link/protocol';
 
 /* What a tool bears: its force of its limit, how hard its jaws grasp, and how deep the tissue is in
  * it. */
 export function load(tool: Pick<ToolStatus, 'force' | 'limit' | 'depth' | 'limited' | 'grasp'>): string {
-    const force = Math.hypot(...tool.force).toFixed(2);
-    const words = [tool.limit > 0 ? `${force} of ${tool.limit.toFixed(2)} N` : `${force} N`];
-    if (tool.grasp > 0) words.push(`grasp ${tool.grasp.toFixed(2)} N`);
+    const force = Math.hypot(...tool.force);
+    const { text, unit } = scaleFor(tool.limit || force, 'N');
+    const words = [tool.limit > 0 ? `${text(force)} of ${text(tool.limit)} ${unit}` : `${text(force)} ${unit}`];
+    if (tool.grasp > 0) words.push(`grasp ${text(tool.grasp)} ${unit}`);
     if (tool.depth > 0) words.push(`${withUnit(tool.depth, 'm')} deep`);
     if (tool.limited) words.push('limit reached');
     return words.join(', ');

@@ -1,30 +1,42 @@
 /* Mouse, pen and fingers on the picture. What a press means depends on what lies under it:
  *
- *     an instrument      choose and move it
+ *     an instrument      choose and move it; also a few pixels beside it
  *     the organ          take hold of it and pull
  *     nothing            look around
  *     a second finger    let go; nearer, farther, aside
  */
 import type { Hand } from './hand';
 import type { MeasureCard } from '../inspect/measurecard';
+import type { Hit } from './pick';
 import type { Instrument } from './instrument';
 import type { View } from '../picture/view';
 
 type Doing = 'nothing' | 'pulling' | 'moving' | 'turning' | 'aside' | 'pinching';
 
-interface Finger {
+interface Place {
     x: number;
     y: number;
 }
 
+interface Finger extends Place {
+    button: number; // that it came down with, as a bit of `buttons`
+}
+
+/* What lies under the pointer: where an instrument and the organ both do, what is in front. */
+interface Target {
+    tool: number; // -1: none
+    hit: Hit | null;
+}
+
 const TURN = 0.0075; // rad per pixel
-const MARGIN = { mouse: 0.012, touch: 0.03 }; // beside an instrument, per distance
+const MARGIN = { mouse: 6, touch: 14 }; // pixels beside an instrument's outline that still take it
+const BITS = [1, 4, 2]; // of `buttons`, by `button`
 
 export class Pointer {
     private doing: Doing = 'nothing';
     private readonly fingers = new Map<number, Finger>();
     private spread = 0;
-    private hover: Finger | null = null;
+    private hover: Place | null = null;
 
     constructor(
         private readonly view: View,
@@ -48,10 +60,11 @@ export class Pointer {
     /* The cursor tells what a press would do; once per animation frame. */
     update(): void {
         if (!this.hover || this.doing !== 'nothing' || !this.hand.allowed) return;
-        const ray = this.ray(this.hover);
+        const { tool, hit } = this.target(this.hover, MARGIN.mouse);
         this.hover = null;
-        const over = this.view.hit(ray) !== null || this.view.instruments.under(ray, MARGIN.mouse) >= 0;
-        this.view.canvas.classList.toggle('over', over);
+        const classes = this.view.canvas.classList;
+        classes.toggle('over-tool', tool >= 0);
+        classes.toggle('over', tool < 0 && hit !== null);
     }
 
     /* Lets go of an instrument only: the run was put somewhere else. */
@@ -69,7 +82,7 @@ export class Pointer {
 
     private down(event: PointerEvent): void {
         this.view.canvas.setPointerCapture(event.pointerId);
-        this.fingers.set(event.pointerId, { x: event.clientX, y: event.clientY });
+        this.fingers.set(event.pointerId, { x: event.clientX, y: event.clientY, button: BITS[event.button] ?? 0 });
         if (this.fingers.size === 2) {
             if (this.doing === 'pulling') this.hand.release();
             if (this.doing === 'moving') this.instrument.drop();
@@ -78,21 +91,16 @@ export class Pointer {
         }
         if (this.fingers.size > 2) return;
         if (event.button !== 0 || event.shiftKey) return this.do('aside');
-        const ray = this.ray({ x: event.clientX, y: event.clientY });
-        const hit = this.view.hit(ray);
+        const at = { x: event.clientX, y: event.clientY };
+        const { tool, hit } = this.target(at, event.pointerType === 'touch' ? MARGIN.touch : MARGIN.mouse);
         if (hit && this.measure.press !== 'pull') {
             this.measure.take(hit);
             return this.do('turning');
         }
         if (!this.hand.allowed) return this.do('turning');
-        const tool = this.view.instruments.under(
-            ray,
-            event.pointerType === 'touch' ? MARGIN.touch : MARGIN.mouse,
-        );
-        const tip = this.view.instruments.position(tool);
-        if (tip && (!hit || ray.origin.distanceTo(tip) < hit.distance + 0.2 * this.view.surface!.size)) {
+        if (tool >= 0) {
             if (tool !== this.instrument.chosen) this.instrument.choose(tool);
-            this.instrument.take(ray);
+            this.instrument.take(this.ray(at));
             this.used('move');
             return this.do('moving');
         }
@@ -110,6 +118,8 @@ export class Pointer {
             this.hover = { x: event.clientX, y: event.clientY };
             return;
         }
+        // Browsers tell `pointerup` only when the last of several buttons is up.
+        if (finger.button && !(event.buttons & finger.button)) return this.up(event);
         const dx = event.clientX - finger.x;
         const dy = event.clientY - finger.y;
         finger.x = event.clientX;
@@ -167,12 +177,21 @@ export class Pointer {
     private do(doing: Doing): void {
         this.doing = doing;
         const classes = this.view.canvas.classList;
-        classes.remove('over');
+        classes.remove('over', 'over-tool');
         classes.toggle('pulling', doing === 'pulling' || doing === 'moving');
         classes.toggle('turning', doing === 'turning' || doing === 'aside');
     }
 
-    private ray(at: Finger) {
+    private target(at: Place, margin: number): Target {
+        const { view } = this;
+        const ray = this.ray(at);
+        const hit = view.hit(ray);
+        const under = view.instruments.under(ray, margin, view.endoscope.pixel(view.canvas.clientHeight));
+        const tool = under && under.distance < (hit?.distance ?? Infinity) ? under.tool : -1;
+        return { tool, hit };
+    }
+
+    private ray(at: Place) {
         const { clientWidth, clientHeight } = this.view.canvas;
         return this.view.endoscope.rayThrough(
             (at.x / clientWidth) * 2 - 1,

@@ -2,9 +2,10 @@
  * from the engine, for the node of the mesh and the element that are nearest; distances are the picture's. */
 import * as THREE from 'three';
 import { check, radios } from '../cards/colours';
-import { element, withUnit, write } from '../dom';
+import { showCards } from '../cards/desk';
+import { element, scaleFor, withUnit, write } from '../dom';
 import { follow, nearestNode, type Hit } from '../hands/pick';
-import type { Hello, Read, Values } from '../link/protocol';
+import { sizeOfBody, type Hello, type Read, type Values } from '../link/protocol';
 import type { Session } from '../link/session';
 import type { View } from '../picture/view';
 
@@ -17,6 +18,8 @@ const HOW: Record<Press, string> = {
     distance: 'Press on the organ at two places; Enter takes the middle of the picture.',
 };
 
+const PLACES_OF_SIZE = 40; // three digits of that part of the body
+
 type Row = [name: string, value: string];
 
 /* Values of a node or an element, as rows of a table. */
@@ -26,6 +29,12 @@ export function rowsOf(read: Read): Row[] {
         ['pressure', read.pressure === null ? '–' : withUnit(read.pressure, 'Pa')],
         ['energy', read.energy === null ? '–' : withUnit(read.energy, 'J/m³')],
     ];
+}
+
+/* A place in a body of that size [m]. */
+export function placeText(place: readonly number[], size: number): string {
+    const { text, unit } = scaleFor(size / PLACES_OF_SIZE, 'm');
+    return `${place.map(text).join(', ')} ${unit}`;
 }
 
 /* A distance now, and what it was at rest. */
@@ -87,6 +96,7 @@ export class MeasureCard {
     }
 
     take(hit: Hit): void {
+        showCards();
         this.card.open = true;
         this.card.scrollIntoView({ block: 'nearest' });
         this.marked = this.press;
@@ -127,7 +137,7 @@ export class MeasureCard {
             [`node ${node.number}`, ''],
             ...rowsOf(node),
             ['displacement', withUnit(Math.hypot(...node.displacement), 'm')],
-            ['at rest', node.rest.map((x) => (1000 * x).toFixed(1).replace('-', '−')).join(', ') + ' mm'],
+            ['at rest', placeText(node.rest, this.hello ? sizeOfBody(this.hello) : 1)],
             [`element ${part.number}`, ''],
             ...rowsOf(part),
             ['organ', material?.name || `${part.material + 1}`],

@@ -58,6 +58,10 @@ export interface Hello {
     watches: boolean; // this viewer may look, and do nothing to the run
 }
 
+/* The diagonal of the body at rest [m]. */
+export const sizeOfBody = (hello: Pick<Hello, 'lower' | 'upper'>): number =>
+    Math.hypot(...hello.upper.map((upper, i) => upper - hello.lower[i]!));
+
 export interface Percentiles {
     p50: number | null;
     p99: number | null;

@@ -1,14 +1,19 @@
 /* The endoscope: a camera that looks at a point, turned about it, moved nearer and aside. z is up.
  * Movements glide to where they are meant to end, unless the user prefers less motion. */
 import * as THREE from 'three';
+import type { Box } from './freepart';
 
 const GLIDE = 0.09; // s, time constant
+const LOOK_ABOVE = 0.05; // of the body's size
+const ROOM = 1.12; // around the body, of the part of the window that is free
 const STEEPEST = 1.5; // rad above or below the horizon
 
 export class Endoscope {
     readonly camera = new THREE.PerspectiveCamera(32, 1, 0.01, 10);
     private readonly still = matchMedia('(prefers-reduced-motion: reduce)');
-    private readonly home = { target: new THREE.Vector3(), size: 1, azimuth: 0, height: 0 };
+    private readonly home = { target: new THREE.Vector3(), size: 1, azimuth: 0, height: 0, half: [1, 1, 1] };
+    private window = { width: 1, height: 1 };
+    private free: Box = { left: 0, top: 0, right: 1, bottom: 1 }; // what nothing covers
     private readonly wanted = { target: new THREE.Vector3(), distance: 4, azimuth: 0, height: 0 };
     private readonly now = { target: new THREE.Vector3(), distance: 4, azimuth: 0, height: 0 };
     private readonly ray = new THREE.Raycaster();
@@ -19,10 +24,12 @@ export class Endoscope {
         center: readonly [number, number, number],
         size: number,
         [x, y, z]: readonly [number, number, number] = [-0.14, -0.925, 0.352],
+        half: readonly number[] = [size, size, size], // of the sides of the body's box
     ): void {
         // There is more to do above than below: one pulls upwards.
-        this.home.target.set(center[0], center[1], center[2] + 0.05 * size);
+        this.home.target.set(center[0], center[1], center[2] + LOOK_ABOVE * size);
         this.home.size = size;
+        this.home.half = [...half];
         this.home.azimuth = x === 0 && y === 0 ? 0 : Math.atan2(x, -y);
         this.home.height = clamped(Math.atan2(z, Math.hypot(x, y)));
         this.reset(true);
@@ -97,10 +104,28 @@ export class Endoscope {
         return Math.abs(after - before) > 1e-6 * distance;
     }
 
-    resize(aspect: number): void {
-        const atHome = Math.abs(this.wanted.distance - this.fitting()) < 1e-9;
-        this.camera.aspect = aspect;
+    /* The window's size and the part of it that nothing covers: where what one looks at is. */
+    resize(width: number, height: number, free: Box): void {
+        const before = this.fitting();
+        const atHome = Math.abs(this.wanted.distance - before) < 1e-9 * before;
+        this.window = { width, height };
+        this.free = free;
+        this.camera.aspect = width / height;
+        const { x, y } = this.centre;
+        this.camera.setViewOffset(width, height, -0.5 * x * width, 0.5 * y * height, width, height);
         if (atHome) this.wanted.distance = this.fitting();
+    }
+
+    /* Of the free part, in the picture: x and y from -1 to 1. */
+    get centre(): { x: number; y: number } {
+        const { left, right, top, bottom } = this.free;
+        return { x: (left + right) / this.window.width - 1, y: 1 - (top + bottom) / this.window.height };
+    }
+
+    /* In pixels, and how far away the eye is when all of the body is seen. */
+    get fit(): { x: number; y: number; distance: number; size: number } {
+        const { left, right, top, bottom } = this.free;
+        return { x: (left + right) / 2, y: (top + bottom) / 2, distance: this.fitting(), size: this.home.size };
     }
 
     /* The ray through a point of the picture, x and y from -1 to 1. */
@@ -109,9 +134,27 @@ export class Endoscope {
         return this.ray.ray;
     }
 
+    /* How wide a pixel is, per distance from the eye, of a picture that is so many high. */
+    pixel(height: number): number {
+        return (2 * Math.tan((this.camera.fov * Math.PI) / 360)) / height;
+    }
+
+    /* From where all corners of the body's box lie in the free part, with some room. */
     private fitting(): number {
-        const narrow = Math.min(1, this.camera.aspect);
-        return (this.home.size * 1.02) / (Math.tan((this.camera.fov * Math.PI) / 360) * narrow);
+        const { half, azimuth, height, size } = this.home;
+        const { left, right, top, bottom } = this.free;
+        const unit = Math.tan((this.camera.fov * Math.PI) / 360) / (ROOM * this.window.height); // per pixel from the middle
+        const [sinA, cosA, sinH, cosH] = [Math.sin(azimuth), Math.cos(azimuth), Math.sin(height), Math.cos(height)];
+        let distance = 0;
+        for (let corner = 0; corner < 8; corner++) {
+            const [x, y, z] = half.map((side, k) => (corner & (1 << k) ? side : -side)) as [number, number, number];
+            const up = z - LOOK_ABOVE * size;
+            const near = cosH * (sinA * x - cosA * y) + sinH * up;
+            const aside = Math.abs(cosA * x + sinA * y) / (right - left);
+            const above = Math.abs(cosH * up - sinH * (sinA * x - cosA * y)) / (bottom - top);
+            distance = Math.max(distance, near + Math.max(aside, above) / unit);
+        }
+        return distance;
     }
 
     private jump(): void {

@@ -13,14 +13,21 @@ interface DrawnTool {
     group: THREE.Group;
     jaws: [THREE.Object3D, THREE.Object3D] | null;
     material: THREE.ShaderMaterial;
-    rods: Rod[]; // what throws its shadow
-    reach: number; // radius of a ball about the tip that takes the pointer
+    rods: Rod[]; // its parts: what throws its shadow, and takes the pointer
+}
+
+/* A tool under the pointer, and how far from the eye it begins [m]. */
+export interface Under {
+    tool: number;
+    distance: number;
 }
 
 export class Instruments {
     readonly group = new THREE.Group();
     private readonly drawn: (DrawnTool | null)[] = [];
-    private readonly center = new THREE.Vector3();
+    private readonly from = new THREE.Vector3(); // scratch
+    private readonly to = new THREE.Vector3();
+    private readonly nearest = new THREE.Vector3();
 
     /* Those that are drawn already stay. */
     set(tools: readonly ToolInfo[], hands: number[]): void {
@@ -63,23 +70,28 @@ export class Instruments {
         });
     }
 
-    /* The tool under a ray, within a margin that grows with distance; -1: none. */
-    under(ray: THREE.Ray, margin: number): number {
-        let best = Infinity;
-        let found = -1;
-        const end = new THREE.Vector3();
-        this.drawn.forEach((one, i) => {
-            if (!one) return;
-            const near = margin * ray.origin.distanceTo(one.group.position);
-            end.set(0, 0, Math.max(one.info.length, one.reach)).applyQuaternion(one.group.quaternion);
-            end.add(one.group.position);
-            const gap = Math.sqrt(ray.distanceSqToSegment(one.group.position, end, undefined, this.center));
-            if (gap < one.info.radius + near && gap < best) {
-                best = gap;
-                found = i;
+    /* The tool whose drawn outline a ray meets or passes within `margin` pixels; of several the nearest to
+     * the eye. `pixel`: how wide one is per distance from the eye. */
+    under(ray: THREE.Ray, margin: number, pixel: number): Under | null {
+        let found: Under | null = null;
+        this.drawn.forEach((one, tool) => {
+            for (const rod of one?.rods ?? []) {
+                const distance = this.meet(ray, rod, margin, pixel);
+                if (distance < (found?.distance ?? Infinity)) found = { tool, distance };
             }
         });
         return found;
+    }
+
+    /* How far along the ray a rod begins; Infinity: it passes beside. */
+    private meet(ray: THREE.Ray, rod: Rod, margin: number, pixel: number): number {
+        rod.of.updateWorldMatrix(true, false);
+        this.from.copy(rod.from).applyMatrix4(rod.of.matrixWorld);
+        this.to.copy(rod.to).applyMatrix4(rod.of.matrixWorld);
+        const square = ray.distanceSqToSegment(this.from, this.to, this.nearest);
+        const distance = ray.origin.distanceTo(this.nearest);
+        if (Math.sqrt(square) > rod.radius + margin * pixel * distance) return Infinity;
+        return distance - Math.sqrt(Math.max(0, rod.radius ** 2 - square));
     }
 
     /* What throws shadows, in the order of the tools. */
@@ -105,14 +117,12 @@ function draw(info: ToolInfo): DrawnTool {
         rods.push({ from: new THREE.Vector3(0, 0, from), to: new THREE.Vector3(0, 0, to), radius, of });
     };
     let jaws: [THREE.Object3D, THREE.Object3D] | null = null;
-    let reach = info.radius;
     if (info.shape === 'sphere') {
         add(new THREE.SphereGeometry(info.radius, 40, 28));
         // What holds the ball; it touches nothing.
         add(rod(info.radius * 0.28, info.radius * 0.9, info.radius * 14));
         shade(0, 0, info.radius);
         shade(info.radius * 0.9, info.radius * 14, info.radius * 0.28);
-        reach = info.radius * 6;
     } else if (info.shape === 'capsule') {
         add(round(info.radius, info.length)).position.z = info.length / 2;
         shade(0, info.length, info.radius);
@@ -128,9 +138,8 @@ function draw(info: ToolInfo): DrawnTool {
         add(new THREE.SphereGeometry(info.radius * 1.35, 24, 18));
         add(rod(info.radius * 1.1, 0, info.length * 7));
         shade(0, info.length * 7, info.radius * 1.1);
-        reach = info.length * 2;
     }
-    return { info, group, jaws, material, rods, reach };
+    return { info, group, jaws, material, rods };
 }
 
 const round = (radius: number, length: number): THREE.BufferGeometry =>

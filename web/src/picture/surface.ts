@@ -38,6 +38,7 @@ export class Surface implements SurfaceView {
     readonly sides: Uint32Array; // four per face of the mesh: the edges around it
     readonly center: [number, number, number];
     readonly size: number;
+    readonly half: [number, number, number]; // of the sides of its box at rest
     readonly meanEdge: number; // of the mesh, at rest
     private readonly levels: Level[] = [];
 
@@ -70,7 +71,7 @@ export class Surface implements SurfaceView {
         this.markCreases(rest);
         this.update(rest);
         this.rest = this.positions.slice();
-        ({ center: this.center, size: this.size } = boxOf(rest));
+        ({ center: this.center, size: this.size, half: this.half } = boxOf(rest));
     }
 
     /* The face of the mesh that a drawn triangle is of. */

@@ -16,16 +16,18 @@ export interface SurfaceView {
     paint(values: Float32Array, out: Float32Array): void;
 }
 
-/* Centre and half the diagonal of the box around some positions. */
-export function boxOf(x: Float32Array): { center: [number, number, number]; size: number } {
+/* Centre, half the diagonal and half the sides of the box around some positions. */
+export function boxOf(x: Float32Array): { center: [number, number, number]; size: number; half: [number, number, number] } {
     const low = [Infinity, Infinity, Infinity];
     const high = [-Infinity, -Infinity, -Infinity];
     for (let i = 0; i < x.length; i++) {
         low[i % 3] = Math.min(low[i % 3]!, x[i]!);
         high[i % 3] = Math.max(high[i % 3]!, x[i]!);
     }
+    const half = [0, 1, 2].map((i) => (high[i]! - low[i]!) / 2) as [number, number, number];
     return {
+        half,
         center: [(low[0]! + high[0]!) / 2, (low[1]! + high[1]!) / 2, (low[2]! + high[2]!) / 2],
-        size: Math.hypot(high[0]! - low[0]!, high[1]! - low[1]!, high[2]! - low[2]!) / 2 || 1,
+        size: Math.hypot(...half) || 1,
     };
 }

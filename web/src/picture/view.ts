@@ -4,6 +4,7 @@ import { PullPicture } from './arrow';
 import { Endoscope } from './camera';
 import { Instruments } from './instruments';
 import { Background } from './background';
+import { freePart, type Box } from './freepart';
 import type { SurfaceView } from './surfaceView';
 import { Cut } from '../inspect/cut';
 import { Marks } from '../inspect/marks';
@@ -53,7 +54,11 @@ export class View {
     private stale = true;
     private colourOf: (material: number) => Rgb = () => [1, 1, 1];
 
-    constructor(readonly canvas: HTMLCanvasElement) {
+    /* `covers`: boxes of what lies over the picture. */
+    constructor(
+        readonly canvas: HTMLCanvasElement,
+        private readonly covers: () => Box[],
+    ) {
         const asked = new URLSearchParams(location.hash.slice(1)).get('quality');
         this.fine = asked ? asked === 'fine' : rendersInHardware();
         this.adapts = !asked;
@@ -116,7 +121,7 @@ export class View {
         this.others.setSize(surface.size);
         this.marks.setSize(surface.size);
         this.cut.setBody(surface.center, surface.size);
-        this.endoscope.frame(surface.center, surface.size, from);
+        this.endoscope.frame(surface.center, surface.size, from, surface.half);
         this.see(this.seen);
     }
 
@@ -240,12 +245,13 @@ export class View {
         return this.shown?.regions[hit.triangle] ?? -1;
     }
 
-    /* What is in the middle of the picture, or around it in widening circles. */
+    /* What is in the middle of the free part of the picture, or around it in widening circles. */
     middle(faded = false): Hit | null {
+        const { x, y } = this.endoscope.centre;
         for (let ring = 0; ring < 8; ring++)
             for (let i = 0; i < (ring ? 8 : 1); i++) {
                 const angle = (i * Math.PI) / 4;
-                const ray = this.endoscope.rayThrough(0.08 * ring * Math.cos(angle), 0.08 * ring * Math.sin(angle));
+                const ray = this.endoscope.rayThrough(x + 0.08 * ring * Math.cos(angle), y + 0.08 * ring * Math.sin(angle));
                 const hit = this.hit(ray, faded);
                 if (hit) return hit;
             }
@@ -330,7 +336,14 @@ export class View {
         if (!width || !height) return;
         this.renderer.setPixelRatio(this.sharpness * Math.min(devicePixelRatio, this.fine ? 2 : 1));
         this.renderer.setSize(width, height, false);
-        this.endoscope.resize(width / height);
+        this.arrangeInWindow();
+    }
+
+    /* What covers the window may have changed: the organ is placed in what is free. */
+    arrangeInWindow(): void {
+        const { clientWidth: width, clientHeight: height } = this.canvas;
+        if (!width || !height) return;
+        this.endoscope.resize(width, height, freePart(width, height, this.covers()));
         this.stale = true;
     }
 
