@@ -175,6 +175,18 @@ class Rest(unittest.TestCase):
                                   capture_output=True).stdout
             wanted = int(re.search(r"state hash +([0-9a-f]{16})", said).group(1), 16)
             sim = lariat.Simulation(lariat.Model(scene))
+            self.assertEqual(sim.rest_damp(), 0)  # the scene has one
+            self.assertTrue(sim.rest()["reached"])
+            self.assertEqual(sim.hash(), wanted)
+            with open(scene) as file:
+                bare = file.read().replace("damping: 30\n", "")
+            with open(scene, "w") as file:
+                file.write(bare)
+            said = subprocess.run([LARIAT, "run", scene, "--until-rest"], check=True, text=True,
+                                  capture_output=True).stdout
+            wanted = int(re.search(r"state hash +([0-9a-f]{16})", said).group(1), 16)
+            sim = lariat.Simulation(lariat.Model(scene))
+            self.assertGreater(sim.rest_damp(), 10)
             self.assertTrue(sim.rest()["reached"])
             self.assertEqual(sim.hash(), wanted)
 
