@@ -3,6 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/vector.h"
+
 void lar_face_sort_nodes(int32_t node[4]) {
     for (int i = 1; i < 4; i++) {
         int32_t moving = node[i];
@@ -109,4 +111,26 @@ lar_status lar_mesh_boundary(const lar_mesh *mesh, int32_t **faces, int32_t *cou
     *faces = found;
     *count = single;
     return LAR_OK;
+}
+
+void lar_face_share(const lar_mesh *mesh, int32_t face, double sign, double (*share)[4]) {
+    static const double at[2] = {-0.57735026918962576, 0.57735026918962576};
+    static const int side[4][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
+    const int32_t *element = mesh->element[face / 6];
+    for (int point = 0; point < 4; point++) {
+        double r = at[point % 2], s = at[point / 2], along[2][3] = {{0}}, normal[3];
+        for (int a = 0; a < 4; a++)
+            for (int i = 0; i < 3; i++) {
+                double x = 0.25 * mesh->position[element[lar_face_node[face % 6][a]]][i];
+                along[0][i] += side[a][0] * (1 + side[a][1] * s) * x;
+                along[1][i] += side[a][1] * (1 + side[a][0] * r) * x;
+            }
+        lar_cross(along[0], along[1], normal);
+        for (int a = 0; a < 4; a++) {
+            double part = 0.25 * (1 + side[a][0] * r) * (1 + side[a][1] * s);
+            double *to = share[element[lar_face_node[face % 6][a]]];
+            for (int i = 0; i < 3; i++) to[i] += part * sign * normal[i];
+            to[3] += part * lar_length(normal);
+        }
+    }
 }

@@ -32,4 +32,9 @@ const lar_face_key *lar_face_table_find(const lar_face_table *table, const int32
 /* True when both faces have the same nodes. */
 bool lar_face_key_same(const lar_face_key *a, const lar_face_key *b);
 
+/* Adds a face's share of each of its corners at rest, [nodes], as by the element's shape functions:
+ * the vector of its area, outwards times `sign`, and its area [m^2]. Two by two Gauss points are
+ * exact for the vector, and for the area where the face is flat. */
+void lar_face_share(const lar_mesh *mesh, int32_t face, double sign, double (*share)[4]);
+
 #endif

@@ -2,7 +2,7 @@
 
 #include <stdlib.h>
 
-#include "base/vector.h"
+#include "model/mesh/faces.h"
 
 /* ---- curves: `over` or `curve` ------------------------------------------------------------ */
 
@@ -189,38 +189,27 @@ static lar_status read_move_entry(lar_scene *scene, const lar_yaml *entry) {
 
 /* ---- springs ------------------------------------------------------------------------------ */
 
-/* Each corner of a face at rest gets a quarter of its area. */
+/* Each corner of a face gets its part of the area at rest. */
 static lar_status share_by_area(lar_scene *scene, const lar_yaml *faces, lar_spring_bed *bed,
                                 double *area) {
     const lar_mesh *mesh = &scene->model->mesh;
     size_t nodes = (size_t)mesh->node_count;
-    double *part = lar_calloc(nodes, sizeof *part);
+    double(*share)[4] = lar_calloc(nodes, sizeof *share);
     int32_t *face = NULL, count = 0;
-    lar_status status = part ? lar_scene_select(scene, faces, LAR_SET_FACES, false, &face, &count)
-                             : lar_scene_no_memory(scene, nodes * sizeof *part);
-    for (int32_t f = 0; f < count; f++) {
-        const int32_t *element = mesh->element[face[f] / 6];
-        const uint8_t *corner = lar_face_node[face[f] % 6];
-        double diagonal[2][3], normal[3];
-        for (int k = 0; k < 2; k++)
-            lar_minus(mesh->position[element[corner[k + 2]]], mesh->position[element[corner[k]]],
-                      diagonal[k]);
-        lar_cross(diagonal[0], diagonal[1], normal);
-        for (int a = 0; a < 4; a++) part[element[corner[a]]] += lar_length(normal) / 8;
-    }
+    bed->nodes.node = lar_calloc(nodes, sizeof *bed->nodes.node);
+    bed->stiffness = lar_calloc(nodes, sizeof *bed->stiffness);
+    lar_status status = share && bed->nodes.node && bed->stiffness
+                            ? lar_scene_select(scene, faces, LAR_SET_FACES, false, &face, &count)
+                            : lar_scene_no_memory(scene, nodes * sizeof *share);
+    for (int32_t f = 0; f < count; f++) lar_face_share(mesh, face[f], 1, share);
     free(face);
-    if (!status) {
-        bed->nodes.node = lar_calloc(nodes, sizeof *bed->nodes.node);
-        bed->stiffness = lar_calloc(nodes, sizeof *bed->stiffness);
-        if (!bed->nodes.node || !bed->stiffness) status = lar_scene_no_memory(scene, 12 * nodes);
-    }
     for (int32_t n = 0; !status && n < mesh->node_count; n++) {
-        if (!(part[n] > 0)) continue;
-        *area += part[n];
-        bed->stiffness[bed->nodes.count] = part[n];
+        if (!(share[n][3] > 0)) continue;
+        *area += share[n][3];
+        bed->stiffness[bed->nodes.count] = share[n][3];
         bed->nodes.node[bed->nodes.count++] = n;
     }
-    free(part);
+    free(share);
     return status;
 }
 

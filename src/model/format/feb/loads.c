@@ -8,11 +8,10 @@
  */
 #include "model/format/feb/feb.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/vector.h"
+#include "model/mesh/faces.h"
 
 /* The force vector and curve of a nodal load of either form. */
 static lar_status read_nodal_force(lar_feb *feb, const xmlNode *at, const char *type,
@@ -98,31 +97,6 @@ static lar_status add_pressure(lar_feb *feb, const int32_t *face, int32_t count,
     return LAR_OK;
 }
 
-/* A face's share of each of its corners at rest, as by the element's shape functions: its area, and
- * the vector of its area, outwards times `sign`. Two by two Gauss points are exact for the vector,
- * and for the area where the face is flat. */
-static void share_area(const lar_mesh *mesh, int32_t face, double sign, double (*share)[4]) {
-    static const double at[2] = {-0.57735026918962576, 0.57735026918962576};
-    static const int side[4][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
-    const int32_t *element = mesh->element[face / 6];
-    for (int point = 0; point < 4; point++) {
-        double r = at[point % 2], s = at[point / 2], along[2][3] = {{0}}, normal[3];
-        for (int a = 0; a < 4; a++)
-            for (int i = 0; i < 3; i++) {
-                double x = 0.25 * mesh->position[element[lar_face_node[face % 6][a]]][i];
-                along[0][i] += side[a][0] * (1 + side[a][1] * s) * x;
-                along[1][i] += side[a][1] * (1 + side[a][0] * r) * x;
-            }
-        lar_cross(along[0], along[1], normal);
-        for (int a = 0; a < 4; a++) {
-            double part = 0.25 * (1 + side[a][0] * r) * (1 + side[a][1] * s);
-            double *to = share[element[lar_face_node[face % 6][a]]];
-            for (int i = 0; i < 3; i++) to[i] += part * sign * normal[i];
-            to[3] += part * lar_length(normal);
-        }
-    }
-}
-
 static lar_status add_node_load(lar_feb *feb, int32_t node, const double force[3], int curve) {
     int32_t *only = lar_calloc(1, sizeof *only);
     lar_nodal_load *load = only ? LAR_MODEL_APPEND(feb->model, load) : NULL;
@@ -144,7 +118,7 @@ static lar_status add_dead(lar_feb *feb, const int32_t *face, int32_t count, int
     double(*share)[4] = lar_calloc((size_t)mesh->node_count, sizeof *share);
     if (!share) return lar_feb_no_memory(feb, "the loads");
     lar_status status = LAR_OK;
-    for (int32_t i = 0; i < count; i++) share_area(mesh, face[i], i < outward ? 1 : -1, share);
+    for (int32_t i = 0; i < count; i++) lar_face_share(mesh, face[i], i < outward ? 1 : -1, share);
     for (int32_t n = 0; n < mesh->node_count && !status; n++) {
         double force[3];
         for (int i = 0; i < 3; i++)
