@@ -44,26 +44,34 @@ static lar_status share_frequencies(const lar_model *model, lar_element_rate *ra
 }
 
 /* What is nearly as stiff as the stiffest tissue holds like a support, and would take from steps
- * what strained elements need. */
+ * what strained elements need. Named is the stiffest of those springs. */
 static lar_status check_springs(const lar_model *model, const double *squares, double moving,
                                 lar_error *error) {
     static const double PART = 0.1;
+    const lar_spring_bed *worst = NULL;
+    int32_t which = 0;
+    double most = 0;
     char line[LAR_LINE_TEXT];
     for (int i = 0; squares && i < model->spring_count; i++) {
         const lar_spring_bed *bed = &model->spring[i];
         for (int32_t k = 0; k < bed->nodes.count; k++) {
-            double share = squares[bed->nodes.node[k]] / (moving * moving);
-            if (!(share > PART)) continue;
-            return lar_fail(error, LAR_ERROR_MODEL,
-                            "%s%s: springs of %.3g N/m on node %lld are too stiff for the elements "
-                            "around it, which bear %.2g N/m in such steps; hold the node with fix, "
-                            "or give all of these springs %.2g of their stiffness",
-                            lar_model_source(model), lar_line_text(bed->line, line),
-                            bed->stiffness[k], (long long)model->mesh.node_id[bed->nodes.node[k]],
-                            bed->stiffness[k] * PART / share, 0.99 * PART / share);
+            double square = squares[bed->nodes.node[k]];
+            if (!(square > PART * moving * moving)) continue;
+            most = fmax(most, square);
+            if (worst && bed->stiffness[k] <= worst->stiffness[which]) continue;
+            worst = bed;
+            which = k;
         }
     }
-    return LAR_OK;
+    if (!worst) return LAR_OK;
+    return lar_fail(error, LAR_ERROR_MODEL,
+                    "%s%s: springs of %.3g N/m on node %lld are nearly as stiff as the stiffest "
+                    "elements, and steps have no room for both; hold such nodes with fix, or give "
+                    "these springs %.2g of their stiffness",
+                    lar_model_source(model), lar_line_text(worst->line, line),
+                    worst->stiffness[which],
+                    (long long)model->mesh.node_id[worst->nodes.node[which]],
+                    0.99 * PART * moving * moving / most);
 }
 
 /* Of an element with the mass that it gets, where springs take their part of the step. */
