@@ -241,9 +241,10 @@ static void print_duration(const lar_model *model) {
 /* One element bends with no stress that differs over its thickness (docs/theory.md, Bending). */
 static void print_thin(const lar_model_info *info) {
     if (info->thin_elements == 0) return;
-    printf("%-17s%d of %d elements have outer faces on two opposite sides: one layer bends too far; "
-           "two or more bend right\n",
-           "thin", (int)info->thin_elements, (int)info->elements);
+    printf(
+        "%-17s%d of %d elements have outer faces on two opposite sides: one layer bends too far, "
+        "n layers by 1/n^2 of that\n",
+        "thin", (int)info->thin_elements, (int)info->elements);
 }
 
 void info_report_table(const info_report *report) {
