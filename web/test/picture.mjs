@@ -3,7 +3,7 @@
 //     LARIAT=../build/lariat node test/picture.mjs ../docs/images/viewer.png
 import { mkdirSync, writeFileSync } from 'node:fs';
 import { deflateSync, inflateSync } from 'node:zlib';
-import { OUT, openBrowser, openPage } from './browser.mjs';
+import { OUT, openBrowser, openPage, placing } from './browser.mjs';
 import { demo, view } from './engine.mjs';
 
 mkdirSync(OUT, { recursive: true });
@@ -17,7 +17,7 @@ await page.mouse.down();
 await page.mouse.move(294, 302, { steps: 2 });
 await page.mouse.up();
 await page.waitForTimeout(1500);
-const [x, y] = [800, 320];
+const [x, y] = (await placing(page)).at([500, 205]);
 await page.mouse.move(x, y);
 await page.mouse.down();
 // Out, back a little, and further out, so that the graph has something to tell.
