@@ -204,10 +204,10 @@ typedef struct lar_model_info {
     int32_t stable_worst; /* the element that asks for it */
     double time_step;     /* what lar_options_default() will take [s] */
     lar_mass_scaling mass_scaling;
-    int32_t
-        thin_elements; /* whose opposite sides are both outside: one layer, which bends too far */
+    int32_t thin_elements;   /* with outer faces on opposite sides: one layer bends too far */
     int32_t spring_nodes;    /* that springs hold, counted once for each entry of a scene */
     double spring_stiffness; /* of all these springs together [N/m] */
+    double duration;         /* that the model states [s], 0: none; see lar_model_duration */
 } lar_model_info;
 
 /* Counts, measures and the stable step: goes through all elements. `info` is the caller's. */

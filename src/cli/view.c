@@ -376,7 +376,7 @@ static void greet(view *v) {
     fprintf(out, "Open this address in a browser; Ctrl-C ends.\n");
     if (*watch) fprintf(out, "%s\nWho opens that one can only watch.\n", watch);
     fflush(out);
-    double duration = lar_model_duration(v->model);
+    const double duration = v->report.info.duration; /* ends of ramps are none */
     if (duration > 0)
         cli_complain(&cli_view, CLI_DONE, "note: the scene lasts %g s; view goes on", duration);
     if (v->settings.open && v->url) open_browser(v);

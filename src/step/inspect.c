@@ -81,7 +81,8 @@ lar_status lar_model_inspect(const lar_model *model, lar_model_info *info, lar_e
     lar_model_info made = {.title = model->title ? model->title : "",
                            .nodes = model->mesh.node_count,
                            .elements = model->mesh.element_count,
-                           .materials = model->material_count};
+                           .materials = model->material_count,
+                           .duration = model->duration};
     for (int i = 0; i < 3; i++) {
         made.lower[i] = DBL_MAX;
         made.upper[i] = -DBL_MAX;

@@ -31,7 +31,10 @@ says '^tool  *probe: largest force 0 N, limit [0-9.]* N$'
 says '^state hash  *[0-9a-f]\{16\}$'
 [ -d "saved here/below" ] || fail "the folder for saved states was not made"
 
-# A scene's duration does not end it, and that is said.
+# A scene's duration does not end it, and that is said; the end of a ramp is none.
+{ cat $scene && echo 'load: [ { nodes: fundus, force: [0, 0, 0.001], over: 0.1 } ]'; } >demo/ramp.yaml
+expect 0 "$LARIAT" view demo/ramp.yaml --port 0 --seconds 0.2 --pace 0
+! grep -q 'view goes on' "$SCRATCH/err" || fail "the end of a ramp is taken for a duration"
 sed 's/^title:/duration: 0.05\n&/' $scene >demo/short.yaml
 expect 0 "$LARIAT" view demo/short.yaml --port 0 --seconds 0.4 --pace 0 --json
 complains 'note: the scene lasts 0.05 s; view goes on'

@@ -76,16 +76,28 @@ static lar_status name_probe(lar_scene *scene, const lar_yaml *entry, const lar_
     return probe->name ? LAR_OK : lar_scene_no_memory(scene, sizeof text);
 }
 
+/* Of two lists of nodes, both ascending. */
+static bool share_a_node(const lar_node_list *a, const lar_node_list *b) {
+    for (int32_t i = 0, k = 0; i < a->count && k < b->count;) {
+        const int32_t first = a->node[i], second = b->node[k];
+        if (first == second) return true;
+        i += first < second;
+        k += second < first;
+    }
+    return false;
+}
+
 /* Nodes that nothing holds have no reaction: most likely the wrong set. */
 static lar_status notice_free_reaction(lar_scene *scene, const lar_yaml *entry,
                                        const lar_probe *probe) {
     for (int32_t n = 0; scene->axis_line && n < probe->nodes.count; n++)
         for (int axis = 0; axis < 3; axis++)
             if (scene->axis_line[3 * (size_t)probe->nodes.node[n] + (size_t)axis]) return LAR_OK;
-    if (scene->model->spring_count > 0) return LAR_OK;
+    for (int i = 0; i < scene->model->spring_count; i++)
+        if (share_a_node(&scene->model->spring[i].nodes, &probe->nodes)) return LAR_OK;
     return lar_model_notice(scene->model, scene->error,
                             "%s:%d:%d: the probe \"%.60s\" sums reactions, but none of its nodes "
-                            "is fixed or moved: it will be zero",
+                            "is fixed, moved or on a spring: it will be zero",
                             scene->path, entry->line, entry->column, probe->name);
 }
 
