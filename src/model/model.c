@@ -354,8 +354,12 @@ static lar_status check_loads(const lar_model *model, lar_error *error) {
     for (int i = 0; !status && i < model->output.probe_count; i++) {
         const lar_probe *probe = &model->output.probe[i];
         const lar_gid places = probe->what == LAR_PROBE_MEAN ? model->mesh.element_count : nodes;
-        status =
-            check_list(model, "probe", i, probe->nodes.node, probe->nodes.count, places, error);
+        if (probe->what == LAR_PROBE_TOOL)
+            status = check_entry(model, "probe", i,
+                                 probe->tool >= 0 && probe->tool < model->tool_count, error);
+        else if (probe->what != LAR_PROBE_ENERGY)
+            status =
+                check_list(model, "probe", i, probe->nodes.node, probe->nodes.count, places, error);
     }
     return status;
 }

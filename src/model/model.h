@@ -116,13 +116,23 @@ typedef struct lar_cell_field_row {
 } lar_cell_field_row;
 extern const lar_cell_field_row lar_cell_field_table[LAR_CELL_FIELDS];
 
-/* A part of each line of probes.csv: the mean displacement of some nodes, the sum of the reactions
- * of their supports, or the mean of a field over the volume at rest of some elements. */
+/* A part of each line of probes.csv: of some nodes the mean displacement or the sum of what their
+ * supports, or what bodies and planes that touch them, do to them; the mean of a field over the
+ * volume at rest of some elements; where a tool is and what tissue does to it; the energies of all.
+ */
 typedef struct lar_probe {
     char *name;
-    lar_node_list nodes; /* elements, where it is a field's mean */
-    enum { LAR_PROBE_DISPLACEMENT, LAR_PROBE_REACTION, LAR_PROBE_MEAN } what;
+    lar_node_list nodes; /* elements, where it is a field's mean; none of a tool and of energies */
+    enum {
+        LAR_PROBE_DISPLACEMENT,
+        LAR_PROBE_REACTION,
+        LAR_PROBE_CONTACT,
+        LAR_PROBE_MEAN,
+        LAR_PROBE_TOOL,
+        LAR_PROBE_ENERGY
+    } what;
     lar_cell_field field; /* of a mean */
+    int tool;             /* of the model's, where it is one's */
 } lar_probe;
 
 enum { /* beside the bits of lar_field */

@@ -31,24 +31,46 @@ static void print_name(FILE *line, const char *name, const char *what, const cha
     if (quote) fputc('"', line);
 }
 
-static void print_header(FILE *line, const lar_model *model) {
+enum { COLUMNS = 7 }; /* of one probe, at most */
+
+/* Returns their number; `what` and `unit` of column k. */
+static int column_of(const lar_probe *probe, int k, char what[32], const char **unit) {
     static const char *const axis[] = {"x", "y", "z"};
     static const char *const component[] = {"xx", "yy", "zz", "xy", "yz", "zx"};
+    static const char *const energy[] = {"kinetic", "strain",  "hourglass", "external",
+                                         "damping", "contact", "viscous"};
+    const lar_cell_field_row *mean = &lar_cell_field_table[probe->field];
+    switch (probe->what) {
+    case LAR_PROBE_MEAN:
+        snprintf(what, 32, "%s%s%s", mean->name, mean->components > 1 ? " " : "",
+                 mean->components > 1 ? component[k] : "");
+        *unit = mean->unit;
+        return mean->components;
+    case LAR_PROBE_TOOL:
+        snprintf(what, 32, "%s%s", k < 3 ? "" : "force ", axis[k % 3]);
+        *unit = k < 3 ? "m" : "N";
+        return 6;
+    case LAR_PROBE_ENERGY:
+        snprintf(what, 32, "%s", energy[k]);
+        *unit = "J";
+        return 7;
+    default:
+        snprintf(what, 32, "%s", axis[k]);
+        *unit = probe->what == LAR_PROBE_DISPLACEMENT ? "m" : "N";
+        return 3;
+    }
+}
+
+static void print_header(FILE *line, const lar_model *model) {
     fprintf(line, "time [s]");
     for (int i = 0; i < model->output.probe_count; i++) {
         const lar_probe *probe = &model->output.probe[i];
-        const lar_cell_field_row *mean =
-            probe->what == LAR_PROBE_MEAN ? &lar_cell_field_table[probe->field] : NULL;
-        for (int k = 0; k < (mean ? mean->components : 3); k++) {
+        for (int k = 0, count = 1; k < count; k++) {
             char what[32];
-            if (mean)
-                snprintf(what, sizeof what, "%s%s%s", mean->name, mean->components > 1 ? " " : "",
-                         mean->components > 1 ? component[k] : "");
+            const char *unit;
+            count = column_of(probe, k, what, &unit);
             fputc(',', line);
-            print_name(line, probe->name ? probe->name : "probe", mean ? what : axis[k],
-                       mean                                ? mean->unit
-                       : probe->what == LAR_PROBE_REACTION ? "N"
-                                                           : "m");
+            print_name(line, probe->name ? probe->name : "probe", what, unit);
         }
     }
     fputc('\n', line);
@@ -82,23 +104,80 @@ static void mean_field(const lar_simulation *simulation, const lar_probe *probe,
     for (int k = 0; k < 6; k++) mean[k] = sum[k] / volume;
 }
 
+/* What a cause does to some nodes, all of them where `nodes` is NULL, is added to the sum. */
+static lar_status add_forces(const lar_simulation *simulation, lar_cause cause, int tool,
+                             const lar_node_list *nodes, double sum[3], lar_error *error) {
+    const lar_gid count = simulation->domain.model->mesh.node_count;
+    double(*force)[3] = lar_calloc((size_t)count, sizeof *force);
+    if (!force)
+        return lar_fail_memory(error, (size_t)count * sizeof *force, "the forces of a probe");
+    lar_status status = lar_measure_nodal_forces(&simulation->domain, &simulation->scratch->measure,
+                                                 &simulation->state, cause, tool, force, error);
+    for (lar_gid i = 0; !status && i < (nodes ? nodes->count : count); i++)
+        for (int axis = 0; axis < 3; axis++) sum[axis] += force[nodes ? nodes->node[i] : i][axis];
+    free(force);
+    return status;
+}
+
+/* Where a tool is, and the force that tissue begins the next step with on it. */
+static lar_status measure_tool(const lar_simulation *simulation, int tool, double value[6],
+                               lar_error *error) {
+    lar_tool_pose pose;
+    double on_tissue[3] = {0};
+    lar_status status = lar_simulation_tool_pose(simulation, tool, &pose, error);
+    if (!status) status = add_forces(simulation, LAR_CAUSE_TOOL, tool, NULL, on_tissue, error);
+    for (int axis = 0; !status && axis < 3; axis++) {
+        value[axis] = pose.position[axis];
+        value[3 + axis] = 0 - on_tissue[axis]; /* no -0 */
+    }
+    return status;
+}
+
+static void measure_energy(const lar_simulation *simulation, double value[COLUMNS]) {
+    lar_energy e;
+    lar_simulation_energy(simulation, &e);
+    const double all[COLUMNS] = {e.kinetic, e.strain,  e.hourglass, e.external,
+                                 e.damping, e.contact, e.viscous};
+    memcpy(value, all, sizeof all);
+}
+
+static lar_status measure(const lar_simulation *simulation, const lar_probe *probe,
+                          double value[COLUMNS], lar_error *error) {
+    lar_status status = LAR_OK;
+    memset(value, 0, COLUMNS * sizeof *value);
+    switch (probe->what) {
+    case LAR_PROBE_REACTION:
+        return lar_measure_reaction(&simulation->domain, &simulation->scratch->measure,
+                                    &simulation->state, &probe->nodes, false, value, error);
+    case LAR_PROBE_CONTACT:
+        status = add_forces(simulation, LAR_CAUSE_BODIES, 0, &probe->nodes, value, error);
+        return status ? status
+                      : add_forces(simulation, LAR_CAUSE_PLANES, 0, &probe->nodes, value, error);
+    case LAR_PROBE_TOOL:
+        return measure_tool(simulation, probe->tool, value, error);
+    case LAR_PROBE_MEAN:
+        mean_field(simulation, probe, value);
+        break;
+    case LAR_PROBE_ENERGY:
+        measure_energy(simulation, value);
+        break;
+    default:
+        mean_displacement(simulation, &probe->nodes, value);
+    }
+    return status;
+}
+
 static lar_status print_values(FILE *line, const lar_simulation *simulation, lar_error *error) {
     const lar_output *output = &simulation->domain.model->output;
     fprintf(line, "%.10g", lar_simulation_time(simulation));
     for (int i = 0; i < output->probe_count; i++) {
         const lar_probe *probe = &output->probe[i];
-        double value[6];
-        int count = 3;
-        lar_status status = LAR_OK;
-        if (probe->what == LAR_PROBE_REACTION)
-            status = lar_measure_reaction(&simulation->domain, &simulation->scratch->measure,
-                                          &simulation->state, &probe->nodes, false, value, error);
-        else if (probe->what == LAR_PROBE_MEAN)
-            mean_field(simulation, probe, value);
-        else
-            mean_displacement(simulation, &probe->nodes, value);
+        double value[COLUMNS];
+        lar_status status = measure(simulation, probe, value, error);
         if (status) return status;
-        if (probe->what == LAR_PROBE_MEAN) count = lar_cell_field_table[probe->field].components;
+        char what[32];
+        const char *unit;
+        const int count = column_of(probe, 0, what, &unit);
         for (int k = 0; k < count; k++) fprintf(line, ",%.17g", value[k]);
     }
     fputc('\n', line);

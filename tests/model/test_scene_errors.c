@@ -362,7 +362,7 @@ static void test_loads_and_output(void **state) {
         {"output: {fields: [vonmises]}\n", "4:19",
          "did you mean von_mises? the fields are: displacement, velocity, von_mises, pressure, "
          "energy"},
-        {"output: {probes: [{name: x}]}\n", "4:19", "\"node\", \"nodes\", \"set\" or \"cells\""},
+        {"output: {probes: [{name: x}]}\n", "4:19", "\"cells\", \"tool\" or \"energy\""},
         {"output: {probes: [{cells: all}]}\n", "4:20", "cells and mean belong together"},
         {"output: {probes: [{node: 1, mean: stress}]}\n", "4:29", "a probe of nodes has neither"},
         {"output: {probes: [{cells: all, mean: stress, sum: reaction}]}\n", "4:32", "belong"},
@@ -373,6 +373,14 @@ static void test_loads_and_output(void **state) {
         {"output: {probes: [{node: bottom}]}\n", "4:26", "the number of a node"},
         {"output: {probes: [{node: 99}]}\n", "4:26", "there is no node 99"},
         {"output: {probes: [{set: bottom, sum: force}]}\n", "4:38", "expected reaction"},
+        {"output: {probes: [{energy: all, sum: contact}]}\n", "4:33", "neither sum nor mean"},
+        {"output: {probes: [{energy: 1}]}\n", "4:28", "expected all"},
+        {"output: {probes: [{energy: all}, {energy: all}]}\n", "4:34",
+         "two probes would be called"},
+        {"output: {probes: [{tool: ball}]}\n", "4:26", "none of the scene's tools; the key tools"},
+        {"output: {probes: [{tool: ball}]}\n"
+         "tools: [{name: rod, shape: sphere, radius: 0.001, at: [0, 0, 9]}]\n",
+         "4:26", "for example \"rod\""},
         {"output: {probes: [{node: 1}, {node: 1}]}\n", "4:30", "two probes would be called"},
     };
     REFUSES(table, BASE);

@@ -51,19 +51,22 @@ static lar_status name_probe(lar_scene *scene, const lar_yaml *entry, const lar_
     const lar_yaml *given = lar_yaml_get(entry, "name");
     const lar_probe *all = scene->model->output.probe;
     int count = scene->model->output.probe_count;
-    const char *name;
+    const char *name, *behind = probe->what == LAR_PROBE_REACTION  ? "reaction"
+                                : probe->what == LAR_PROBE_CONTACT ? "contact"
+                                : probe->what == LAR_PROBE_MEAN
+                                    ? lar_cell_field_table[probe->field].name
+                                    : "";
     char text[128];
     lar_status status = given ? lar_scene_text(scene, given, "a name", &name) : LAR_OK;
     if (status) return status;
     if (given)
         snprintf(text, sizeof text, "%s", name);
+    else if (probe->what == LAR_PROBE_ENERGY)
+        snprintf(text, sizeof text, "energy");
     else if (what->kind == LAR_YAML_SCALAR)
         snprintf(text, sizeof text, "%s%.90s%s%s",
                  strcmp(what->key->text, "node") == 0 ? "node " : "", what->text,
-                 probe->what == LAR_PROBE_DISPLACEMENT ? "" : " ",
-                 probe->what == LAR_PROBE_REACTION ? "reaction"
-                 : probe->what == LAR_PROBE_MEAN   ? lar_cell_field_table[probe->field].name
-                                                   : "");
+                 *behind ? " " : "", behind);
     else
         snprintf(text, sizeof text, "probe %d", count);
     for (int i = 0; i < count - 1; i++)
@@ -101,39 +104,85 @@ static lar_status notice_free_reaction(lar_scene *scene, const lar_yaml *entry,
                             scene->path, entry->line, entry->column, probe->name);
 }
 
-static lar_status read_probe(lar_scene *scene, const lar_yaml *entry) {
-    static const char *const keys[] = {"node", "nodes", "set",  "cells",
-                                       "sum",  "mean",  "name", NULL};
-    enum { MAX = 1000, PLACES = 4 };
-    lar_status status = lar_scene_keys(scene, entry, "a probe", keys);
+/* A probe of one of the scene's tools, which has its name. */
+static lar_status read_tool(lar_scene *scene, const lar_yaml *node, lar_probe *probe) {
+    const lar_model *model = scene->model;
+    const char *name;
+    lar_status status = lar_scene_text(scene, node, "a tool's name", &name);
     if (status) return status;
-    const lar_yaml *where = NULL, *sum = lar_yaml_get(entry, "sum");
-    const lar_yaml *mean = lar_yaml_get(entry, "mean");
-    for (int i = 0; i < PLACES; i++) {
+    probe->what = LAR_PROBE_TOOL;
+    for (probe->tool = 0; probe->tool < model->tool_count; probe->tool++)
+        if (strcmp(model->tool[probe->tool].name, name) == 0) return LAR_OK;
+    probe->tool = 0;
+    return lar_scene_fail(
+        scene, node, LAR_ERROR_MODEL, "tool: \"%.60s\" is none of the scene's tools; %s%.60s%s",
+        name,
+        model->tool_count ? "take the name of one, for example \"" : "the key tools makes some",
+        model->tool_count ? model->tool[0].name : "", model->tool_count ? "\"" : "");
+}
+
+/* What a probe of nodes sums up, or the mean displacement. */
+static lar_status read_sum(lar_scene *scene, const lar_yaml *sum, lar_probe *probe) {
+    const bool contact = sum && lar_scene_is_word(sum, "contact");
+    probe->what = contact ? LAR_PROBE_CONTACT : sum ? LAR_PROBE_REACTION : LAR_PROBE_DISPLACEMENT;
+    if (!sum || contact || lar_scene_is_word(sum, "reaction")) return LAR_OK;
+    return lar_scene_fail(scene, sum, LAR_ERROR_FORMAT,
+                          "sum: expected reaction, the sum of the forces of the supports, or "
+                          "contact, that of bodies and planes; without sum a probe is the mean "
+                          "displacement");
+}
+
+static lar_status read_energy(lar_scene *scene, const lar_yaml *node, lar_probe *probe) {
+    probe->what = LAR_PROBE_ENERGY;
+    if (lar_scene_is_word(node, "all")) return LAR_OK;
+    return lar_scene_fail(scene, node, LAR_ERROR_FORMAT,
+                          "energy: expected all, the energies of the whole model; those of some "
+                          "elements are {cells: ..., mean: energy}, per volume");
+}
+
+/* Which key says what is probed, and whether the others go with it. */
+static lar_status find_place(lar_scene *scene, const lar_yaml *entry, const lar_yaml **where) {
+    static const char *const keys[] = {"node",   "nodes", "set",  "cells", "tool",
+                                       "energy", "sum",   "mean", "name",  NULL};
+    enum { PLACES = 6 };
+    lar_status status = lar_scene_keys(scene, entry, "a probe", keys);
+    const lar_yaml *sum = lar_yaml_get(entry, "sum"), *mean = lar_yaml_get(entry, "mean");
+    *where = NULL;
+    for (int i = 0; !status && i < PLACES; i++) {
         const lar_yaml *found = lar_yaml_get(entry, keys[i]);
-        if (found && where)
+        if (found && *where)
             return lar_scene_fail(
                 scene, found->key, LAR_ERROR_FORMAT,
-                "a probe takes one of node, nodes, set and cells; make two probes");
-        if (found) where = found;
+                "a probe takes one of node, nodes, set, cells, tool and energy; make two probes");
+        if (found) *where = found;
     }
-    if (!where)
+    if (status) return status;
+    if (!*where)
         return lar_scene_fail(
             scene, entry, LAR_ERROR_FORMAT,
-            "a probe needs the key \"node\", \"nodes\", \"set\" or \"cells\"; add "
-            "one, for example node: 12");
-    const bool cells = strcmp(where->key->text, "cells") == 0;
+            "a probe needs the key \"node\", \"nodes\", \"set\", \"cells\", \"tool\" or "
+            "\"energy\"; add one, for example node: 12");
+    const char *key = (*where)->key->text;
+    if ((strcmp(key, "tool") == 0 || strcmp(key, "energy") == 0) && (sum || mean))
+        return lar_scene_fail(scene, sum ? sum->key : mean->key, LAR_ERROR_FORMAT,
+                              "a probe of a tool or of energies has neither sum nor mean: its "
+                              "columns are all that there is");
+    const bool cells = strcmp(key, "cells") == 0;
     if (cells != (mean != NULL) || (cells && sum))
-        return lar_scene_fail(scene, mean ? mean->key : where->key, LAR_ERROR_FORMAT,
+        return lar_scene_fail(scene, mean ? mean->key : (*where)->key, LAR_ERROR_FORMAT,
                               "cells and mean belong together, for example {cells: all, mean: "
                               "von_mises}; a probe of nodes has neither");
     int64_t ignored;
-    if (strcmp(where->key->text, "node") == 0)
-        status = lar_scene_integer(scene, where, "the number of a node in the mesh file", &ignored);
-    if (!status && sum && !lar_scene_is_word(sum, "reaction"))
-        status = lar_scene_fail(scene, sum, LAR_ERROR_FORMAT,
-                                "sum: expected reaction, the sum of the forces of the supports; "
-                                "without sum a probe is the mean displacement");
+    if (strcmp(key, "node") == 0)
+        status =
+            lar_scene_integer(scene, *where, "the number of a node in the mesh file", &ignored);
+    return status;
+}
+
+static lar_status read_probe(lar_scene *scene, const lar_yaml *entry) {
+    enum { MAX = 1000 };
+    const lar_yaml *where;
+    lar_status status = find_place(scene, entry, &where);
     if (!status && scene->model->output.probe_count >= MAX)
         status = lar_scene_fail(scene, entry, LAR_ERROR_UNSUPPORTED,
                                 "there are more than %d probes; write the field displacement "
@@ -142,13 +191,19 @@ static lar_status read_probe(lar_scene *scene, const lar_yaml *entry) {
     if (status) return status;
     lar_probe *probe = LAR_MODEL_APPEND(scene->model, output.probe);
     if (!probe) return lar_scene_no_memory(scene, sizeof *probe);
-    probe->what = sum ? LAR_PROBE_REACTION : LAR_PROBE_DISPLACEMENT;
-    if (cells) status = read_mean(scene, mean, probe);
+    const char *key = where->key->text;
+    const bool cells = strcmp(key, "cells") == 0;
+    const bool tool = strcmp(key, "tool") == 0, energy = strcmp(key, "energy") == 0;
+    status = cells    ? read_mean(scene, lar_yaml_get(entry, "mean"), probe)
+             : tool   ? read_tool(scene, where, probe)
+             : energy ? read_energy(scene, where, probe)
+                      : read_sum(scene, lar_yaml_get(entry, "sum"), probe);
     if (!status) status = name_probe(scene, entry, where, probe);
-    if (!status)
+    if (!status && !tool && !energy)
         status = lar_scene_select(scene, where, cells ? LAR_SET_ELEMENTS : LAR_SET_NODES, cells,
                                   &probe->nodes.node, &probe->nodes.count);
-    return status || !sum ? status : notice_free_reaction(scene, entry, probe);
+    if (status || probe->what != LAR_PROBE_REACTION) return status;
+    return notice_free_reaction(scene, entry, probe);
 }
 
 /* What is asked for and cannot be there is most likely missed somewhere else. */
