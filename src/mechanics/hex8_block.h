@@ -163,6 +163,8 @@ typedef struct lar_viscous_step {
     double *history; /* [count] of lar_history_values(terms) values of eight lanes */
     double length;   /* [s] since the forces before; 0: what is strained was so at once */
     bool keep;       /* it counts; false: somebody only looks, and the history stays as it is */
+    uint8_t *beyond; /* [count] bits of the lanes beyond the limits, noted where there are some:
+                        once the history has gone on nobody can ask again. May be NULL */
 } lar_viscous_step;
 
 /* From one block of a run to the next. */

@@ -392,6 +392,7 @@ enum { SOFTER = 1 };
 #define relax(run, step, b, count, limits, gradient, of, record)            0U
 #define stretch(run, b, count, limits, limit, gradient, record, strain, of) 0U
 #define contract(run, active, b, count, limits, gradient, record)           ((void)(active), 0U)
+#define note_beyond(step, b, count, beyond)                                 ((void)0)
 #else
 #define softer_of(run) (run)->softer
 
@@ -434,6 +435,13 @@ static unsigned contract(const lar_block_run *run, const lar_active_step *active
                 << part * LAR_LANES;
         }
     return beyond;
+}
+
+/* Of the blocks of a chunk that begins with block b. */
+__attribute__((noinline, cold)) static void note_beyond(const lar_viscous_step *step, int32_t b,
+                                                        size_t count, unsigned beyond) {
+    for (size_t i = 0; step->beyond && i < count; i++)
+        step->beyond[(size_t)b + i] = beyond >> i * LAR_BLOCK & 0xff;
 }
 #endif
 
@@ -488,9 +496,11 @@ LAR_INLINE int64_t recover_form(const lar_block_run *run, int fibrous, const lar
             flat = flat_lanes(monitor->area + b * LAR_BLOCK, count * PARTS, strains);
         if (__builtin_expect((strained | flat) != 0, 0))
             list_strained(monitor, b, strained, flat, strains);
-        if (__builtin_expect(beyond != 0 && first < 0, 0)) {
+        if (__builtin_expect(beyond != 0 && (first < 0 || step), 0)) {
             int block = __builtin_ctz(beyond) / LAR_BLOCK;
-            first = (int64_t)(b + block) << 8 | (beyond >> (block * LAR_BLOCK) & 0xff);
+            if (first < 0)
+                first = (int64_t)(b + block) << 8 | (beyond >> (block * LAR_BLOCK) & 0xff);
+            if (step) note_beyond(step, b, count, beyond);
         }
     }
     return first;

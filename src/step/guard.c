@@ -34,13 +34,14 @@ lar_status lar_strained_create(const lar_domain *domain, lar_strained *strained,
     bool active = lar_model_active(domain->model) != NULL;
     size_t elements = (size_t)domain->model->mesh.element_count;
     strained->pressed = lar_calloc(elements, sizeof *strained->pressed);
+    strained->beyond = lar_calloc(lanes / LAR_BLOCK, sizeof *strained->beyond);
     if (active) {
         strained->activation = lar_calloc_aligned(lanes, sizeof *strained->activation);
         strained->active_energy = lar_calloc_aligned(lanes, sizeof *strained->active_energy);
     }
     if (strained->lane && strained->count && strained->strain && strained->near &&
         strained->stiffness && strained->sound && strained->damped && strained->damped_count &&
-        strained->lacked && strained->lacked_count && strained->pressed &&
+        strained->lacked && strained->lacked_count && strained->pressed && strained->beyond &&
         (!active || (strained->activation && strained->active_energy)))
         return LAR_OK;
     lar_strained_destroy(strained);
@@ -63,6 +64,7 @@ void lar_strained_destroy(lar_strained *strained) {
     free(strained->activation);
     free(strained->active_energy);
     free(strained->pressed);
+    free(strained->beyond);
     *strained = (lar_strained){0};
 }
 

@@ -42,6 +42,7 @@ struct lar_strained {
     double *activation;    /* [8 for each block] scratch (step/activation.h), */
     double *active_energy; /* likewise; NULL where nothing is active */
     uint8_t *pressed;      /* [elements of the model] step/mass/pressed.h; NULL: none is heavier */
+    uint8_t *beyond;       /* [blocks] of lar_viscous_step, zero but in a step that fails */
 };
 
 lar_status lar_strained_create(const lar_domain *domain, lar_strained *strained, lar_error *error);

@@ -30,6 +30,7 @@ static int64_t recover_run(const lar_domain *domain, int32_t r, bool keeps,
     lar_active_step active;
     bool activates = lar_activation_begin(domain, r, state, &active);
     if (run->viscous) step.history = state->history + domain->run_history[r];
+    if (keeps && state->strained) step.beyond = state->strained->beyond + domain->run_first[r];
     int64_t found =
         domain->kernels->recover_more(run, run->viscous ? &step : NULL, activates ? &active : NULL,
                                       state->u, state->force, &domain->limits, monitor);
@@ -37,28 +38,52 @@ static int64_t recover_run(const lar_domain *domain, int32_t r, bool keeps,
     return found;
 }
 
-/* A run has elements beyond the limits, the first of them in the block that `found` says. Forces
- * no longer count. */
-static void fault_run(const lar_domain *domain, int32_t r, int64_t found, lar_state *state,
-                      lar_fault *fault) {
+/* A viscous run has elements beyond the limits, the first of them in block `first`; its kernel has
+ * noted which. Their elastic stress says nothing of theirs, and what they remember has gone on. */
+static void fault_viscous(const lar_domain *domain, int32_t r, int32_t first, lar_state *state,
+                          lar_fault *fault) {
+    for (int32_t b = first; b < domain->run[r].count; b++) {
+        const lar_lanes *lanes = &domain->layout.block[domain->run_first[r] + b];
+        uint8_t *beyond = &state->strained->beyond[domain->run_first[r] + b];
+        for (int lane = 0; lane < LAR_BLOCK; lane++)
+            if ((*beyond >> lane & 1) && lanes->element[lane] >= 0)
+                fault_element(fault, state, lanes->element[lane]);
+        *beyond = 0;
+    }
+}
+
+/* A run has elements beyond the limits, the first of them in the block that `found` says;
+ * `watched`: hourglass forces were looked at, too. Forces no longer count. */
+static void fault_run(const lar_domain *domain, int32_t r, int64_t found, bool watched,
+                      lar_state *state, lar_fault *fault) {
     lar_active_step active;
     bool activates = lar_activation_begin(domain, r, state, &active);
     lar_block_run one = domain->run[r];
     size_t size = lar_run_stride(&one);
+    if (one.viscous) {
+        fault_viscous(domain, r, (int32_t)(found >> 8), state, fault);
+        return;
+    }
     one.count = 1;
     for (int32_t b = (int32_t)(found >> 8); b < domain->run[r].count; b++) {
+        int32_t listed[LAR_BLOCK];
+        float strain[LAR_BLOCK][LAR_STRAIN_NUMBERS];
+        size_t place = LAR_BLOCK * (size_t)(domain->run_first[r] + b);
+        lar_hex8_monitor watch = {
+            .limit = domain->corner_limit + place, .lane = listed, .strain = strain};
+        lar_hex8_monitor *monitor = watched ? &watch : NULL;
         one.blocks = (const char *)domain->run[r].blocks + (size_t)b * size;
         one.more = domain->run[r].more ? domain->run[r].more + b : NULL;
-        one.viscous = 0; /* the elastic stress says enough, and what is remembered has gone on */
         if (one.fibrous) one.fibres = domain->run[r].fibres + b;
         if (one.second) one.second = domain->run[r].second + b;
         lar_active_step now =
             activates ? (lar_active_step){active.now + LAR_BLOCK * b, active.energy + LAR_BLOCK * b}
                       : (lar_active_step){0};
-        found = one.fibrous
-                    ? domain->kernels->recover_more(&one, NULL, activates ? &now : NULL, state->u,
-                                                    state->force, &domain->limits, NULL)
-                    : domain->kernels->recover(&one, state->u, state->force, &domain->limits, NULL);
+        found =
+            one.fibrous
+                ? domain->kernels->recover_more(&one, NULL, activates ? &now : NULL, state->u,
+                                                state->force, &domain->limits, monitor)
+                : domain->kernels->recover(&one, state->u, state->force, &domain->limits, monitor);
         const lar_lanes *lanes = &domain->layout.block[domain->run_first[r] + b];
         for (int lane = 0; lane < LAR_BLOCK; lane++)
             if (found >= 0 && (found >> lane & 1) && lanes->element[lane] >= 0)
@@ -89,7 +114,7 @@ static void recover_blocks(const lar_domain *domain, int32_t first, int32_t coun
             lar_guard_select_and_apply(domain, r, &monitor, due, state);
         else
             lar_guard_apply(domain, r, state);
-        if (found >= 0) fault_run(domain, r, found, state, fault);
+        if (found >= 0) fault_run(domain, r, found, watches, state, fault);
     }
     /* Before the nodes move on: a step later the element says little. */
     if (fault->kind == LAR_FAULT_ELEMENT) lar_fault_examine(domain, state, 0, 0, fault);
