@@ -48,9 +48,9 @@ deb:
 	@tools/web.sh --required
 	@tools/deb.sh $(JOBS)
 
-# A prefix may have spaces. Quotes would keep ~ from the shell, which not every one resolves before.
+# For all users, whatever umask root has. A prefix may have spaces. Quotes would keep ~ from the shell, which not every one resolves before.
 install: all
-	cmake --install build --prefix $(subst $(SPACE),\$(SPACE),$(PREFIX))
+	umask 022 && cmake --install build --prefix $(subst $(SPACE),\$(SPACE),$(PREFIX))
 
 format:
 	git ls-files '*.c' '*.h' | xargs clang-format -i

@@ -49,9 +49,11 @@ endforeach()
 list(APPEND LARIAT_PRIVATE_LIBRARIES pthread dl m)
 # One object in which names that carry no LAR_API are local, so that a program may have the same ones.
 # Not where objects are no machine code yet, or call a sanitizer's.
+string(TOUPPER "${CMAKE_BUILD_TYPE}" type)
+set(flags "${CMAKE_C_FLAGS} ${CMAKE_C_FLAGS_${type}}")
 set(LARIAT_LIBRARIES liblariat)
 set(LARIAT_PC_FILES lariat)
-if(NOT LARIAT_SANITIZE AND NOT CMAKE_INTERPROCEDURAL_OPTIMIZATION AND NOT CMAKE_C_FLAGS MATCHES "-flto")
+if(NOT LARIAT_SANITIZE AND NOT CMAKE_INTERPROCEDURAL_OPTIMIZATION AND NOT flags MATCHES "-flto")
   set(whole ${PROJECT_BINARY_DIR}/lariat_whole.o)
   add_custom_command(OUTPUT ${whole} DEPENDS lariat_core
     COMMAND ${CMAKE_LINKER} -r -o ${whole} --whole-archive $<TARGET_FILE:lariat_core>
@@ -124,6 +126,7 @@ endif()
 # What headers and help refer to, with all that these pages lead to but the source.
 install(DIRECTORY docs examples DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(FILES README.md CONTRIBUTING.md LICENSE CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(FILES tools/render/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/tools/render)
 install(FILES include/lariat.h include/lariat_fit.h DESTINATION ${CMAKE_INSTALL_DOCDIR}/include)
 
 # Both package files find the prefix from where they lie, so that an installed tree can be moved.

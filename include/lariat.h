@@ -776,7 +776,8 @@ typedef enum lar_cause {
     LAR_CAUSE_TOOL,         /* one tool: what it pushes, holds and rubs. Of tools that press the
                                same node with friction the nearest has the friction of all */
     LAR_CAUSE_BODIES,       /* contact of bodies with each other and themselves, with friction */
-    LAR_CAUSE_LOADS,        /* forces and pressures of the model, and forces that were set */
+    LAR_CAUSE_LOADS,        /* forces, pressures and springs of the model, and forces that were
+                               set */
     LAR_CAUSE_PLANES,       /* all planes, with friction */
     LAR_CAUSE_SUPPORTS,     /* what fixes, holds and moves nodes, along its axes */
     LAR_CAUSE_GRAVITY,

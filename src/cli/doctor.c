@@ -1,6 +1,7 @@
 /* lariat doctor: what this build can do, what is missing, and what this machine is good for. */
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 #include <unistd.h>
 
 #include "cli/build_info.h"
@@ -81,7 +82,10 @@ static void print_machine(const lar_doctor_machine *here) {
     printf("  %-17s%s\n", "processor", here->machine.cpu);
     printf("  %-17s%d, of which this process may use %d\n", "cores", (int)here->machine.cores,
            (int)here->usable_cores);
-    printf("  %-17s%s\n", "instruction set", here->machine.isa);
+    printf("  %-17s%s\n", "instruction set",
+           strcmp(here->machine.isa, "unknown") != 0
+               ? here->machine.isa
+               : "none: the variable LARIAT_ISA asks for one that this machine lacks; unset it");
     if (here->free > 0)
         printf("  %-17s%.3g GB, %.3g GB of them free\n", "memory", here->memory / GB,
                here->free / GB);
@@ -150,12 +154,13 @@ static int doctor_main(int argc, char **argv) {
     if (shown) fputs("measuring this machine", stderr);
     bool failed = f.is_measured && lar_doctor_measure(&f.here, &f.measured, &error);
     if (shown) fputs("\r\033[K", stderr);
-    if (failed) return cli_complain(&cli_doctor, CLI_FAILED, "%s", error.message);
+    f.is_measured = f.is_measured && !failed;
     if (json)
         write_json(&f);
     else
         print_report(&f);
-    return CLI_DONE;
+    fflush(stdout);
+    return failed ? cli_complain(&cli_doctor, CLI_FAILED, "%s", error.message) : CLI_DONE;
 }
 
 const cli_command cli_doctor = {

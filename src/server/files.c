@@ -123,6 +123,7 @@ static lar_status read_folder(collector *c, const char *at, int depth) {
 
 #ifdef LAR_VIEWER_PACKAGE
 #define LAR_VIEWER_FOLDER "" /* only where packages put it */
+#define LAR_BUILD_FOLDER  ""
 #define ABSENT_WHY                                                                                 \
     "<h1>The engine runs, but its viewer is not installed</h1><p>It is a package of its own: "     \
     "<code>apt-get install " LAR_VIEWER_PACKAGE "</code>, "
@@ -166,17 +167,21 @@ static bool wheel_folder(const char *prefix, char *out, size_t size) {
     return there && is_folder(out);
 }
 
-/* PREFIX/share/lariat/viewer, when this code lies in PREFIX/bin, PREFIX/lib or one below: an
- * installed tree may be moved. False when there is none. */
-static bool installed_folder(char *out, size_t size) {
+/* The folder of the file that this code lies in. */
+static bool own_folder(char path[4096]) {
     static const char here;
     Dl_info module;
-    char path[4096];
     if (!dladdr(&here, &module) || !module.dli_fname) return false;
     /* A command that the shell found on its PATH goes by its bare name. */
     const char *file = strchr(module.dli_fname, '/') ? module.dli_fname : "/proc/self/exe";
-    if (!realpath(file, path)) return false;
-    cut_last(path);
+    return realpath(file, path) && cut_last(path);
+}
+
+/* PREFIX/share/lariat/viewer, when this code lies in PREFIX/bin, PREFIX/lib or one below: an
+ * installed tree may be moved. False when there is none. */
+static bool installed_folder(char *out, size_t size) {
+    char path[4096];
+    if (!own_folder(path)) return false;
     for (int i = 0; i < 2; i++) {
         const char *name = cut_last(path);
         if (!name) return false;
@@ -188,12 +193,22 @@ static bool installed_folder(char *out, size_t size) {
     return false;
 }
 
+/* Whether this code lies where it was built: what is installed serves no page out of a folder that
+ * may be anybody's by then. */
+static bool is_where_built(void) {
+    char path[4096], built[4096];
+    size_t length;
+    if (!own_folder(path) || !realpath(LAR_BUILD_FOLDER, built)) return false;
+    length = strlen(built);
+    return strncmp(path, built, length) == 0 && (path[length] == '/' || path[length] == '\0');
+}
+
 static lar_status read_default(lar_files *files, lar_error *error) {
     char path[4096];
     if (installed_folder(path, sizeof path)) return lar_files_read(path, files, error);
     snprintf(path, sizeof path, "%s/index.html", LAR_VIEWER_FOLDER);
     struct stat found;
-    if (*LAR_VIEWER_FOLDER && stat(path, &found) == 0)
+    if (*LAR_VIEWER_FOLDER && is_where_built() && stat(path, &found) == 0)
         return lar_files_read(LAR_VIEWER_FOLDER, files, error);
     files->file = lar_calloc(1, sizeof *files->file);
     char *name = lar_strdup("/index.html"), *data = lar_strdup(ABSENT);

@@ -36,6 +36,23 @@ fi
 built=false
 [ "$(there viewer)" = false ] || [ ! -e "$SOURCE/web/dist/index.html" ] || built=true
 [ "$(there page)" = $built ] || fail "doctor says '$(there page)' of the page"
+# A command that has left its build folder serves no page out of the checkout.
+elsewhere=$(mktemp -d)
+cp "$LARIAT" "$elsewhere/lariat"
+expect 0 "$elsewhere/lariat" doctor --no-speed --json
+rm -r "$elsewhere"
+mv told told_here && mv out told
+[ "$(there page)" = false ] || fail "a page out of a folder that the command has left"
+mv told_here told
+# An instruction set that is not there is named; neon and avx512 are of no common machine.
+for isa in neon avx512; do
+    LARIAT_ISA=$isa "$LARIAT" run "$SOURCE/examples/beam.yaml" --steps 1 >tried 2>&1 && continue
+    export LARIAT_ISA=$isa
+    expect 1 "$LARIAT" doctor
+    says 'instruction set *none: the variable LARIAT_ISA asks for one that this machine lacks'
+    complains "$isa"
+    unset LARIAT_ISA
+done
 # What cannot be read says so in other words than what there is no reader for.
 echo none >bad.nii
 "$LARIAT" mesh bad.nii --list >tried 2>&1
