@@ -48,7 +48,8 @@ deb:
 	@tools/web.sh --required
 	@tools/deb.sh $(JOBS)
 
-# For all users, whatever umask root has. A prefix may have spaces. Quotes would keep ~ from the shell, which not every one resolves before.
+# For all users, whatever umask root has. A prefix may have spaces. Quotes would keep ~ from the
+# shell, which not every one resolves before.
 install: all
 	umask 022 && cmake --install build --prefix $(subst $(SPACE),\$(SPACE),$(PREFIX))
 
