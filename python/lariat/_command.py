@@ -207,4 +207,7 @@ def ask(command, arguments, *, folder, progress=None, keeps=False, level=3):
         if note not in answer.get("notices", ()):
             note = folder.told(note)
             warnings.warn(note, UserWarning, stacklevel=level)
+    for told in ("notices", "notes"):
+        if told in answer:
+            answer[told] = [folder.told(note) for note in answer[told]]
     return answer

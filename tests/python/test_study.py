@@ -164,7 +164,15 @@ class Quick(unittest.TestCase):
                 (TypeError, "nothing that scenes", lambda: lariat.fit(experiment(noise=object()))),
                 (lariat.ArgumentError, r"^experiment\.experiments\[0\]\.noise: inf is not",
                  lambda: lariat.fit(experiment(noise=float("inf")))),
-                (lariat.Error, "data.csv", lambda: lariat.fit(experiment(data={"stretch": [1, 2]}))),
+                (lariat.Error, r"^experiment\.experiments\[0\]\.data: the column force is missing, "
+                 r"which tension needs; .* in experiment\.experiments\[0\]$",
+                 lambda: lariat.fit(experiment(data={"stretch": [1, 2]}))),
+                (lariat.Error, r"^experiment\.experiments\[0\]\.data, row 2: displacement is 7 m, "
+                 "and the body of the scene is only",
+                 lambda: lariat.fit(experiment(data={"displacement": [0.001, 0.002, 7],
+                                                     "force": [1, 2, 3]}))),
+                (lariat.Error, r"scene\.time_step: time step 1 s is above",
+                 lambda: lariat.fit(experiment(bar(time_step=1.0)))),
                 (lariat.Error, "image", lambda: lariat.profiles(
                     demo(), {"mm_per_pixel": 0.1, "axis_pixel": 5, "rim_pixel": 5,
                              "radius_mm": 1}))):
