@@ -289,7 +289,9 @@ static PyGetSetDef model_properties[] = {
     {"info", get_info, NULL,
      "dict: the beginning of what `lariat info` prints, which tells materials, sets and speed as\n"
      "well, by the names of lar_model_info. Counts, bounding box [m], volume [m^3], mass [kg],\n"
-     "quality, largest stable step and time step [s], springs [N/m]; elements by index, -1: none.\n"
+     "quality, largest stable step and time step [s], springs [N/m]; elements by index, -1: none;\n"
+     "duration [s] as the scene states it, 0: it states none (`Model.duration`: how long it "
+     "lasts).\n"
      "Goes through all elements.",
      NULL},
     {"materials", get_materials, NULL,
