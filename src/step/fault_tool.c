@@ -23,7 +23,7 @@ typedef struct fault_spot {
     double rest[3]; /* the middle of the element, or the node, at rest [m] */
     double edge;    /* about how long the element's edges are [m] */
     double firm;    /* the force that strains it by about one [N] */
-    double loads;   /* of the scene, the largest on a node there [N] */
+    double loads;   /* the largest on a node there, of the scene, and set where one is named [N] */
 } fault_spot;
 
 /* The middle of an element at rest, and about how long its edges are. */
@@ -156,10 +156,10 @@ static double pushing_distance(const lar_domain *domain, const lar_tools *tools,
     return fault->tool < 0 ? nearest * spot->edge : INFINITY;
 }
 
-/* Whether a tool may have had a part in it: some tool has touched the body, and where the scene's
- * loads are enough to break it, this one presses or pulls hard beside them. */
+/* Whether a tool may have had a part in it: some tool has touched the body, and where loads are
+ * enough to break it, this one moves and presses or pulls hard beside them. */
 static bool may_have_part(const lar_domain *domain, const lar_tools *tools, int32_t tool,
-                          const fault_spot *spot) {
+                          bool moving, const fault_spot *spot) {
     const lar_tool_follower *follower = &tools->follower[tool];
     const lar_tool_felt *felt = &follower->felt;
     const double steps = fmax(1, (double)felt->steps) * LAR_STEP_SHARES * domain->scale;
@@ -168,7 +168,7 @@ static bool may_have_part(const lar_domain *domain, const lar_tools *tools, int3
     double force =
         fmax(lar_length(mean), follower->load * domain->surroundings.list->limits[tool].force);
     bool touched = tools->division.untouched != 0 || felt->depth > 0 || force > 0;
-    return touched && (spot->loads < spot->firm || force >= BESIDE * spot->loads);
+    return touched && (spot->loads < spot->firm || (moving && force >= BESIDE * spot->loads));
 }
 
 void lar_fault_attribute(const lar_domain *domain, const lar_tools *tools, lar_fault *fault) {
@@ -183,16 +183,18 @@ void lar_fault_attribute(const lar_domain *domain, const lar_tools *tools, lar_f
     fault_spot spot;
     find_spot(domain, tools, fault, of_element, &spot);
     const double force = pushing_distance(domain, tools, &spot, fault);
+    if (fault->tool < 0) spot.loads = fmax(spot.loads, fault->force);
     if (faces->face_count == 0) return;
     for (int32_t t = 0; t < list->count; t++) {
         const lar_tool *tool = &list->tool[t];
         lar_tool_pose pose;
         double velocity[3];
-        if (tool->shape == LAR_TOOL_NONE || !may_have_part(domain, tools, t, &spot)) continue;
-        lar_tool_at(&tools->motion[t], fault->step, domain->time_step, &pose, velocity);
-        double holding = holding_distance(domain, tools, t, spot.rest), touching = INFINITY;
         const lar_tool_motion *motion = &tools->motion[t];
         bool moving = motion->end > 0 && fault->step < motion->end + JUST;
+        if (tool->shape == LAR_TOOL_NONE || !may_have_part(domain, tools, t, moving, &spot))
+            continue;
+        lar_tool_at(&tools->motion[t], fault->step, domain->time_step, &pose, velocity);
+        double holding = holding_distance(domain, tools, t, spot.rest), touching = INFINITY;
         if (tool->shape != LAR_TOOL_HAND) touching = touching_distance(tool, &pose, fault->place);
         if (!(fmin(holding, touching) < force)) continue;
         holding /= PULLING * spot.edge;

@@ -332,6 +332,25 @@ static void the_larger_force_is_named(void **unused) {
     finish(simulation, model);
 }
 
+/* Nor is it a ball that hardly touches where a force tears, though that is nearer. */
+static void a_light_touch_is_not_named(void **unused) {
+    (void)unused;
+    lar_model *model = make(false);
+    lar_error error = {0};
+    add_tool(model, "ball", LAR_TOOL_SPHERE, 0.07, 0.005, 0.005);
+    lar_simulation *simulation = start(model);
+    place_tool(simulation, 0, 0.067, 0.005, 0.005, 1, 100);
+    advance(simulation, 400);
+    lar_tool_force felt;
+    assert_int_equal(lar_simulation_tool_force(simulation, 0, &felt, &error), LAR_OK);
+    assert_true(felt.force[0] > 1e-3 && felt.force[0] < 1e-2);
+    set_at(simulation, corner_node(), 10, 0, 0);
+    assert_int_equal(lar_simulation_advance(simulation, 2000, &error), LAR_ERROR_UNSTABLE);
+    if (!strstr(error.message, "the force of 10 N that was set on node"))
+        fail_msg("%s", error.message);
+    finish(simulation, model);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(they_are_loads_of_the_model),
                                        cmocka_unit_test(they_end_when_they_are_removed),
@@ -344,6 +363,7 @@ int main(void) {
                                        cmocka_unit_test(a_file_knows_its_sets),
                                        cmocka_unit_test(what_tears_is_named),
                                        cmocka_unit_test(what_counts_for_nothing_is_not_named),
-                                       cmocka_unit_test(the_larger_force_is_named)};
+                                       cmocka_unit_test(the_larger_force_is_named),
+                                       cmocka_unit_test(a_light_touch_is_not_named)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
