@@ -179,6 +179,15 @@ class Quick(unittest.TestCase):
             with self.subTest(words), self.assertRaisesRegex(kind, words):
                 call()
 
+    def test_answers_name_keys_of_a_dict_and_no_files(self):
+        told = lariat.requirements(block(damping=1e7)).why_not
+        self.assertRegex(told, r"^scene\.damping: damping 1e\+07 1/s stops")
+        probe = {"name": "p", "nodes": {"nearest": [0, 0, 0]}, "sum": "reaction"}
+        scene = {**SCENE, "mesh": os.path.join(demo(), "uterus.vtu"), "fix": [], "tools": [],
+                 "output": {"probes": [probe]}}
+        self.assertRegex(lariat.info(scene, speed=False).notices[0],
+                         r"^model\.output\.probes\[0\]: the probe")
+
     def test_millimetres_are_a_warning(self):
         nodes, hexahedra, _ = block_arrays()
         large = lariat.Model.from_arrays([[1000 * x for x in n] for n in nodes], hexahedra)
