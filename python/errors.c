@@ -124,14 +124,30 @@ PyObject *python_sentence(const char *message) {
     return text;
 }
 
-PyObject *python_raise(const lar_error *error) {
-    PyObject *class = error->status > LAR_OK && error->status <= LAR_ERROR_PEER
-                          ? class_of_status[error->status]
-                          : error_class;
-    PyObject *message = python_sentence(error->message);
-    if (message) PyErr_SetObject(class, message);
-    Py_XDECREF(message);
+PyObject *python_sentence_of(PyObject *scene, const char *message) {
+    PyObject *sentence = python_sentence(message);
+    if (!sentence || !scene || scene == Py_None) return sentence;
+    PyObject *module = PyImport_ImportModule("lariat._scene_text");
+    PyObject *told = module ? PyObject_CallMethod(module, "keyed", "OO", sentence, scene) : NULL;
+    Py_XDECREF(module);
+    Py_DECREF(sentence);
+    return told;
+}
+
+static PyObject *raise_sentence(lar_status status, PyObject *sentence) {
+    PyObject *class =
+        status > LAR_OK && status <= LAR_ERROR_PEER ? class_of_status[status] : error_class;
+    if (sentence) PyErr_SetObject(class, sentence);
+    Py_XDECREF(sentence);
     return NULL;
+}
+
+PyObject *python_raise_of(PyObject *scene, const lar_error *error) {
+    return raise_sentence(error->status, python_sentence_of(scene, error->message));
+}
+
+PyObject *python_raise(const lar_error *error) {
+    return raise_sentence(error->status, python_sentence(error->message));
 }
 
 PyObject *python_answer(lar_status status, const lar_error *error) {

@@ -16,6 +16,11 @@ PyObject *python_model_wrap(lar_model *model) {
     return (PyObject *)self;
 }
 
+PyObject *python_model_scene(const python_model *model) {
+    PyObject *arguments = model->recipe ? PyTuple_GetItem(model->recipe, 1) : NULL;
+    return arguments && PyTuple_Size(arguments) > 2 ? PyTuple_GetItem(arguments, 2) : NULL;
+}
+
 /* Whoever unpickles may stand in another folder. */
 static PyObject *absolute(PyObject *path) {
     PyObject *os = PyImport_ImportModule("os.path");
@@ -153,12 +158,17 @@ static PyObject *get_tools(PyObject *me, void *unused) {
     return list_of(model_of(me), lar_model_tool_count(model_of(me)), make_tool);
 }
 
-static PyObject *make_notice(const lar_model *model, int32_t index) {
-    return PyUnicode_FromString(lar_model_notice_text(model, index));
-}
 static PyObject *get_notices(PyObject *me, void *unused) {
     (void)unused;
-    return list_of(model_of(me), lar_model_notice_count(model_of(me)), make_notice);
+    const lar_model *model = model_of(me);
+    PyObject *scene = python_model_scene((python_model *)me);
+    int32_t count = lar_model_notice_count(model);
+    PyObject *list = PyList_New(count);
+    for (int32_t i = 0; list && i < count; i++) {
+        PyObject *text = python_sentence_of(scene, lar_model_notice_text(model, i));
+        if (!text || PyList_SetItem(list, i, text)) Py_CLEAR(list);
+    }
+    return list;
 }
 
 static PyObject *make_mass_scaling(const lar_mass_scaling *m) {
@@ -176,7 +186,7 @@ static PyObject *get_info(PyObject *me, void *unused) {
     lar_status status;
     const lar_model *model = model_of(me);
     PYTHON_UNLOCKED(status = lar_model_inspect(model, &i, &error));
-    if (status) return python_raise(&error);
+    if (status) return python_raise_of(python_model_scene((python_model *)me), &error);
     return Py_BuildValue(
         "{s:s,s:i,s:i,s:i,s:i,s:N,s:N,s:d,s:d,s:d,s:d,s:d,s:i,s:d,s:i,s:d,s:N,s:i,s:i,s:d,s:d}",
         "title", i.title, "nodes", (int)i.nodes, "elements", (int)i.elements, "materials",
@@ -279,7 +289,9 @@ static PyGetSetDef model_properties[] = {
     {"info", get_info, NULL,
      "dict: the beginning of what `lariat info` prints, which tells materials, sets and speed as\n"
      "well, by the names of lar_model_info. Counts, bounding box [m], volume [m^3], mass [kg],\n"
-     "quality, largest stable step and time step [s], springs [N/m]; elements by index, -1: none.\n"
+     "quality, largest stable step and time step [s], springs [N/m]; elements by index, -1: none;\n"
+     "duration [s] as the scene states it, 0: it states none (`Model.duration`: how long it "
+     "lasts).\n"
      "Goes through all elements.",
      NULL},
     {"materials", get_materials, NULL,

@@ -113,21 +113,6 @@ static PyObject *recipe_of(const arrays *a, PyObject *scene) {
     return recipe;
 }
 
-/* What the library says of the text of a dict begins with the line: in its place, the key. */
-static void raise_of_dict(const lar_error *error, PyObject *text) {
-    lar_error told = *error;
-    PyObject *module = PyImport_ImportModule("lariat._scene_text");
-    PyObject *words = module ? PyObject_CallMethod(module, "with_keys", "NsO",
-                                                   python_sentence(error->message), "scene", text)
-                             : NULL;
-    const char *utf8 = words ? PyUnicode_AsUTF8AndSize(words, NULL) : NULL;
-    PyErr_Clear();
-    if (utf8) snprintf(told.message, sizeof told.message, "%s", utf8);
-    python_raise(&told);
-    Py_XDECREF(words);
-    Py_XDECREF(module);
-}
-
 static PyObject *make(const arrays *a, PyObject *scene) {
     const lar_mesh_arrays mesh = {.nodes = (int32_t)a->nodes.rows,
                                   .elements = (int32_t)a->hexahedra.rows,
@@ -150,10 +135,7 @@ static PyObject *make(const arrays *a, PyObject *scene) {
     PYTHON_UNLOCKED(status = lar_model_from_arrays(&mesh, utf8, &model, &error));
     python_model *self = status ? NULL : (python_model *)python_model_wrap(model);
     if (self && !(self->recipe = recipe_of(a, text))) Py_CLEAR(self);
-    if (status && PyDict_Check(scene))
-        raise_of_dict(&error, text);
-    else if (status)
-        python_raise(&error);
+    if (status) python_raise_of(text, &error);
     if (text != Py_None) Py_DECREF(text);
     return (PyObject *)self;
 }

@@ -137,6 +137,12 @@ extern PyObject *python_error_argument, *python_error_state;
 PyObject *python_raise(const lar_error *error);
 /* A sentence of the library's in the words of this module, a new str. */
 PyObject *python_sentence(const char *message);
+/* The same about a scene, and of what is found in it later: where it was a dict, keys stand in
+ * place of lines. `scene`: its text; NULL or None: there is none. */
+PyObject *python_sentence_of(PyObject *scene, const char *message);
+PyObject *python_raise_of(PyObject *scene, const lar_error *error);
+/* The text of the scene of a model of arrays, borrowed; NULL: it is from a file. */
+PyObject *python_model_scene(const python_model *model);
 /* What a call returns that has nothing to say: None, or as python_raise. */
 PyObject *python_answer(lar_status status, const lar_error *error);
 /* An ArgumentError (a ValueError) or a TypeError: PyErr_Format's formats. */

@@ -202,7 +202,7 @@ static PyObject *simulation_new(PyTypeObject *type, PyObject *args, PyObject *ke
     self->simulation = made;
     if (!status) return (PyObject *)self;
     Py_DECREF(self);
-    return python_raise(&error);
+    return python_raise_of(python_model_scene((python_model *)model), &error);
 }
 
 static void simulation_dealloc(PyObject *me) {

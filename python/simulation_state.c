@@ -245,6 +245,19 @@ static PyObject *load(PyObject *me, PyObject *args, PyObject *keywords) {
     Py_RETURN_NONE;
 }
 
+/* What was asked of tools last, for pickles; with an argument it is put back. */
+static PyObject *asked(PyObject *me, PyObject *args) {
+    python_simulation *self = (python_simulation *)me;
+    const char *bytes = NULL;
+    Py_ssize_t size = 0;
+    if (!PyArg_ParseTuple(args, "|y#:_asked", &bytes, &size) ||
+        !python_simulation_look(self, "_asked"))
+        return NULL;
+    size_t known = (size_t)size < sizeof self->asked ? (size_t)size : sizeof self->asked;
+    if (bytes) memcpy(self->asked, bytes, known);
+    return PyBytes_FromStringAndSize((const char *)self->asked, sizeof self->asked);
+}
+
 #define FUNCTION(f) ((PyCFunction)(void (*)(void))(f))
 #define OUT_DOC                                                                                    \
     " float64 [nodes, 3], in the mesh's order. Copied into `out` where given, which asks for no "  \
@@ -287,4 +300,5 @@ PyMethodDef python_state_methods[] = {
      "has as "
      "asked for last; a file has not: they are then what they are, and jaws that tissue keeps open "
      "must be told again to close (opening=0)."},
+    {"_asked", asked, METH_VARARGS, NULL},
     {NULL, NULL, 0, NULL}};

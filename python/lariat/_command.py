@@ -177,6 +177,16 @@ def _refuse(status, text):
         text or f"the command ended with status {status} and no message")
 
 
+def _told(value, folder, said=False):
+    """An answer, whose sentences name no files of the Folder's."""
+    if isinstance(value, dict):
+        return {key: _told(one, folder, key in ("notices", "notes", "why_not"))
+                for key, one in value.items()}
+    if isinstance(value, list):
+        return [_told(one, folder, said) for one in value]
+    return folder.told(value) if said and isinstance(value, str) else value
+
+
 def ask(command, arguments, *, folder, progress=None, keeps=False, level=3):
     """Runs `lariat COMMAND ARGUMENTS --json` in the Folder. `progress` gets its lines of progress as
     dicts; False stops it. `keeps`: what is stopped has an answer all the same, where there is one.
@@ -207,4 +217,4 @@ def ask(command, arguments, *, folder, progress=None, keeps=False, level=3):
         if note not in answer.get("notices", ()):
             note = folder.told(note)
             warnings.warn(note, UserWarning, stacklevel=level)
-    return answer
+    return _told(answer, folder)

@@ -47,6 +47,12 @@ def _tidy(value, where):
     raise TypeError(f"{where}: a value of {type(value)!r} is nothing that scenes have")
 
 
+class DictText(str):
+    """The text of a dict, whose lines nobody has seen."""
+
+    __slots__ = ()
+
+
 def text_of(value, name):
     """A dict as YAML. In files `all` is a word and "all" in quotes the name of a set; who writes a
     dict means the word."""
@@ -56,7 +62,7 @@ def text_of(value, name):
         if isinstance(error, ArgumentError):
             raise
         raise ArgumentError(f"{name}: {error}") from None
-    return re.sub(r'(?<!\\)"all"(?!:)', "all", text)
+    return DictText(re.sub(r'(?<!\\)"all"(?!:)', "all", text))
 
 
 def _keys_of(text, line):
@@ -76,12 +82,37 @@ def _keys_of(text, line):
     return "".join(f"[{key}]" if isinstance(key, int) else f".{key}" for key in keys)
 
 
-def with_keys(message, name, text, file=None):
-    """A message about a text of text_of, with the keys of the dict in place of line and column."""
-    place = re.compile(rf"(?<![\w/.]){re.escape(file or name)}:(\d+):\d+: (?:(\w+): )?")
+def with_keys(message, name, text, *files):
+    """A message about a text of text_of, with the keys of the dict in place of lines and columns.
+    `files`: what messages call the text besides its name."""
+    called = "|".join(re.escape(file) for file in (*files, name))
+    place = re.compile(rf"(?<![\w/.])(?:{called}):(\d+)(?::\d+)?\b(?:: (\w+): )?")
 
     def keys(found):
         path = name + _keys_of(text, int(found[1]))
-        again = found[2] is None or path.endswith("." + found[2])  # the sentence names it, too
+        if found[2] is None:
+            return path
+        again = path.endswith("." + found[2])  # the sentence names it, too
         return f"{path}: " if again else f"{path}: {found[2]}: "
-    return place.sub(keys, message)
+
+    def in_line(found):
+        return f" in {name}{_keys_of(text, int(found[1]))}"
+
+    told = []
+    for sentence in message.split("\n"):
+        if place.match(sentence):  # then it means lines of this text
+            sentence = re.sub(r" here \(line \d+\)", "", sentence)
+            sentence = re.sub(r" in line (\d+)\b", in_line, sentence)
+        told.append(place.sub(keys, sentence))
+    return "\n".join(told)
+
+
+def keyed(message, scene):
+    """What the library says about a model of arrays with this scene: a str, or a DictText."""
+    if not isinstance(scene, DictText):
+        return message
+    message = with_keys(message, "scene", scene, "model")
+    whole = re.match(r"(?:scene|model): (\w+): ", message)  # it names a key, and no line
+    if whole and f'\n "{whole[1]}": ' in scene:
+        message = f"scene.{whole[1]}: {message[whole.end():]}"
+    return message

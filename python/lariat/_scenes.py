@@ -18,7 +18,7 @@ import tempfile
 from urllib.parse import quote
 
 from ._lariat import ArgumentError, Meshing, Model
-from ._scene_text import check_text, text_of, with_keys
+from ._scene_text import DictText, check_text, text_of, with_keys
 
 _HEXAHEDRON = 12  # of VTK
 _VECTORS = 'NumberOfComponents="3"'
@@ -142,6 +142,7 @@ class Folder:
         self._made = None
         self._names = set()
         self._dicts = {}  # name of a file: what the caller calls it, and its text
+        self._tables = {}  # name of a file: what the caller calls it
 
     def __enter__(self):
         return self
@@ -180,6 +181,13 @@ class Folder:
             message = with_keys(message, name, text, file)
             message = message.replace(f"the {name} {file}", f"the {name}")
             message = re.sub(rf"(?<![\w/.]){re.escape(file)}(?=: )", name, message)
+            message = re.sub(rf"(?<=\w ){re.escape(file)}(?![\w:/]|\.\w)", f"the {name}", message)
+        for file, name in self._tables.items():
+            file = rf"(?<![\w/.]){re.escape(file)}"
+            message = re.sub(rf"{file}:1\b", name, message)  # the line of the columns' names
+            message = re.sub(rf"{file}:(\d+)\b",
+                             lambda found, name=name: f"{name}, row {int(found[1]) - 2}", message)
+            message = re.sub(rf"{file}(?![\w/]|\.\w)", name, message)
         return message
 
     def model(self, model, name="model"):
@@ -202,14 +210,17 @@ class Folder:
         if scene is None:
             return mesh
         file = self.write("scene.yaml", [_with_mesh(scene, mesh)])
-        self._dicts[file] = "scene", ""
+        self._dicts[file] = "scene", scene if isinstance(scene, DictText) else ""
         return file
 
-    def table(self, source, name):
-        """A table: a path, or columns by their names."""
-        if isinstance(source, dict):
-            return self.write(f"{name}.csv", [table_of(source, name)])
-        return path_of(source, name)
+    def table(self, source, key, entry):
+        """A table, in the experiments' entry of this number: a path, or columns by their names."""
+        if not isinstance(source, dict):
+            return path_of(source, key)
+        name = f"experiment.experiments[{entry}].{key}"
+        file = self.write(f"{key}.csv", [table_of(source, name)])
+        self._tables[file] = name
+        return file
 
     def experiment(self, experiment):
         """The file of a fit: a path, or a dict whose scenes and tables may be in memory."""
@@ -224,10 +235,11 @@ class Folder:
         if not isinstance(listed, (list, tuple)) or not all(isinstance(e, dict) for e in listed):
             raise ArgumentError('experiment: expected "experiments", a list of dicts')
         written = {}  # one file for a scene that several experiments have
-        experiment["experiments"] = [self._entry(dict(entry), written) for entry in listed]
+        experiment["experiments"] = [self._entry(dict(entry), written, i)
+                                     for i, entry in enumerate(listed)]
         return self.dict_file("experiment.yaml", experiment, "experiment")
 
-    def _entry(self, entry, written):
+    def _entry(self, entry, written, number):
         if "scene" in entry:
             scene = entry["scene"]
             if id(scene) not in written:
@@ -235,5 +247,5 @@ class Folder:
             entry["scene"] = written[id(scene)]
         for key in ("data", "pressure"):
             if key in entry:
-                entry[key] = self.table(entry[key], key)
+                entry[key] = self.table(entry[key], key, number)
         return entry

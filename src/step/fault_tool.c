@@ -14,6 +14,17 @@ static const double TOUCHING = 1.5, MOVING = 8, PULLING = 6;
 /* A force no farther than so many edges; a tool that is nearer comes before it. */
 static const double PUSHING = 3;
 enum { JUST = 1000 };
+/* A smaller force than this part of the largest beside it is not what broke the tissue; nor one
+ * that strains the element by less than a thousandth. */
+static const double BESIDE = 0.1, STRAINS = 1e-3;
+
+/* Where something broke, and what acts there. */
+typedef struct fault_spot {
+    double rest[3]; /* the middle of the element, or the node, at rest [m] */
+    double edge;    /* about how long the element's edges are [m] */
+    double firm;    /* the force that strains it by about one [N] */
+    double loads;   /* the largest on a node there, of the scene, and set where one is named [N] */
+} fault_spot;
 
 /* The middle of an element at rest, and about how long its edges are. */
 static double element_at_rest(const lar_domain *domain, lar_gid e, double place[3]) {
@@ -24,6 +35,65 @@ static double element_at_rest(const lar_domain *domain, lar_gid e, double place[
         for (int a = 0; a < 8; a++) place[i] += corner[a][i] / 8;
     }
     return cbrt(lar_hexahedron_volume(corner));
+}
+
+/* How far a node is from there, in edges, at rest. */
+static double edges_from(const lar_domain *domain, lar_gid node, const fault_spot *spot) {
+    double way[3];
+    lar_minus(domain->model->mesh.position[node], spot->rest, way);
+    return lar_length(way) / spot->edge;
+}
+
+static double factor_at(const lar_model *model, int curve, double time) {
+    return curve < 0 ? 1 : fabs(lar_curve_value(&model->curve[curve], time));
+}
+
+/* The largest load of the scene on a node there [N]; of pressures about. */
+static double loads_at(const lar_domain *domain, const lar_tools *tools, double time, double weight,
+                       const fault_spot *spot) {
+    const lar_model *model = domain->model;
+    double gravity[3], most;
+    lar_gravity_at(model, &tools->settings, time, gravity);
+    most = weight * lar_length(gravity);
+    for (int i = 0; i < model->load_count; i++) {
+        const lar_nodal_load *load = &model->load[i];
+        double force = factor_at(model, load->curve, time) * lar_length(load->force);
+        for (int32_t n = 0; n < load->nodes.count && force > most; n++)
+            if (edges_from(domain, load->nodes.node[n], spot) < PUSHING) most = force;
+    }
+    for (int i = 0; i < model->pressure_count; i++) {
+        const lar_pressure_load *load = &model->pressure[i];
+        double force = factor_at(model, load->curve, time) * fabs(load->pressure);
+        force *= spot->edge * spot->edge;
+        for (int32_t f = 0; f < load->count && force > most; f++) {
+            const int32_t *nodes = model->mesh.element[load->face[f] / 6];
+            lar_gid node = nodes[lar_face_node[load->face[f] % 6][0]];
+            if (edges_from(domain, node, spot) < PUSHING) most = force;
+        }
+    }
+    return most;
+}
+
+/* An element that has the node. */
+static lar_gid element_of(const lar_mesh *mesh, lar_gid node) {
+    for (lar_gid e = 0; e < mesh->element_count; e++)
+        for (int a = 0; a < 8; a++)
+            if (mesh->element[e][a] == node) return e;
+    return 0;
+}
+
+static void find_spot(const lar_domain *domain, const lar_tools *tools, const lar_fault *fault,
+                      bool of_element, fault_spot *spot) {
+    const lar_mesh *mesh = &domain->model->mesh;
+    lar_gid e = of_element ? fault->element : element_of(mesh, fault->element);
+    const lar_material *material = lar_domain_material(domain, e);
+    double time = (double)fault->step * domain->time_step;
+    spot->edge = element_at_rest(domain, e, spot->rest);
+    if (!of_element) memcpy(spot->rest, mesh->position[fault->element], sizeof spot->rest);
+    double face = spot->edge * spot->edge;
+    spot->firm = domain->factor[lar_factor_of(domain->model->element_material[e])] *
+                 lar_material_instant_shear(material) * face;
+    spot->loads = loads_at(domain, tools, time, material->density * face * spot->edge, spot);
 }
 
 static double touching_distance(const lar_tool *tool, const lar_tool_pose *pose,
@@ -48,24 +118,57 @@ static double holding_distance(const lar_domain *domain, const lar_tools *tools,
     return nearest;
 }
 
-/* Names the nearest force; returns how far it is, INFINITY: too far [m]. */
+/* How far the nearest node with a force of an entry is, in edges; *node says which. */
+static double push_distance(const lar_domain *domain, const lar_force_entry *entry,
+                            const fault_spot *spot, lar_gid *node) {
+    const lar_force_nodes on = lar_force_nodes_of(domain->model, entry);
+    double nearest = INFINITY;
+    for (int32_t n = 0; n < on.count; n++) {
+        double distance = edges_from(domain, on.node[n], spot);
+        if (!(distance < nearest)) continue;
+        nearest = distance;
+        *node = on.node[n];
+    }
+    return nearest;
+}
+
+/* Names the nearest force that is not small beside others there; returns how far it is, INFINITY:
+ * there is none [m]. */
 static double pushing_distance(const lar_domain *domain, const lar_tools *tools,
-                               const double rest[3], double edge, lar_fault *fault) {
-    double nearest = PUSHING * edge;
+                               const fault_spot *spot, lar_fault *fault) {
+    double nearest = PUSHING, most = spot->loads;
+    lar_gid node = 0;
     for (int32_t i = 0; i < tools->forces.count; i++) {
         const lar_force_entry *entry = &tools->forces.entry[i];
-        const lar_force_nodes on = lar_force_nodes_of(domain->model, entry);
-        for (int32_t n = 0; n < on.count; n++) {
-            double way[3];
-            lar_minus(domain->model->mesh.position[on.node[n]], rest, way);
-            if (!(lar_length(way) < nearest)) continue;
-            nearest = lar_length(way);
-            fault->tool = -1;
-            fault->pushed = on.node[n];
-            fault->force = lar_length(entry->force);
-        }
+        if (push_distance(domain, entry, spot, &node) < PUSHING)
+            most = fmax(most, lar_length(entry->force));
     }
-    return fault->tool < 0 ? nearest : INFINITY;
+    const double least = fmax(BESIDE * most, STRAINS * spot->firm);
+    for (int32_t i = 0; i < tools->forces.count; i++) {
+        const lar_force_entry *entry = &tools->forces.entry[i];
+        double distance = push_distance(domain, entry, spot, &node);
+        if (!(lar_length(entry->force) >= least) || !(distance < nearest)) continue;
+        nearest = distance;
+        fault->tool = -1;
+        fault->pushed = node;
+        fault->force = lar_length(entry->force);
+    }
+    return fault->tool < 0 ? nearest * spot->edge : INFINITY;
+}
+
+/* Whether a tool may have had a part in it: some tool has touched the body, and where loads are
+ * enough to break it, this one moves and presses or pulls hard beside them. */
+static bool may_have_part(const lar_domain *domain, const lar_tools *tools, int32_t tool,
+                          bool moving, const fault_spot *spot) {
+    const lar_tool_follower *follower = &tools->follower[tool];
+    const lar_tool_felt *felt = &follower->felt;
+    const double steps = fmax(1, (double)felt->steps) * LAR_STEP_SHARES * domain->scale;
+    double mean[3];
+    for (int i = 0; i < 3; i++) mean[i] = (double)felt->force[i] / steps;
+    double force =
+        fmax(lar_length(mean), follower->load * domain->surroundings.list->limits[tool].force);
+    bool touched = tools->division.untouched != 0 || felt->depth > 0 || force > 0;
+    return touched && (spot->loads < spot->firm || (moving && force >= BESIDE * spot->loads));
 }
 
 void lar_fault_attribute(const lar_domain *domain, const lar_tools *tools, lar_fault *fault) {
@@ -76,34 +179,31 @@ void lar_fault_attribute(const lar_domain *domain, const lar_tools *tools, lar_f
     if (fault->attributed || !(moves || of_element)) return;
     fault->attributed = true;
     if (fault->element < 0) return;
-    double rest[3], edge = 0, closest = 1;
-    if (of_element) {
-        edge = element_at_rest(domain, fault->element, rest);
-    } else {
-        memcpy(rest, domain->model->mesh.position[fault->element], sizeof rest);
-        edge = faces->face_count > 0 ? faces->face[0].edge : domain->thinnest;
-    }
-    const double force = pushing_distance(domain, tools, rest, edge, fault);
+    double closest = 1;
+    fault_spot spot;
+    find_spot(domain, tools, fault, of_element, &spot);
+    const double force = pushing_distance(domain, tools, &spot, fault);
+    if (fault->tool < 0) spot.loads = fmax(spot.loads, fault->force);
     if (faces->face_count == 0) return;
     for (int32_t t = 0; t < list->count; t++) {
         const lar_tool *tool = &list->tool[t];
         lar_tool_pose pose;
         double velocity[3];
-        if (tool->shape == LAR_TOOL_NONE) continue;
-        lar_tool_at(&tools->motion[t], fault->step, domain->time_step, &pose, velocity);
-        double holding = holding_distance(domain, tools, t, rest), touching = INFINITY;
         const lar_tool_motion *motion = &tools->motion[t];
         bool moving = motion->end > 0 && fault->step < motion->end + JUST;
+        if (tool->shape == LAR_TOOL_NONE || !may_have_part(domain, tools, t, moving, &spot))
+            continue;
+        lar_tool_at(&tools->motion[t], fault->step, domain->time_step, &pose, velocity);
+        double holding = holding_distance(domain, tools, t, spot.rest), touching = INFINITY;
         if (tool->shape != LAR_TOOL_HAND) touching = touching_distance(tool, &pose, fault->place);
         if (!(fmin(holding, touching) < force)) continue;
-        holding /= PULLING * edge;
-        touching /= (moving ? MOVING : TOUCHING) * edge;
+        holding /= PULLING * spot.edge;
+        touching /= (moving ? MOVING : TOUCHING) * spot.edge;
         if (!(fmin(holding, touching) < closest)) continue;
         closest = fmin(holding, touching);
         fault->tool = t + 1;
         fault->tool_pulls = holding < touching;
-        fault->tool_speed =
-            sqrt(velocity[0] * velocity[0] + velocity[1] * velocity[1] + velocity[2] * velocity[2]);
+        fault->tool_speed = lar_length(velocity);
     }
 }
 

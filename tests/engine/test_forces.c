@@ -292,6 +292,65 @@ static void what_tears_is_named(void **unused) {
     }
 }
 
+/* Where the scene's own load tears, a force that is next to nothing beside it has no part in it,
+ * nor a ball that moves through the air and touches nothing; a force as large as the load has. */
+static void what_counts_for_nothing_is_not_named(void **unused) {
+    (void)unused;
+    static const double force[] = {1e-12, 0.1, 60};
+    for (int k = 0; k < 3; k++) {
+        lar_model *model = make(false);
+        lar_error error = {0};
+        lar_node_list end = brick_side(&body, 0, -1);
+        load_nodes(model, end, 0, -60, 0, add_table(model, 0, 1, (const double[][2]){{0.02, 1}}));
+        add_tool(model, "ball", LAR_TOOL_SPHERE, 0.08, -0.02, -0.02);
+        lar_simulation *simulation = start(model);
+        set_at(simulation, corner_node(), force[k], 0, 0);
+        place_tool(simulation, 0, 0.08, 0, -0.02, 1, 2000);
+        assert_int_equal(lar_simulation_advance(simulation, 2000, &error), LAR_ERROR_UNSTABLE);
+        bool named = strstr(error.message, "that was set on node") != NULL;
+        if (named != (force[k] == 60) || strstr(error.message, "tool"))
+            fail_msg("%s", error.message);
+        finish(simulation, model);
+    }
+}
+
+/* Of two forces, one of them next to nothing, it is the other that tears, though it is farther. */
+static void the_larger_force_is_named(void **unused) {
+    (void)unused;
+    lar_model *model = make(false);
+    lar_error error = {0};
+    lar_simulation *simulation = start(model);
+    const int32_t corner = corner_node();
+    for (int32_t node = 0; node < LAR_FORCES_MAX; node++) {
+        int32_t other = brick_node(&body, 6 - node / 30, node / 5 % 6, node % 5);
+        if (other != corner) set_at(simulation, other, 0, 1e-9, 0);
+    }
+    set_at(simulation, corner, 0, -60, 0);
+    assert_int_equal(lar_simulation_advance(simulation, 2000, &error), LAR_ERROR_UNSTABLE);
+    if (!strstr(error.message, "the force of 60 N that was set on node"))
+        fail_msg("%s", error.message);
+    finish(simulation, model);
+}
+
+/* Nor is it a ball that hardly touches where a force tears, though that is nearer. */
+static void a_light_touch_is_not_named(void **unused) {
+    (void)unused;
+    lar_model *model = make(false);
+    lar_error error = {0};
+    add_tool(model, "ball", LAR_TOOL_SPHERE, 0.07, 0.005, 0.005);
+    lar_simulation *simulation = start(model);
+    place_tool(simulation, 0, 0.067, 0.005, 0.005, 1, 100);
+    advance(simulation, 400);
+    lar_tool_force felt;
+    assert_int_equal(lar_simulation_tool_force(simulation, 0, &felt, &error), LAR_OK);
+    assert_true(felt.force[0] > 1e-3 && felt.force[0] < 1e-2);
+    set_at(simulation, corner_node(), 10, 0, 0);
+    assert_int_equal(lar_simulation_advance(simulation, 2000, &error), LAR_ERROR_UNSTABLE);
+    if (!strstr(error.message, "the force of 10 N that was set on node"))
+        fail_msg("%s", error.message);
+    finish(simulation, model);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(they_are_loads_of_the_model),
                                        cmocka_unit_test(they_end_when_they_are_removed),
@@ -302,6 +361,9 @@ int main(void) {
                                        cmocka_unit_test(a_run_goes_on_with_its_forces),
                                        cmocka_unit_test(a_damaged_one_is_refused),
                                        cmocka_unit_test(a_file_knows_its_sets),
-                                       cmocka_unit_test(what_tears_is_named)};
+                                       cmocka_unit_test(what_tears_is_named),
+                                       cmocka_unit_test(what_counts_for_nothing_is_not_named),
+                                       cmocka_unit_test(the_larger_force_is_named),
+                                       cmocka_unit_test(a_light_touch_is_not_named)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

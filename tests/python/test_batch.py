@@ -105,6 +105,32 @@ class Bits(unittest.TestCase):
         other.advance(100)
         self.assertEqual(other.hashes(), batch.hashes())
 
+    def test_pickled_members_are_made_once_for_each_model_and_options(self):
+        """A member that is made takes as long as a hundred that are cloned."""
+        models, made, one = [block(), block(damping=30)], [], lariat.Simulation
+        options = [{"spares": 1}, {"spares": 1, "hands": 1}, {"spares": 1, "grid": "2x1x1"}]
+        sims = [one(model, **given) for given in options for model in models for _ in range(3)]
+        tool = sims[0].add_tool("sphere", 0.004)
+        sims[0].tool_move(tool, (0.03, 0.025, 0.08), steps=40)
+        for i, sim in enumerate(sims):
+            sim.advance(10 + i)
+        batch = lariat.Batch(sims[:6])
+
+        def make(*args, **given):
+            made.append(given)
+            return one(*args, **given)
+        packed = pickle.dumps((batch, sims))
+        try:
+            lariat.Simulation = make
+            again, copies = pickle.loads(packed)
+        finally:
+            lariat.Simulation = one
+        self.assertEqual(len(made), 4 + 2 * 3)  # those with a grid have no clones
+        self.assertEqual([s.hash() for s in copies], [s.hash() for s in sims])
+        self.assertEqual([s.options for s in copies], [s.options for s in sims])
+        self.assertEqual([len(s.tools) for s in copies], [len(s.tools) for s in sims])
+        self.assertTrue(all(a is b for a, b in zip(again, copies)))
+
 
 class Clones(unittest.TestCase):
     def test_they_go_on_with_the_same_bits_and_do_not_know_each_other(self):

@@ -1,6 +1,7 @@
 """class Model: files, arrays, what it says of itself."""
 
 import array
+import copy
 import math
 import os
 import pickle
@@ -203,6 +204,41 @@ class Arrays(unittest.TestCase):
         self.refuses(lariat.FormatError, "^scene:2:1: the key", scene="lariat: 1\ngravitas: 1\n")
         wide = block(tools=[{**grasper, "spread": 50}]).tools[0]["spread"]
         self.assertAlmostEqual(wide, math.radians(50))
+
+    def test_what_is_found_later_is_named_by_its_keys(self):
+        """When the dict has been read, as by Simulation: nobody has seen the lines of its text."""
+        material, walls = SCENE["materials"][0], {"nodes": "floor", "axes": "z"}
+        viscous = {"part": "whole", "terms": [{"g": 0.5, "time": 1e-9}]}
+        for words, changes in (
+                (r"damping: damping 1e\+06 1/s", {"damping": 1e6}),
+                (r"time_step: time step 1 s is above", {"time_step": 1.0}),
+                (r"mass_scaling: a stable step of", {"mass_scaling": {"time_step": 0.9}}),
+                (r"springs\[0\]: springs of", {"springs": [{"nodes": "top", "stiffness": 1e9}]}),
+                (r"load\[1\]\.force: a nodal force", {
+                    "load": [{"nodes": "top", "force": [0, 0, f]} for f in (0.1, 1e12)]}),
+                (r"move\[0\]: node 0 is moved along z and already fixed in scene\.fix\[0\];",
+                 {"move": [{**walls, "by": 1, "over": 1}]}),
+                (r"move\[1\]: node 0 is moved along z and already moved in scene\.move\[0\];",
+                 {"fix": [], "move": [{**walls, "by": 1, "over": 1}] * 2}),
+                (r"materials\[0\]\.viscous: viscous term 1", {
+                    "materials": [{**material, "viscous": viscous}]})):
+            with self.subTest(words):
+                with self.assertRaisesRegex(lariat.ModelError, rf"^scene\.{words}"):
+                    lariat.Simulation(block(**changes))
+        model = block(time_step=1.0)
+        for again in (pickle.loads(pickle.dumps(model)), copy.deepcopy(model)):
+            with self.assertRaisesRegex(lariat.ModelError, r"^scene\.time_step: time step 1 s"):
+                lariat.Simulation(again)
+        nodes, hexahedra, sets = block_arrays()
+        text = ("lariat: 1\ntime_step: 1.0\nmaterials: [{name: a, cells: all, law: neo-hookean, "
+                "density: 1000, shear_modulus: 1.0e3, bulk_modulus: 1.0e4}]\n")
+        with self.assertRaisesRegex(lariat.ModelError, "^model:2: time step 1 s"):
+            lariat.Simulation(lariat.Model.from_arrays(nodes, hexahedra, text, sets=sets))
+
+    def test_notices_about_a_dict_name_its_keys(self):
+        probe = {"name": "p", "nodes": "top", "sum": "reaction"}
+        notices = block(output={"probes": [probe]}).notices
+        self.assertRegex(notices[0], r'^scene\.output\.probes\[0\].*the probe "p" sums reactions')
 
     def test_a_file_with_a_mesh_that_is_given(self):
         import tempfile

@@ -164,12 +164,29 @@ class Quick(unittest.TestCase):
                 (TypeError, "nothing that scenes", lambda: lariat.fit(experiment(noise=object()))),
                 (lariat.ArgumentError, r"^experiment\.experiments\[0\]\.noise: inf is not",
                  lambda: lariat.fit(experiment(noise=float("inf")))),
-                (lariat.Error, "data.csv", lambda: lariat.fit(experiment(data={"stretch": [1, 2]}))),
+                (lariat.Error, r"^experiment\.experiments\[0\]\.data: the column force is missing, "
+                 r"which tension needs; .* in experiment\.experiments\[0\]$",
+                 lambda: lariat.fit(experiment(data={"stretch": [1, 2]}))),
+                (lariat.Error, r"^experiment\.experiments\[0\]\.data, row 2: displacement is 7 m, "
+                 "and the body of the scene is only",
+                 lambda: lariat.fit(experiment(data={"displacement": [0.001, 0.002, 7],
+                                                     "force": [1, 2, 3]}))),
+                (lariat.Error, r"scene\.time_step: time step 1 s is above",
+                 lambda: lariat.fit(experiment(bar(time_step=1.0)))),
                 (lariat.Error, "image", lambda: lariat.profiles(
                     demo(), {"mm_per_pixel": 0.1, "axis_pixel": 5, "rim_pixel": 5,
                              "radius_mm": 1}))):
             with self.subTest(words), self.assertRaisesRegex(kind, words):
                 call()
+
+    def test_answers_name_keys_of_a_dict_and_no_files(self):
+        told = lariat.requirements(block(damping=1e7)).why_not
+        self.assertRegex(told, r"^scene\.damping: damping 1e\+07 1/s stops")
+        probe = {"name": "p", "nodes": {"nearest": [0, 0, 0]}, "sum": "reaction"}
+        scene = {**SCENE, "mesh": os.path.join(demo(), "uterus.vtu"), "fix": [], "tools": [],
+                 "output": {"probes": [probe]}}
+        self.assertRegex(lariat.info(scene, speed=False).notices[0],
+                         r"^model\.output\.probes\[0\]: the probe")
 
     def test_millimetres_are_a_warning(self):
         nodes, hexahedra, _ = block_arrays()
