@@ -30,7 +30,9 @@
  * Calls need up to 128 kB of stack, and so do threads that a host makes for the library. What a
  * signal does, and what the terminal shows, stays the host's. After fork() a child has none of the
  * threads: it goes on with simulations of one thread, and makes new ones; one with a grid or
- * threads refuses to advance there, and a session or server must not be used.
+ * threads refuses to advance there, and a session or server must not be used. All may be destroyed
+ * or closed there: that frees the child's copy, and the parent, the other processors and files go
+ * on undisturbed.
  *
  * "T 6.5.2" in comments and docs is section 6.5.2 of the dissertation that Lariat takes up:
  * Real-Time Finite Elements: A Parallel Computer Application, ETH Zuerich 2001. Words:

@@ -17,6 +17,8 @@
 #ifndef LAR_COMM_BACKEND_H
 #define LAR_COMM_BACKEND_H
 
+#include <sys/types.h>
+
 #include "base/socket.h"
 #include "comm/comm.h"
 
@@ -43,7 +45,7 @@ typedef struct lar_comm_backend {
     /* Lets arrived bytes reach the receive buffer, first of all those from `peer`. An error says
      * that nothing more will come from it; what had come is stored. */
     lar_status (*progress)(lar_comm *comm, int32_t peer);
-    void (*leave)(lar_comm *comm);
+    void (*leave)(lar_comm *comm); /* not when comm->forked */
     void (*close)(lar_comm *comm);
 } lar_comm_backend;
 
@@ -70,6 +72,8 @@ struct lar_comm {
     int *links;                  /* [count] the rendezvous's connections, -1: none */
     int32_t *waiting; /* [count], atomic: whom each waits for, plus 1. Of the team; else NULL */
     struct lar_comm_heartbeat *heartbeat;
+    pid_t process; /* that opened it */
+    bool forked;   /* closed by a child of that: all but the own descriptors is the parent's */
     void *state; /* the backend's */
 };
 

@@ -136,6 +136,7 @@ lar_status lar_comm_open(const lar_comm_options *options, lar_comm **out, lar_er
         return status;
     }
     comm->backend = backend;
+    comm->process = getpid();
     comm->options = *options;
     comm->verdict = &comm->own_verdict;
     status = open_parts(comm, error);
@@ -149,7 +150,8 @@ lar_status lar_comm_open(const lar_comm_options *options, lar_comm **out, lar_er
 
 void lar_comm_close(lar_comm *comm) {
     if (!comm) return;
-    if (comm->backend->leave) comm->backend->leave(comm);
+    comm->forked = comm->process != getpid();
+    if (comm->backend->leave && !comm->forked) comm->backend->leave(comm);
     /* Goodbyes first: a connection that ends after one is no loss. */
     lar_heartbeat_stop(comm);
     if (comm->backend->close) comm->backend->close(comm);

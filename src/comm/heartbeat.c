@@ -270,7 +270,7 @@ void lar_heartbeat_report(lar_comm *comm, int32_t processor, lar_comm_loss loss,
 void lar_heartbeat_stop(lar_comm *comm) {
     lar_comm_heartbeat *w = comm->heartbeat;
     if (!w) return;
-    if (w->runs) {
+    if (w->runs && lar_thread_is_here(&w->thread)) {
         __atomic_store_n(&w->leaving, 1, __ATOMIC_RELEASE);
         wake_up(w);
         lar_thread_join(&w->thread);

@@ -22,7 +22,7 @@ lar_status lar_heartbeat_start(lar_comm *comm, lar_error *error);
 /* Reports a processor as lost and waits a moment for the verdict, which may name another. */
 void lar_heartbeat_report(lar_comm *comm, int32_t processor, lar_comm_loss loss, uint64_t step);
 
-/* Says goodbye and ends the thread. Does nothing when it does not run. */
+/* Says goodbye and ends the thread, if it runs in this process. */
 void lar_heartbeat_stop(lar_comm *comm);
 
 #endif

@@ -164,7 +164,7 @@ static void tcp_close(lar_comm *comm) {
     tcp_state *state = comm->state;
     if (!state) return;
     tcp_begin(comm);
-    if (state->links && state->chunk) drain(comm);
+    if (state->links && state->chunk && !comm->forked) drain(comm);
     for (int32_t p = 0; state->links && p < comm->options.count; p++)
         if (state->links[p].socket >= 0) close(state->links[p].socket);
     free(state->links);

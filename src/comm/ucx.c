@@ -280,7 +280,7 @@ static void ucx_leave(lar_comm *comm) {
 
 static void ucx_close(lar_comm *comm) {
     ucx_state *state = comm->state;
-    if (!state) return;
+    if (!state || comm->forked) return; /* UCX does not outlive a fork: its memory stays */
     bool lost = __atomic_load_n(comm->verdict, __ATOMIC_ACQUIRE) != 0;
     if (state->worker) {
         lock(state);
