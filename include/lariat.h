@@ -1057,7 +1057,9 @@ LAR_SIZED lar_status lar_checkpoint_inspect(const char *path, lar_checkpoint_inf
 typedef struct lar_results lar_results;
 
 /* Opens a folder for results of this simulation's model (made when missing): frames as .vtu with
- * one .pvd, and probes.csv, as the model's `output` asks. Frames appear whole or not at all. */
+ * one .pvd, and probes.csv, as the model's `output` asks. Frames appear whole or not at all.
+ * LAR_ERROR_IO while another run, or other results of this program, are written there: the folder
+ * is locked until they are closed, or the process ends. */
 LAR_API lar_status lar_results_open(const char *folder, const lar_simulation *simulation,
                                     lar_results **results, lar_error *error);
 /* The same, and the embedded surface, if any, in every frame (.vtp), which takes
