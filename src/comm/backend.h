@@ -74,7 +74,7 @@ struct lar_comm {
     struct lar_comm_heartbeat *heartbeat;
     pid_t process; /* that opened it */
     bool forked;   /* closed by a child of that: all but the own descriptors is the parent's */
-    void *state; /* the backend's */
+    void *state;   /* the backend's */
 };
 
 /* Why a processor is lost. */
@@ -116,6 +116,15 @@ static inline void lar_comm_relax(void) {
 
 /* Monotonic clock [s]. */
 double lar_comm_now(void);
+
+/* How long somebody who lives has been waited for; zero at first. */
+typedef struct lar_comm_waited {
+    double until, looked;
+} lar_comm_waited;
+
+/* Each time that nothing has come: whether options.patience is over. It begins anew for who was
+ * itself held up for half of that, as a whole job is that was suspended (Ctrl-Z, SIGSTOP). */
+bool lar_comm_impatient(const lar_comm *comm, lar_comm_waited *waited);
 
 /* Gives a processor up for everyone; the first verdict stands. Returns LAR_ERROR_PEER with the
  * message of the verdict that stands. `step` is the one that cannot be completed; 0: none. */

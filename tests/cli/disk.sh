@@ -18,10 +18,11 @@ done
 "$LARIAT" run "$scene" --steps 1000000000 --out "$SCRATCH/shared" >/dev/null 2>&1 &
 first=$!
 tries=0
-while [ ! -e "$SCRATCH/shared/beam.pvd" ] && [ $tries -lt 100 ]; do
+while [ ! -s "$SCRATCH/shared/probes.csv" ] && [ $tries -lt 100 ]; do
     sleep 0.1
     tries=$((tries + 1))
 done
+echo frame >"$SCRATCH/shared/beam_000000.vtu"
 expect 1 "$LARIAT" run "$scene" --steps 1 --out "$SCRATCH/shared"
 complains '^lariat run: .*shared: another run is writing its results there.*another folder'
 silent
