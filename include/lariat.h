@@ -30,7 +30,9 @@
  * Calls need up to 128 kB of stack, and so do threads that a host makes for the library. What a
  * signal does, and what the terminal shows, stays the host's. After fork() a child has none of the
  * threads: it goes on with simulations of one thread, and makes new ones; one with a grid or
- * threads refuses to advance there, and a session or server must not be used.
+ * threads refuses to advance there, and a session or server must not be used. All may be destroyed
+ * or closed there: that frees the child's copy, and the parent, the other processors and files go
+ * on undisturbed.
  *
  * "T 6.5.2" in comments and docs is section 6.5.2 of the dissertation that Lariat takes up:
  * Real-Time Finite Elements: A Parallel Computer Application, ETH Zuerich 2001. Words:
@@ -1056,7 +1058,9 @@ LAR_SIZED lar_status lar_checkpoint_inspect(const char *path, lar_checkpoint_inf
 typedef struct lar_results lar_results;
 
 /* Opens a folder for results of this simulation's model (made when missing): frames as .vtu with
- * one .pvd, and probes.csv, as the model's `output` asks. Frames appear whole or not at all. */
+ * one .pvd, and probes.csv, as the model's `output` asks. Frames appear whole or not at all.
+ * LAR_ERROR_IO while another run, or other results of this program, are written there: the folder
+ * is locked until they are closed, or the process ends. */
 LAR_API lar_status lar_results_open(const char *folder, const lar_simulation *simulation,
                                     lar_results **results, lar_error *error);
 /* The same, and the embedded surface, if any, in every frame (.vtp), which takes

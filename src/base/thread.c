@@ -1,6 +1,7 @@
 #include "base/thread.h"
 
 #include <signal.h>
+#include <unistd.h>
 
 #include "base/error.h"
 
@@ -31,7 +32,7 @@ static int start_own(pthread_t *thread, int priority, void *(*run)(void *), void
 
 int lar_thread_start_urgent(lar_thread *thread, int priority, void *(*run)(void *), void *context) {
     sigset_t all, before;
-    *thread = (lar_thread){.hosted = host.start != NULL};
+    *thread = (lar_thread){.hosted = host.start != NULL, .process = getpid()};
     sigfillset(&all);
     pthread_sigmask(SIG_SETMASK, &all, &before);
     int cause = thread->hosted ? host.start(host.context, priority, run, context, &thread->hosts)
@@ -52,7 +53,12 @@ int lar_thread_set_priority(int priority) {
     return pthread_setschedparam(pthread_self(), priority > 0 ? SCHED_FIFO : SCHED_OTHER, &urgency);
 }
 
+bool lar_thread_is_here(const lar_thread *thread) {
+    return thread->process == getpid();
+}
+
 void lar_thread_join(const lar_thread *thread) {
+    if (!lar_thread_is_here(thread)) return;
     if (thread->hosted)
         host.join(host.context, thread->hosts);
     else
@@ -62,7 +68,6 @@ void lar_thread_join(const lar_thread *thread) {
 #ifdef __linux__
 
 #include <sys/syscall.h>
-#include <unistd.h>
 
 /* As the kernel has it; older headers have neither this nor the calls. */
 typedef struct scheduling {

@@ -6,11 +6,13 @@
 #include <sched.h>
 #include <stdbool.h>
 #include <stdint.h>
+#include <sys/types.h>
 
 typedef struct lar_thread {
     pthread_t own;
     void *hosts; /* what the host calls it, if it is one of the host's */
     bool hosted;
+    pid_t process; /* that it runs in */
 } lar_thread;
 
 /* Starts a thread that takes no signals: they are for the threads of the program. With a
@@ -27,7 +29,10 @@ static inline int lar_thread_start(lar_thread *thread, void *(*run)(void *), voi
 int lar_thread_priority(void);
 int lar_thread_set_priority(int priority);
 
-/* Waits for its end. */
+/* Whether it runs in this process: a forked child has none of its parent's threads. */
+bool lar_thread_is_here(const lar_thread *thread);
+
+/* Waits for its end. Of a parent's thread it returns at once. */
 void lar_thread_join(const lar_thread *thread);
 
 /* Lets the calling thread take its turns in slices of 0.1 ms, where it had longer ones, and returns

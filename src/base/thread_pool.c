@@ -35,6 +35,7 @@ struct lar_thread_pool {
     int32_t count, started; /* threads that run, the caller's not among them */
     bool pin;
     int32_t first_core;
+    pid_t process;            /* that has the threads */
     double awake;             /* of ordinary threads [s] */
     lar_pin *caller;          /* where the caller's thread was before */
     uint64_t caller_slice;    /* as long as its turns were; see base/thread.h */
@@ -99,6 +100,7 @@ lar_status lar_thread_pool_create(int32_t count, bool pin, int32_t first_core,
     pthread_mutex_init(&pool->lock, NULL);
     pthread_cond_init(&pool->wake, NULL);
     pool->count = count;
+    pool->process = getpid();
     pool->first_core = first_core;
     pool->awake = count <= sysconf(_SC_NPROCESSORS_ONLN) ? AWAKE : AWAKE_OVERSUBSCRIBED;
     pool->pin = pin && lar_pin_cores() >= first_core + count;
@@ -132,14 +134,20 @@ lar_status lar_thread_pool_create(int32_t count, bool pin, int32_t first_core,
     return LAR_OK;
 }
 
+bool lar_thread_pool_is_here(const lar_thread_pool *pool) {
+    return pool->process == getpid();
+}
+
 void lar_thread_pool_destroy(lar_thread_pool *pool) {
     if (!pool) return;
-    give_order(pool, NULL, NULL);
+    bool here = lar_thread_pool_is_here(pool);
+    if (here) give_order(pool, NULL, NULL);
     for (int32_t i = 1; i <= pool->started; i++) lar_thread_join(&pool->worker[i].thread);
     lar_pin_restore(pool->caller);
     lar_thread_restore_slice(pool->caller_slice);
-    pthread_cond_destroy(&pool->wake);
-    pthread_mutex_destroy(&pool->lock);
+    /* In a forked child these may look as if somebody slept there, who would be waited for. */
+    if (here) pthread_cond_destroy(&pool->wake);
+    if (here) pthread_mutex_destroy(&pool->lock);
     free(pool->worker);
     free(pool);
 }

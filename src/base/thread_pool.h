@@ -29,7 +29,10 @@ typedef void lar_thread_pool_job(void *context, int32_t worker);
  * (base/thread.h), the caller as long as the pool lives. */
 lar_status lar_thread_pool_create(int32_t count, bool pin, int32_t first_core,
                                   lar_thread_pool **pool, lar_error *error);
-void lar_thread_pool_destroy(lar_thread_pool *pool); /* accepts NULL */
+/* Accepts NULL. In a forked child it frees the memory and leaves the parent's threads alone. */
+void lar_thread_pool_destroy(lar_thread_pool *pool);
+/* Whether its threads are in this process. */
+bool lar_thread_pool_is_here(const lar_thread_pool *pool);
 
 /* Runs the job in all workers and returns when all are done. */
 void lar_thread_pool_run(lar_thread_pool *pool, lar_thread_pool_job *job, void *context);

@@ -36,6 +36,7 @@ typedef struct replay {
     lar_status failure;   /* of the library, LAR_OK: none */
     char fault[1024];     /* with which the recording ends; "": none */
     lar_results *results; /* NULL without --out */
+    lar_results *first;   /* of the first part, while there is another one */
     lar_status written;   /* of the results */
     lar_error written_error;
     double interval;   /* between frames [s] */
@@ -52,8 +53,12 @@ typedef struct replay {
 /* A series of frames has one time line: where the recording goes back, a new one begins. */
 static lar_status open_part(replay *r, lar_error *error) {
     char folder[4096];
+    lar_status status = LAR_OK;
     r->parts++;
-    lar_status status = lar_results_close(r->results, error);
+    if (r->parts == 2) /* the folder stays this replay's until the end */
+        r->first = r->results;
+    else
+        status = lar_results_close(r->results, error);
     r->results = NULL;
     if (status) return status;
     if (r->parts == 1)
@@ -224,7 +229,9 @@ static int compare(replay *r) {
     r->elapsed = lar_step_clock_elapsed(&r->clock);
     if (r->progress_at > 0) fputs("\r\033[K", stderr);
     if (!status || r->report.broken) add_last(r);
-    lar_status closed = lar_results_close(r->results, &closing);
+    lar_status closed = lar_results_close(r->results, &closing), first;
+    first = lar_results_close(r->first, closed ? NULL : &closing);
+    if (!closed) closed = first;
     if (status == LAR_ERROR_UNSTABLE && r->report.broken)
         snprintf(r->fault, sizeof r->fault, "%s", error.message);
     else if (status)

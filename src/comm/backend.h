@@ -17,6 +17,8 @@
 #ifndef LAR_COMM_BACKEND_H
 #define LAR_COMM_BACKEND_H
 
+#include <sys/types.h>
+
 #include "base/socket.h"
 #include "comm/comm.h"
 
@@ -43,7 +45,7 @@ typedef struct lar_comm_backend {
     /* Lets arrived bytes reach the receive buffer, first of all those from `peer`. An error says
      * that nothing more will come from it; what had come is stored. */
     lar_status (*progress)(lar_comm *comm, int32_t peer);
-    void (*leave)(lar_comm *comm);
+    void (*leave)(lar_comm *comm); /* not when comm->forked */
     void (*close)(lar_comm *comm);
 } lar_comm_backend;
 
@@ -70,7 +72,9 @@ struct lar_comm {
     int *links;                  /* [count] the rendezvous's connections, -1: none */
     int32_t *waiting; /* [count], atomic: whom each waits for, plus 1. Of the team; else NULL */
     struct lar_comm_heartbeat *heartbeat;
-    void *state; /* the backend's */
+    pid_t process; /* that opened it */
+    bool forked;   /* closed by a child of that: all but the own descriptors is the parent's */
+    void *state;   /* the backend's */
 };
 
 /* Why a processor is lost. */
@@ -112,6 +116,15 @@ static inline void lar_comm_relax(void) {
 
 /* Monotonic clock [s]. */
 double lar_comm_now(void);
+
+/* How long somebody who lives has been waited for; zero at first. */
+typedef struct lar_comm_waited {
+    double until, looked;
+} lar_comm_waited;
+
+/* Each time that nothing has come: whether options.patience is over. It begins anew for who was
+ * itself held up for half of that, as a whole job is that was suspended (Ctrl-Z, SIGSTOP). */
+bool lar_comm_impatient(const lar_comm *comm, lar_comm_waited *waited);
 
 /* Gives a processor up for everyone; the first verdict stands. Returns LAR_ERROR_PEER with the
  * message of the verdict that stands. `step` is the one that cannot be completed; 0: none. */

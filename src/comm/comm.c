@@ -136,6 +136,7 @@ lar_status lar_comm_open(const lar_comm_options *options, lar_comm **out, lar_er
         return status;
     }
     comm->backend = backend;
+    comm->process = getpid();
     comm->options = *options;
     comm->verdict = &comm->own_verdict;
     status = open_parts(comm, error);
@@ -149,7 +150,8 @@ lar_status lar_comm_open(const lar_comm_options *options, lar_comm **out, lar_er
 
 void lar_comm_close(lar_comm *comm) {
     if (!comm) return;
-    if (comm->backend->leave) comm->backend->leave(comm);
+    comm->forked = comm->process != getpid();
+    if (comm->backend->leave && !comm->forked) comm->backend->leave(comm);
     /* Goodbyes first: a connection that ends after one is no loss. */
     lar_heartbeat_stop(comm);
     if (comm->backend->close) comm->backend->close(comm);
@@ -236,6 +238,13 @@ void lar_comm_abort(lar_comm *comm) {
     lar_comm_give_up(comm, comm->options.self, LAR_LOSS_FAILED, 0, NULL);
 }
 
+bool lar_comm_impatient(const lar_comm *comm, lar_comm_waited *waited) {
+    double now = lar_comm_now(), patience = comm->options.patience;
+    if (now - waited->looked > patience / 2) waited->until = now + patience;
+    waited->looked = now;
+    return now > waited->until;
+}
+
 /* ---- put and wait ------------------------------------------------------------------------ */
 
 static lar_status refuse_packet(size_t half, int32_t peer, size_t offset, size_t bytes,
@@ -290,7 +299,7 @@ static lar_status complain(lar_comm *comm, int32_t peer, uint64_t tail, uint64_t
 static lar_status poll_and_yield(lar_comm *comm, int32_t peer, const uint64_t *tail, uint64_t step,
                                  lar_error *error) {
     const lar_comm_backend *backend = comm->backend;
-    double deadline = 0;
+    lar_comm_waited waited = {0};
     for (;;) {
         for (int i = 0; i < backend->polls; i++) {
             if (backend->progress) {
@@ -309,9 +318,8 @@ static lar_status poll_and_yield(lar_comm *comm, int32_t peer, const uint64_t *t
         if (there == step) return LAR_OK;
         lar_status status = lar_comm_check(comm, step, error);
         if (status) return status;
-        double now = lar_comm_now();
-        if (deadline == 0) deadline = now + comm->options.patience;
-        if (there > step || now > deadline) return complain(comm, peer, there, step, error);
+        bool over = lar_comm_impatient(comm, &waited);
+        if (there > step || over) return complain(comm, peer, there, step, error);
     }
 }
 

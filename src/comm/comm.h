@@ -89,7 +89,8 @@ extern const char lar_comm_called_off[];
  * processors or identity. */
 lar_status lar_comm_open(const lar_comm_options *options, lar_comm **comm, lar_error *error);
 
-/* Leaves. What was put before still arrives. Accepts NULL. */
+/* Leaves. What was put before still arrives. Accepts NULL. A forked child closes its copies of
+ * what its parent has, which stays in contact. */
 void lar_comm_close(lar_comm *comm);
 
 /* Tells the others that this processor stops because of a failure of its own; their waits end with

@@ -52,6 +52,7 @@ typedef struct lar_comm_heartbeat {
     uint64_t reported_step; /* set before it */
     frame report;           /* zero: the best so far; kind 0: none */
     double judged;          /* zero: when it is believed */
+    double looked;          /* at the clock, the last time */
     int leaving;            /* atomic */
     bool told;              /* the verdict is sent on */
     bool said_bye;
@@ -163,6 +164,16 @@ static bool all_gone(const lar_comm_heartbeat *w) {
     return true;
 }
 
+/* Held up for longer than a few heartbeats, or suspended: what the others said may still lie
+ * unread, and they may have been suspended, too. */
+static double look_at_clock(lar_comm_heartbeat *w) {
+    double now = lar_comm_now();
+    if (now - w->looked > 3 * HEARTBEAT)
+        for (int32_t p = 0; p < w->comm->options.count; p++) w->links[p].heard = now;
+    w->looked = now;
+    return now;
+}
+
 static void look_for_losses(lar_comm_heartbeat *w, double now) {
     if (w->ended >= 0 && now >= w->settled) {
         bool cut_off = w->comm->options.self == 0 && w->comm->options.count > 2 && all_gone(w);
@@ -200,13 +211,10 @@ static void pass_on(lar_comm_heartbeat *w) {
 static void *run_heartbeat(void *context) {
     lar_comm_heartbeat *w = context;
     lar_pin_nowhere(); /* not where the one that it speaks for computes without a pause */
-    double next_heartbeat = lar_comm_now(), last = next_heartbeat, give_up = 0;
+    double next_heartbeat = lar_comm_now(), give_up = 0;
+    w->looked = next_heartbeat;
     for (;;) {
-        double now = lar_comm_now();
-        /* Held up for longer than a few beats: what the others said may still lie unread. */
-        if (now - last > 3 * HEARTBEAT)
-            for (int32_t p = 0; p < w->comm->options.count; p++) w->links[p].heard = now;
-        last = now;
+        double now = look_at_clock(w);
         if (now >= next_heartbeat) {
             send_all(w, FRAME_HEARTBEAT, 0);
             next_heartbeat = now + HEARTBEAT;
@@ -215,7 +223,7 @@ static void *run_heartbeat(void *context) {
         if (w->ended >= 0 && w->settled < until) until = w->settled;
         if (w->report.kind && w->judged < until) until = w->judged;
         listen_to_all(w, until);
-        look_for_losses(w, lar_comm_now());
+        look_for_losses(w, look_at_clock(w));
         pass_on(w);
         if (!__atomic_load_n(&w->leaving, __ATOMIC_ACQUIRE)) continue;
         if (!w->said_bye) {
@@ -270,7 +278,7 @@ void lar_heartbeat_report(lar_comm *comm, int32_t processor, lar_comm_loss loss,
 void lar_heartbeat_stop(lar_comm *comm) {
     lar_comm_heartbeat *w = comm->heartbeat;
     if (!w) return;
-    if (w->runs) {
+    if (w->runs && lar_thread_is_here(&w->thread)) {
         __atomic_store_n(&w->leaving, 1, __ATOMIC_RELEASE);
         wake_up(w);
         lar_thread_join(&w->thread);

@@ -7,8 +7,10 @@
  * timeout without a heartbeat, or the report of a processor that waited in vain: of several within
  * a moment the one from the earliest step, because who is held up by another who waits has come
  * further (T 6.5.2). The verdict goes into *comm->verdict, where every wait looks. The others
- * decide only about processor zero. Whoever was held up itself (its own heartbeats came late) does
- * not take the others' silence for theirs.
+ * decide only about processor zero. Whoever was held up itself (between two of its own looks at the
+ * clock lies more than a few heartbeats) does not take the others' silence for theirs: they get a
+ * whole period anew. So a job that is suspended as a whole goes on when it is continued, and one
+ * processor that is stopped alone is missed by the others.
  */
 #ifndef LAR_COMM_HEARTBEAT_H
 #define LAR_COMM_HEARTBEAT_H
@@ -22,7 +24,7 @@ lar_status lar_heartbeat_start(lar_comm *comm, lar_error *error);
 /* Reports a processor as lost and waits a moment for the verdict, which may name another. */
 void lar_heartbeat_report(lar_comm *comm, int32_t processor, lar_comm_loss loss, uint64_t step);
 
-/* Says goodbye and ends the thread. Does nothing when it does not run. */
+/* Says goodbye and ends the thread, if it runs in this process. */
 void lar_heartbeat_stop(lar_comm *comm);
 
 #endif

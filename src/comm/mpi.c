@@ -220,7 +220,7 @@ static message *take_place(mpi_state *state, size_t bytes) {
 static lar_status wait_for_place(lar_comm *comm, int32_t peer, size_t bytes, uint64_t step,
                                  message **place, lar_error *error) {
     mpi_state *state = comm->state;
-    double deadline = 0;
+    lar_comm_waited waited = {0};
     for (;;) {
         lar_mpi_lock(state->world);
         if ((*place = take_place(state, bytes))) return LAR_OK;
@@ -229,9 +229,8 @@ static lar_status wait_for_place(lar_comm *comm, int32_t peer, size_t bytes, uin
         sched_yield();
         lar_status status = lar_comm_check(comm, step, error);
         if (status) return status;
-        double now = lar_comm_now();
-        if (deadline == 0) deadline = now + comm->options.patience;
-        if (now > deadline) return lar_comm_give_up(comm, peer, LAR_LOSS_STALLED, step, error);
+        if (lar_comm_impatient(comm, &waited))
+            return lar_comm_give_up(comm, peer, LAR_LOSS_STALLED, step, error);
     }
 }
 

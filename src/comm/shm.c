@@ -156,7 +156,9 @@ static void remove_names(lar_comm *comm) {
 static void shm_close(lar_comm *comm) {
     shm_state *state = comm->state;
     if (!state) return;
-    if (state->name[0] || __atomic_load_n(comm->verdict, __ATOMIC_ACQUIRE)) remove_names(comm);
+    if (comm->forked) state->name[0] = '\0'; /* not ours to remove */
+    bool lost = __atomic_load_n(comm->verdict, __ATOMIC_ACQUIRE) && !comm->forked;
+    if (state->name[0] || lost) remove_names(comm);
     shm_begin(comm);
     for (int32_t p = 0; state->maps && state->mapped && p < comm->options.count; p++)
         if (state->maps[p]) munmap(state->maps[p], state->mapped[p]);

@@ -164,7 +164,7 @@ static void tcp_close(lar_comm *comm) {
     tcp_state *state = comm->state;
     if (!state) return;
     tcp_begin(comm);
-    if (state->links && state->chunk) drain(comm);
+    if (state->links && state->chunk && !comm->forked) drain(comm);
     for (int32_t p = 0; state->links && p < comm->options.count; p++)
         if (state->links[p].socket >= 0) close(state->links[p].socket);
     free(state->links);
@@ -243,7 +243,7 @@ static lar_status write_packet(lar_comm *comm, int32_t peer, struct iovec parts[
                                lar_error *error) {
     tcp_state *state = comm->state;
     int socket = state->links[peer].socket;
-    double deadline = 0;
+    lar_comm_waited waited = {0};
     size_t left = parts[0].iov_len + parts[1].iov_len;
     while (left > 0) {
         struct msghdr message = {.msg_iov = parts, .msg_iovlen = 2};
@@ -258,9 +258,8 @@ static lar_status write_packet(lar_comm *comm, int32_t peer, struct iovec parts[
             sched_yield();
             lar_status status = lar_comm_check(comm, step, error);
             if (status) return status;
-            double now = lar_comm_now();
-            if (deadline == 0) deadline = now + comm->options.patience;
-            if (now > deadline) return lar_comm_give_up(comm, peer, LAR_LOSS_STALLED, step, error);
+            if (lar_comm_impatient(comm, &waited))
+                return lar_comm_give_up(comm, peer, LAR_LOSS_STALLED, step, error);
             continue;
         }
         left -= (size_t)sent;

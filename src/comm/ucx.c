@@ -139,7 +139,7 @@ static lar_status complete(lar_comm *comm, int32_t peer, ucs_status_ptr_t reques
                            lar_error *error) {
     ucx_state *state = comm->state;
     ucx_link *link = &state->links[peer];
-    double deadline = lar_comm_now() + comm->options.patience;
+    lar_comm_waited waited = {0};
     for (;;) {
         lock(state);
         lar_ucx.ucp_worker_progress(state->worker);
@@ -150,7 +150,7 @@ static lar_status complete(lar_comm *comm, int32_t peer, ucs_status_ptr_t reques
         if (status != UCS_INPROGRESS)
             return lar_comm_give_up(comm, peer, LAR_LOSS_ENDED, step, error);
         lar_status lost = lar_comm_check(comm, step, error);
-        if (!lost && lar_comm_now() > deadline)
+        if (!lost && lar_comm_impatient(comm, &waited))
             lost = lar_comm_give_up(comm, peer, LAR_LOSS_STALLED, step, error);
         if (lost) return abandon(comm, link, request, lost);
         sched_yield();
@@ -199,15 +199,13 @@ static lar_status ucx_put(lar_comm *comm, int32_t peer, size_t offset, const voi
     ucx_state *state = comm->state;
     ucx_link *link = &state->links[peer];
     packet_head head = {comm->token, offset, bytes, step};
-    double deadline = 0;
+    lar_comm_waited waited = {0};
     lock(state);
     while (link->endpoint && link->way == WAY_PUT && !tail_is_free(link, step)) {
         lar_ucx.ucp_worker_progress(state->worker);
         unlock(state);
         lar_status status = lar_comm_check(comm, step, error);
-        double now = lar_comm_now();
-        if (deadline == 0) deadline = now + comm->options.patience;
-        if (!status && now > deadline)
+        if (!status && lar_comm_impatient(comm, &waited))
             status = lar_comm_give_up(comm, peer, LAR_LOSS_STALLED, step, error);
         if (status) return status;
         lock(state);
@@ -280,7 +278,7 @@ static void ucx_leave(lar_comm *comm) {
 
 static void ucx_close(lar_comm *comm) {
     ucx_state *state = comm->state;
-    if (!state) return;
+    if (!state || comm->forked) return; /* UCX does not outlive a fork: its memory stays */
     bool lost = __atomic_load_n(comm->verdict, __ATOMIC_ACQUIRE) != 0;
     if (state->worker) {
         lock(state);

@@ -227,11 +227,19 @@ static void dismiss_processes(lar_computer *computer) {
     if (!computer->finished) lar_comm_abort(comm);
 }
 
+/* In a forked child, which has none of the threads, one after the other. */
+static void close_processors(lar_computer *computer, bool here) {
+    if (!computer->pool) return;
+    if (here) lar_thread_pool_run(computer->pool, close_on_thread, computer);
+    for (int32_t i = 0; !here && i < all_threads(computer); i++) close_on_thread(computer, i);
+}
+
 void lar_computer_destroy(lar_computer *computer) {
     if (!computer) return;
-    dismiss_processes(computer);
+    bool here = computer->process == getpid();
+    if (here) dismiss_processes(computer);
     lar_control_destroy(computer->control);
-    if (computer->pool) lar_thread_pool_run(computer->pool, close_on_thread, computer);
+    close_processors(computer, here);
     lar_thread_pool_destroy(computer->pool);
     lar_comm_team_destroy(computer->team);
     lar_contact_close(computer);
@@ -400,9 +408,20 @@ static lar_status hear_all(lar_computer *computer, lar_fault *fault, lar_error *
     return status;
 }
 
-lar_status lar_computer_refuse(lar_error *error) {
+static lar_status refuse_fork(const lar_computer *computer, const char *what, lar_error *error) {
+    if (computer->process == getpid()) return LAR_OK;
     return lar_fail(error, LAR_ERROR_PEER,
-                    "the parallel computer has lost a processor and cannot go on; start it again");
+                    "the %s of this simulation are in the process that this one was forked from; "
+                    "make another simulation here, or one of one thread before",
+                    what);
+}
+
+lar_status lar_computer_check(const lar_computer *computer, lar_error *error) {
+    if (computer->broken)
+        return lar_fail(
+            error, LAR_ERROR_PEER,
+            "the parallel computer has lost a processor and cannot go on; start it again");
+    return computer->control ? refuse_fork(computer, "connections", error) : LAR_OK;
 }
 
 /* Where the tools go travels with the order to go on, when it has changed: so all use it from the
@@ -442,14 +461,12 @@ static uint64_t next_stop(const lar_computer *computer, uint64_t end, bool over)
 lar_status lar_computer_advance(lar_computer *computer, uint64_t steps, bool first,
                                 lar_step_callback *callback, void *context, lar_fault *fault,
                                 lar_error *error) {
-    if (computer->broken) return lar_computer_refuse(error);
-    if (computer->hosted * computer->threads > 1 && computer->process != getpid())
-        return lar_fail(error, LAR_ERROR_PEER,
-                        "the threads of this simulation are in the process that this one was "
-                        "forked from; make another simulation here, or one of one thread before");
+    lar_status status = lar_computer_check(computer, error);
+    if (!status && computer->hosted * computer->threads > 1)
+        status = refuse_fork(computer, "threads", error);
+    if (status) return status;
     const lar_state *state = &computer->processor[0].worker[0].state;
     const uint64_t *step = &state->step, end = *step + steps;
-    lar_status status = LAR_OK;
     bool over = false;
     computer->callback = callback;
     computer->callback_context = context;

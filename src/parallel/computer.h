@@ -95,7 +95,7 @@ lar_status lar_computer_create(const lar_domain *whole, lar_interactions *intera
                                const lar_options *options, lar_computer **computer,
                                lar_error *error);
 /* Ends the other processes' serve; after a failure, or by one of them before that, everyone's work.
- * Accepts NULL. */
+ * Accepts NULL. A forked child only frees what it has of its parent's. */
 void lar_computer_destroy(lar_computer *computer);
 
 /* Advances all processors by `steps`, or fewer when `callback` (may be NULL) returns 0 or a fault
@@ -132,8 +132,9 @@ void lar_contact_count(lar_computer *computer, uint64_t steps);
 lar_status lar_contact_execute(lar_computer *computer, const void *payload, size_t bytes,
                                lar_error *error);
 
-/* The sentence for calls after a failure. */
-lar_status lar_computer_refuse(lar_error *error);
+/* Whether it can go on: not after a failure, nor, where processes belong to it, in a forked child.
+ */
+lar_status lar_computer_check(const lar_computer *computer, lar_error *error);
 /* Another process: answers a round of gathering; takes a scattered state. */
 lar_status lar_computer_answer_nodes(lar_computer *computer, uint64_t round, lar_error *error);
 lar_status lar_computer_answer_history(lar_computer *computer, uint64_t round, lar_error *error);

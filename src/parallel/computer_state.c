@@ -156,12 +156,12 @@ lar_status lar_computer_answer_history(lar_computer *computer, uint64_t round, l
 
 lar_status lar_computer_gather(lar_computer *computer, lar_error *error) {
     if (computer->gathered) return LAR_OK;
-    if (computer->broken) return lar_computer_refuse(error);
+    lar_status status = lar_computer_check(computer, error);
+    if (status) return status;
     lar_state *state = computer->state;
     state->step = computer->processor[0].worker[0].state.step;
     state->external = state->damped = state->contact = 0;
     gather_here(computer);
-    lar_status status = LAR_OK;
     if (computer->control) status = gather_rounds(computer, LAR_ORDER_GATHER, take_nodes, error);
     bool remembers = computer->whole->element_history || computer->whole->rubbing;
     if (!status && computer->control && remembers)
@@ -255,7 +255,8 @@ lar_status lar_computer_take_state(lar_computer *computer, uint64_t step, const 
 /* Nobody computes: everyone has answered the last advance. The work that has been done belongs to
  * nobody in particular; processor zero keeps it. */
 lar_status lar_computer_scatter(lar_computer *computer, lar_error *error) {
-    if (computer->broken) return lar_computer_refuse(error);
+    lar_status status = lar_computer_check(computer, error);
+    if (status) return status;
     scatter_here(computer);
     lar_state *first = &computer->processor[0].worker[0].state;
     first->external = computer->state->external;
@@ -265,7 +266,7 @@ lar_status lar_computer_scatter(lar_computer *computer, lar_error *error) {
     computer->tools_sent = false;
     computer->contact.valid = false;
     computer->contact.info = (lar_contact_info){0};
-    lar_status status = computer->control ? scatter_others(computer, error) : LAR_OK;
+    if (computer->control) status = scatter_others(computer, error);
     if (status) computer->broken = true;
     return status;
 }

@@ -376,8 +376,20 @@ int32_t lar_server_viewers(const lar_server *server) {
     return server ? __atomic_load_n(&server->viewers, __ATOMIC_RELAXED) : 0;
 }
 
+/* In a forked child, where closing a viewer's connection would end it for the parent, too: memory
+ * and connections stay until the child ends, the address does not. */
+static void forget(lar_server *server) {
+    if (server->listener >= 0) close(server->listener);
+    if (server->spare >= 0) close(server->spare);
+    server->listener = server->spare = -1;
+}
+
 void lar_server_close(lar_server *server) {
     if (!server) return;
+    if (server->started && !lar_thread_is_here(&server->thread)) {
+        forget(server);
+        return;
+    }
     if (server->started) {
         __atomic_store_n(&server->ending, true, __ATOMIC_RELEASE);
         lws_cancel_service(server->context);

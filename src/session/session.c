@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "base/clock.h"
 #include "base/parallel_for.h"
@@ -109,6 +110,10 @@ static lar_status record_from_start(lar_session *session, lar_error *error) {
     return status;
 }
 
+static bool is_here(const lar_session *session) {
+    return session->process == getpid();
+}
+
 static void destroy(lar_session *session) {
     lar_simulation_reserve(session->simulation, false);
     __atomic_store_n(&session->simulation->sessions, 0, __ATOMIC_RELEASE);
@@ -122,7 +127,8 @@ static void destroy(lar_session *session) {
     lar_player_close(session->player);
     if (session->view) lar_triple_buffer_destroy(session->view);
     free(session->view);
-    lar_requests_destroy(&session->requests);
+    /* In a forked child it may look as if somebody waited there, who would be waited for. */
+    if (is_here(session)) lar_requests_destroy(&session->requests);
     free(session);
 }
 
@@ -145,6 +151,7 @@ lar_status lar_session_open(lar_simulation *simulation, const lar_session_option
     }
     lar_requests_create(&session->requests);
     session->simulation = simulation;
+    session->process = getpid();
     session->time_step = lar_simulation_time_step(simulation);
     session->divided = lar_simulation_divided_steps(simulation, NULL);
     session->good_step = lar_simulation_steps(simulation);
@@ -213,13 +220,13 @@ lar_status lar_session_start(lar_session *session, lar_error *error) {
 
 lar_status lar_session_close(lar_session *session, lar_error *error) {
     if (!session) return LAR_OK;
-    if (session->started) {
+    if (session->started && is_here(session)) {
         pthread_mutex_lock(&session->requests.lock);
         lar_requests_place(&session->requests, &(lar_request){.kind = LAR_REQUEST_END});
         pthread_mutex_unlock(&session->requests.lock);
         lar_thread_join(&session->thread);
     }
-    lar_session_record_end(session);
+    if (is_here(session)) lar_session_record_end(session);
     lar_status status = lar_recorder_close(session->recorder, error);
     destroy(session);
     return status;

@@ -86,8 +86,9 @@ struct lar_session {
     lar_history history;
     lar_snapshots snapshots;
     lar_thread thread;
-    bool started; /* under requests.lock */
-    bool hosted;  /* the same: lar_session_tick instead of a thread */
+    pid_t process; /* that opened it */
+    bool started;  /* under requests.lock */
+    bool hosted;   /* the same: lar_session_tick instead of a thread */
 
     /* The engine's own. */
     lar_session_status status;

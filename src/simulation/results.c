@@ -7,8 +7,10 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "base/file/folder.h"
+#include "base/text.h"
 #include "simulation/results_probe.h"
 #include "simulation/results_surface.h"
 #include "simulation/simulation.h"
@@ -23,6 +25,8 @@ struct lar_results {
     int families;                              /* of fibres that are written */
     double (*fibre[2])[3], *stretch[2];        /* along what they run now, and how long: or NULL */
     lar_probe_file probes;
+    int lock;      /* on the folder (base/file/folder.h) */
+    pid_t process; /* that has it */
 };
 
 /* ---- opening and closing ---------------------------------------------------------------- */
@@ -34,6 +38,23 @@ static char *series_name(const lar_model *model) {
     const char *base = slash ? slash + 1 : source;
     const char *dot = strrchr(base, '.');
     return lar_strndup(base, dot && dot > base ? (size_t)(dot - base) : strlen(base));
+}
+
+/* The list of frames is XML, in UTF-8 and without control characters: it must name the files. */
+static lar_status check_name(const char *name, lar_error *error) {
+    const unsigned char *at = (const unsigned char *)name;
+    for (size_t left = strlen(name); left > 0;) {
+        int bytes = *at < ' ' ? 0 : lar_utf8_length(at, left);
+        if (bytes == 0)
+            return lar_fail(error, LAR_ERROR_IO,
+                            "results are called after the scene's file, whose name has %s; a .pvd "
+                            "could not list them: rename the file",
+                            *at < ' ' ? "a line end or another control character"
+                                      : "characters that are no UTF-8");
+        at += bytes;
+        left -= (size_t)bytes;
+    }
+    return LAR_OK;
 }
 
 /* Where fibres are asked for and there are some. */
@@ -84,10 +105,12 @@ static lar_status open_folder(lar_results *results, const char *folder, const la
                               bool surface, lar_error *error) {
     char *name = series_name(model);
     if (!name) return lar_fail_memory(error, strlen(folder), "the paths of results");
-    lar_status status = lar_series_open(&results->series, folder, name, ".vtu", error);
+    lar_status status = check_name(name, error);
+    if (!status) status = lar_series_open(&results->series, folder, name, ".vtu", error);
     if (!status && (surface || model->output.surface))
         status = lar_surface_results_open(&results->surface, folder, name, model, error);
     if (!status) status = lar_folder_make(folder, error);
+    if (!status) status = lar_folder_lock(folder, &results->lock, error);
     if (!status) status = lar_series_forget_earlier(&results->series, model, error);
     if (!status) status = lar_surface_results_forget_earlier(folder, name, model, error);
     free(name);
@@ -108,7 +131,8 @@ static lar_status open_results(const char *folder, const lar_simulation *simulat
     lar_results *made = lar_calloc(1, sizeof *made);
     if (!made) return lar_fail_memory(error, sizeof *made, "the results");
     made->model = simulation->domain.model;
-    made->probes.descriptor = -1;
+    made->probes.descriptor = made->lock = -1;
+    made->process = getpid();
     lar_status status = open_folder(made, folder, simulation->domain.model, surface, error);
     if (status)
         lar_results_close(made, NULL);
@@ -127,6 +151,14 @@ lar_status lar_results_open_surface(const char *folder, const lar_simulation *si
     return open_results(folder, simulation, true, results, error);
 }
 
+/* The last of all: nobody else writes there before. */
+static void let_go(const lar_results *results) {
+    if (results->process == getpid())
+        lar_folder_unlock(results->lock);
+    else if (results->lock >= 0)
+        close(results->lock);
+}
+
 lar_status lar_results_close(lar_results *results, lar_error *error) {
     if (!results) return LAR_OK;
     lar_status status = lar_series_complete(&results->series, error);
@@ -143,6 +175,7 @@ lar_status lar_results_close(lar_results *results, lar_error *error) {
     lar_series_clear(&results->series);
     free(results->displacement);
     free(results->velocity);
+    let_go(results);
     free(results);
     return status;
 }

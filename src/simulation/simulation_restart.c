@@ -110,8 +110,7 @@ void lar_simulation_set_start(lar_simulation *simulation) {
 /* ---- going back ------------------------------------------------------------------------------ */
 
 static lar_status check_whole(const lar_simulation *simulation, lar_error *error) {
-    return simulation->computer && simulation->computer->broken ? lar_computer_refuse(error)
-                                                                : LAR_OK;
+    return simulation->computer ? lar_computer_check(simulation->computer, error) : LAR_OK;
 }
 
 /* Only what carries the state from one step to the next. A run that breaks off may do so between

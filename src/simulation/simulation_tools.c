@@ -53,8 +53,7 @@ lar_status lar_simulation_check_idle(const lar_simulation *simulation, const cha
 lar_status lar_simulation_check_change(const lar_simulation *simulation, const char *call,
                                        lar_error *error) {
     lar_status status = lar_simulation_check_idle(simulation, call, error);
-    if (!status && simulation->computer && simulation->computer->broken)
-        status = lar_computer_refuse(error);
+    if (!status && simulation->computer) status = lar_computer_check(simulation->computer, error);
     return status;
 }
 

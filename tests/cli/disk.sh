@@ -14,6 +14,23 @@ for folder in "$SCRATCH/file" "$SCRATCH/file/below" /proc/none /dev/null; do
     silent
 done
 
+# Two runs at once in one folder: the second one is told, and the first one's results are whole.
+"$LARIAT" run "$scene" --steps 1000000000 --out "$SCRATCH/shared" >/dev/null 2>&1 &
+first=$!
+tries=0
+while [ ! -s "$SCRATCH/shared/probes.csv" ] && [ $tries -lt 100 ]; do
+    sleep 0.1
+    tries=$((tries + 1))
+done
+echo frame >"$SCRATCH/shared/beam_000000.vtu"
+expect 1 "$LARIAT" run "$scene" --steps 1 --out "$SCRATCH/shared"
+complains '^lariat run: .*shared: another run is writing its results there.*another folder'
+silent
+[ -e "$SCRATCH/shared/beam_000000.vtu" ] || fail "the second run has removed the first one's frames"
+kill -KILL $first
+wait $first 2>/dev/null
+expect 0 "$LARIAT" run "$scene" --steps 1 --out "$SCRATCH/shared"
+
 # A disk that is full for one file at a time.
 if [ -c /dev/full ]; then
     full_for() {

@@ -111,6 +111,41 @@ static void a_hanging_processor_is_named(void **state) {
         lose(2, LOSS_HANG, 0);
 }
 
+/* ---- suspended together ---------------------------------------------------------------------- */
+
+/* For longer than the silence, and the patience, after which somebody is given up. */
+static void signal_all(scene *scenes, int count, int signal) {
+    for (int i = 0; i < count; i++)
+        for (int32_t p = 0; p < PROCESSORS; p++) kill(scenes[i].running.pid[p], signal);
+}
+
+static void a_job_suspended_as_a_whole_goes_on(void **state) {
+    (void)state;
+    scene scenes[BACKENDS_MAX];
+    loss_control controls[BACKENDS_MAX];
+    lar_comm_backend_info info;
+    int count = 0, wrong = 0;
+    for (int i = 0; fleet_backend(i, &info); i++)
+        if (info.start == LAR_COMM_BY_ADDRESS && count < BACKENDS_MAX)
+            launch(&scenes[count++], info.name, 1, LOSS_KILL, 0);
+    for (int times = 0; times < 2; times++) {
+        signal_all(scenes, count, SIGSTOP);
+        usleep(3000000);
+        signal_all(scenes, count, SIGCONT);
+        for (int i = 0; i < count; i++) {
+            uint64_t step = __atomic_load_n(&scenes[i].results->entries[0].step, __ATOMIC_ACQUIRE);
+            loss_await_steps(scenes[i].results, PROCESSORS, step + 100);
+        }
+    }
+    usleep(2000000); /* who was accused would be given up by now */
+    for (int i = 0; i < count; i++) {
+        loss_control_start(&controls[i]);
+        loss_begin(scenes[i].results, scenes[i].running.pid[1]);
+    }
+    for (int i = 0; i < count; i++) wrong += finish(&scenes[i], &controls[i]);
+    assert_int_equal(wrong, 0);
+}
+
 /* In one process; `at_step` the victim fails, or hangs until the others have ended. */
 typedef struct mishap {
     bool fails;
@@ -232,6 +267,7 @@ int main(int argc, char **argv) {
                                        cmocka_unit_test(one_cut_connection_is_enough),
                                        cmocka_unit_test(a_failing_processor_is_named),
                                        cmocka_unit_test(a_hanging_processor_is_named),
+                                       cmocka_unit_test(a_job_suspended_as_a_whole_goes_on),
                                        cmocka_unit_test(threads_that_fail_or_hang_are_named),
                                        cmocka_unit_test(who_does_not_come_is_named),
                                        cmocka_unit_test(strangers_are_shown_out),

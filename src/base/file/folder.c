@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -40,6 +41,26 @@ lar_status lar_folder_make(const char *folder, lar_error *error) {
                     folder, strerror(cause));
 }
 
+lar_status lar_folder_lock(const char *folder, int *lock, lar_error *error) {
+    *lock = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (*lock < 0 || flock(*lock, LOCK_EX | LOCK_NB) == 0) return LAR_OK;
+    bool taken = errno == EWOULDBLOCK;
+    close(*lock);
+    *lock = -1;
+    if (!taken) return LAR_OK;
+    return lar_fail(error, LAR_ERROR_IO,
+                    "%s: another run is writing its results there, and both would be mixed; choose "
+                    "another folder, or wait until it has ended (results that this program has "
+                    "open there: close them)",
+                    folder);
+}
+
+void lar_folder_unlock(int lock) {
+    if (lock < 0) return;
+    flock(lock, LOCK_UN); /* a forked child may have a copy */
+    close(lock);
+}
+
 char *lar_folder_join(const char *folder, const char *name) {
     size_t length = strlen(folder), size = length + strlen(name) + 2;
     char *path = lar_calloc(size, 1);
@@ -51,9 +72,9 @@ char *lar_folder_join(const char *folder, const char *name) {
 lar_status lar_file_replaceable(const char *path, lar_error *error) {
     struct stat there;
     if (lstat(path, &there) != 0 || S_ISREG(there.st_mode)) return LAR_OK;
-    return lar_fail(error, LAR_ERROR_IO,
-                    "%s: is there and is no plain file (a folder, link or device?); choose another name",
-                    path);
+    return lar_fail(
+        error, LAR_ERROR_IO,
+        "%s: is there and is no plain file (a folder, link or device?); choose another name", path);
 }
 
 lar_status lar_file_spare(const char *path, const void *magic, const char *what, lar_error *error) {

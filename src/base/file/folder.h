@@ -8,6 +8,14 @@
  * name the path and the reason. */
 lar_status lar_folder_make(const char *folder, lar_error *error);
 
+/* Keeps other writers out of a folder that is there. *lock: for lar_folder_unlock, or -1 where the
+ * folder may not be read or its file system has no locks. LAR_ERROR_IO when somebody writes there
+ * already, in this process or another. It ends with the process, however that ends, and leaves
+ * nothing behind. */
+lar_status lar_folder_lock(const char *folder, int *lock, lar_error *error);
+/* -1 is fine. A forked child only closes (close) what it has of its parent's. */
+void lar_folder_unlock(int lock);
+
 /* "folder/name" or NULL when memory is refused. Free with free(). */
 char *lar_folder_join(const char *folder, const char *name);
 

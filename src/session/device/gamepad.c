@@ -138,12 +138,7 @@ static void *follow_controller(void *data) {
     return NULL;
 }
 
-static void gamepad_close(void *data) {
-    gamepad_state *state = data;
-    if (state->started) {
-        atomic_store(&state->ended, true);
-        lar_thread_join(&state->thread);
-    }
+static void let_go(const gamepad_state *state) {
     pthread_mutex_lock(&sdl_lock);
     if (state->controller) {
         sdl.SDL_GameControllerRumble(state->controller, 0, 0, 0);
@@ -151,6 +146,17 @@ static void gamepad_close(void *data) {
     }
     if (state->initialised) sdl.SDL_QuitSubSystem(SDL_INIT_GAMECONTROLLER);
     pthread_mutex_unlock(&sdl_lock);
+}
+
+static void gamepad_close(void *data) {
+    gamepad_state *state = data;
+    /* In a forked child the controller is its parent's. */
+    bool here = !state->started || lar_thread_is_here(&state->thread);
+    if (state->started && here) {
+        atomic_store(&state->ended, true);
+        lar_thread_join(&state->thread);
+    }
+    if (here) let_go(state);
     free(state);
 }
 

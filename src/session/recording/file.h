@@ -73,6 +73,8 @@ lar_status lar_recording_incomplete(const char *path, int cause, lar_error *erro
 /* Closes; LAR_ERROR_IO when something could not be written, and when that was not even a whole
  * first state the file is removed. Twice is fine. */
 lar_status lar_recording_finish(lar_recording_writer *writer, lar_error *error);
+/* Closes this process's copy of the file without a word in it. */
+void lar_recording_forget(lar_recording_writer *writer);
 
 /* ---- reading ------------------------------------------------------------------------------- */
 

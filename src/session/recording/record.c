@@ -64,12 +64,16 @@ static void *write_records(void *argument) {
     return NULL;
 }
 
-static void destroy(lar_recorder *recorder) {
-    pthread_cond_destroy(&recorder->wake);
-    pthread_mutex_destroy(&recorder->lock);
+static void free_memory(lar_recorder *recorder) {
     free(recorder->ring);
     free(recorder->path);
     free(recorder);
+}
+
+static void destroy(lar_recorder *recorder) {
+    pthread_cond_destroy(&recorder->wake);
+    pthread_mutex_destroy(&recorder->lock);
+    free_memory(recorder);
 }
 
 static lar_recorder *make(const char *path) {
@@ -108,8 +112,18 @@ lar_status lar_recorder_create(const char *path, const lar_recording_header *hea
     return LAR_OK;
 }
 
+/* In a forked child: the file is its parent's to write, also what waits here. */
+static lar_status forget(lar_recorder *recorder) {
+    for (uint64_t at = recorder->written; at < recorder->put; at++)
+        lar_bytes_free(&recorder->ring[at % RING].state);
+    lar_recording_forget(&recorder->writer);
+    free_memory(recorder);
+    return LAR_OK;
+}
+
 lar_status lar_recorder_close(lar_recorder *recorder, lar_error *error) {
     if (!recorder) return LAR_OK;
+    if (!lar_thread_is_here(&recorder->thread)) return forget(recorder);
     pthread_mutex_lock(&recorder->lock);
     recorder->finish = true;
     pthread_cond_signal(&recorder->wake);

@@ -1,5 +1,6 @@
 #include <errno.h>
 #include <fcntl.h>
+#include <stdio_ext.h>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -132,4 +133,11 @@ lar_status lar_recording_finish(lar_recording_writer *writer, lar_error *error) 
     if (fclose(writer->file) && !writer->cause) writer->cause = errno;
     writer->file = NULL;
     return writer->cause ? lar_recording_incomplete(writer->path, writer->cause, error) : LAR_OK;
+}
+
+void lar_recording_forget(lar_recording_writer *writer) {
+    if (!writer->file) return;
+    __fpurge(writer->file);
+    fclose(writer->file);
+    writer->file = NULL;
 }
