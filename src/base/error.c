@@ -1,14 +1,15 @@
 #include "base/error.h"
 
 #include <stdarg.h>
-#include <stdio.h>
 #include <string.h>
+
+#include "base/text.h"
 
 lar_status lar_fail(lar_error *error, lar_status status, const char *format, ...) {
     if (error) {
         va_list args;
         va_start(args, format);
-        vsnprintf(error->message, sizeof error->message, format, args);
+        lar_text_print(error->message, sizeof error->message, format, args);
         va_end(args);
         error->status = status;
     }

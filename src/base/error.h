@@ -15,8 +15,8 @@
 
 #include "lariat.h"
 
-/* Writes the message (printf-style, cut to size, always terminated) into *error,
- * which may be NULL, and returns `status` for `return lar_fail(...)`. */
+/* Writes the message (printf-style, always terminated) into *error, which may be NULL, and returns
+ * `status` for `return lar_fail(...)`. What is too long loses its middle (lar_text_print). */
 lar_status lar_fail(lar_error *error, lar_status status, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 

@@ -52,6 +52,36 @@ void lar_text_show(char *text) {
     }
 }
 
+/* Whether a character of UTF-8 goes on there. */
+static bool goes_on(char c) {
+    return ((unsigned char)c & 0xc0) == 0x80;
+}
+
+/* `text` without so much of its middle that it fits. A third of the room is for the beginning. */
+static void leave_out(const char *text, char *to, size_t size) {
+    static const char GAP[] = "...";
+    size_t length = strlen(text), gap = sizeof GAP - 1;
+    size_t head = size / 3, tail = length - (size - 1 - gap - head);
+    while (head > 0 && goes_on(text[head])) head--;
+    while (goes_on(text[tail])) tail++;
+    memcpy(to, text, head);
+    memcpy(to + head, GAP, gap);
+    memcpy(to + head + gap, text + tail, length - tail + 1);
+}
+
+void lar_text_print(char *to, size_t size, const char *format, va_list args) {
+    va_list again;
+    va_copy(again, args);
+    int length = vsnprintf(to, size, format, args);
+    char *whole = length > 0 && (size_t)length >= size ? lar_calloc((size_t)length + 1, 1) : NULL;
+    if (whole) {
+        vsnprintf(whole, (size_t)length + 1, format, again);
+        leave_out(whole, to, size);
+        free(whole);
+    }
+    va_end(again);
+}
+
 void lar_text_list(const char *const *name, int count, char *to, size_t size) {
     size_t used = 0;
     if (size > 0) to[0] = '\0';

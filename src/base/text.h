@@ -8,6 +8,7 @@
 #define LAR_BASE_TEXT_H
 
 #include <locale.h>
+#include <stdarg.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -69,6 +70,11 @@ int lar_utf8_length(const unsigned char *text, size_t length);
 /* Puts '?' where a character would steer a terminal that shows the text: control characters, also
  * those beyond ASCII (U+0080 to U+009F in UTF-8). All other UTF-8 stays. NULL is fine. */
 void lar_text_show(char *text);
+
+/* vsnprintf for sentences: what does not fit is left out of the middle ("..."), for that is where
+ * long paths are; what is wrong with them, and what to do, stands behind. */
+void lar_text_print(char *to, size_t size, const char *format, va_list args)
+    __attribute__((format(printf, 3, 0)));
 
 /* "a", "a and b", "a, b and c" into to[size], cut where it does not fit. */
 void lar_text_list(const char *const *name, int count, char *to, size_t size);

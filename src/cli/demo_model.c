@@ -11,7 +11,8 @@ static int demo_model_main(int argc, char **argv) {
     lar_error error;
     if (lar_demo_write(folder, &error))
         return cli_complain(&cli_demo_model, CLI_FAILED, "%s", error.message);
-    char scene[CLI_QUOTED], results[CLI_QUOTED], quoted[2][CLI_QUOTED];
+    /* Too large for a small stack (ulimit -s). */
+    static char scene[CLI_QUOTED], results[CLI_QUOTED], quoted[2][CLI_QUOTED];
     snprintf(scene, sizeof scene, "%s/uterus.yaml", folder);
     snprintf(results, sizeof results, "%s/results", folder);
     printf("%s, uterus_live.yaml and uterus.vtu are written. Try\n"

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/text.h"
 #include "cli/help.h"
 
 /* ---- messages --------------------------------------------------------------------------- */
@@ -25,7 +26,7 @@ int cli_complain(const cli_command *command, int status, const char *format, ...
     char text[2048];
     va_list args;
     va_start(args, format);
-    vsnprintf(text, sizeof text, format, args);
+    lar_text_print(text, sizeof text, format, args);
     va_end(args);
     /* What a message quotes from a file must not steer the terminal. */
     for (unsigned char *c = (unsigned char *)text; *c; c++) {

@@ -252,7 +252,8 @@ static int serve(replay *r) {
 }
 
 static int replay_recording(const replay_settings *settings) {
-    replay r = {.settings = *settings};
+    static replay r; /* too large for a small stack (ulimit -s) */
+    r.settings = *settings;
     cli_catch_stop();
     int status = prepare(&r);
     if (!status) status = lar_processes_self(r.processes) > 0 ? serve(&r) : compare(&r);

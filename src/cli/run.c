@@ -463,7 +463,9 @@ static int serve(run *r) {
 }
 
 static int run_scene(const run_settings *settings) {
-    run r = {.settings = *settings, .framed = UINT64_MAX};
+    static run r; /* too large for a small stack (ulimit -s) */
+    r.settings = *settings;
+    r.framed = UINT64_MAX;
     int status = prepare(&r);
     if (!status) status = lar_processes_self(r.processes) > 0 ? serve(&r) : compute(&r);
     bool failed = status && status != CLI_INTERRUPTED && status != CLI_RESTLESS;

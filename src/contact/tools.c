@@ -66,10 +66,12 @@ lar_status lar_tool_list_create(const lar_model *model, int32_t hands, int32_t s
 }
 
 void lar_tools_reset(const lar_tool_list *list, lar_tools *tools) {
-    lar_tools fresh = {.count = list->count,
-                       .division = {.parts = 1, .before = 1, .hardness = 1, .base = 1}};
-    memcpy(fresh.spare, tools->spare, sizeof fresh.spare);
-    *tools = fresh;
+    lar_spare_tool added[LAR_SPARES_MAX];
+    memcpy(added, tools->spare, sizeof added);
+    memset(tools, 0, sizeof *tools);
+    memcpy(tools->spare, added, sizeof added);
+    tools->count = list->count;
+    tools->division = (lar_step_division){.parts = 1, .before = 1, .hardness = 1, .base = 1};
     lar_settings_reset(&tools->settings);
     for (int32_t i = 0; i < LAR_TOOLS_MAX; i++) tools->hardness[i] = 1;
     for (int32_t i = 0; i < list->count; i++) {

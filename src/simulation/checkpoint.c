@@ -532,25 +532,24 @@ lar_status lar_checkpoint_parse(const char *path, const lar_bytes *bytes, const 
                         "%s: tools were added to what it was saved from, and this simulation has "
                         "%s places for them; create it with options.spares = %ld",
                         path, list->spares ? "too few" : "no", (long)spares);
-    lar_checkpoint found = {.step = head.step,
-                            .external = head.external,
-                            .damped = head.damped,
-                            .contact = head.contact};
-    if (head.version == BEFORE_SETTINGS) found.damped *= model->damping;
+    checkpoint->step = head.step;
+    checkpoint->external = head.external;
+    checkpoint->damped = head.damped;
+    checkpoint->contact = head.contact;
+    if (head.version == BEFORE_SETTINGS) checkpoint->damped *= model->damping;
     const unsigned char *at = bytes->data + sizeof head;
-    if (!take_tools(&head, &shape, whole, &at, &found.tools))
+    if (!take_tools(&head, &shape, whole, &at, &checkpoint->tools))
         return refuse(error, path,
                       "has a tool or a setting that cannot be so; take another checkpoint");
-    found.rows = (const double *)(const void *)at;
+    checkpoint->rows = (const double *)(const void *)at;
     bool finite = isfinite(head.external) && isfinite(head.damped) && isfinite(head.contact);
-    found.history = found.rows + LAR_NODE_VALUES * nodes;
-    if (!finite || !all_finite(found.rows, LAR_NODE_VALUES * nodes + shape.history) ||
-        !lar_checkpoint_none_negative(found.rows, nodes) || head.step > LAR_STEPS_MAX)
+    checkpoint->history = checkpoint->rows + LAR_NODE_VALUES * nodes;
+    if (!finite || !all_finite(checkpoint->rows, LAR_NODE_VALUES * nodes + shape.history) ||
+        !lar_checkpoint_none_negative(checkpoint->rows, nodes) || head.step > LAR_STEPS_MAX)
         return refuse(error, path, "has numbers beyond all range; take another checkpoint");
-    uint64_t hash = lar_checkpoint_hash(head.step, found.rows, nodes);
-    if (head.hash != lar_viscous_hash_values(hash, found.history, shape.history))
+    uint64_t hash = lar_checkpoint_hash(head.step, checkpoint->rows, nodes);
+    if (head.hash != lar_viscous_hash_values(hash, checkpoint->history, shape.history))
         return refuse(error, path, "has a state with another hash; take another checkpoint");
-    *checkpoint = found;
     return LAR_OK;
 }
 

@@ -1,6 +1,7 @@
 /* A state in a file: everything that the next step depends on, and nothing about who computes it.
  *
- *     | head | division, forces, tools, grasps | offsets | u of all nodes | v of all nodes | checksum |
+ *     | head | division, forces, tools, grasps | offsets | u of all nodes | v of all nodes |
+ * checksum |
  *
  * What it has of the nodes, and in which order, stands in the state's table (layout/state.h).
  *
@@ -42,7 +43,8 @@ lar_status lar_checkpoint_store(const char *path, const lar_bytes *bytes, lar_er
 lar_status lar_checkpoint_read(const char *path, lar_bytes *bytes, lar_error *error);
 
 /* Checks every byte. `path` is for messages; `bytes` must stay, at an address that is a multiple of
- * 8, as malloc gives it. */
+ * 8, as malloc gives it. What is in *checkpoint after a failure is nothing (it is too large to
+ * stand on the stack until then). */
 lar_status lar_checkpoint_parse(const char *path, const lar_bytes *bytes, const lar_domain *whole,
                                 lar_checkpoint *checkpoint, lar_error *error);
 

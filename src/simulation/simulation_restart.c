@@ -211,12 +211,16 @@ lar_status lar_simulation_pack(const lar_simulation *simulation, const char *pat
 
 lar_status lar_simulation_unpack(lar_simulation *simulation, const char *path,
                                  const lar_bytes *bytes, lar_error *error) {
-    lar_checkpoint checkpoint;
     lar_status status = check_whole(simulation, error);
-    if (!status)
-        status = lar_checkpoint_parse(path, bytes, &simulation->domain, &checkpoint, error);
     if (status) return status;
-    lar_checkpoint_take(&checkpoint, &simulation->domain, &simulation->state, &simulation->tools);
+    lar_checkpoint *checkpoint = lar_calloc(1, sizeof *checkpoint);
+    if (!checkpoint) return lar_fail_memory(error, sizeof *checkpoint, "a checkpoint");
+    status = lar_checkpoint_parse(path, bytes, &simulation->domain, checkpoint, error);
+    if (!status)
+        lar_checkpoint_take(checkpoint, &simulation->domain, &simulation->state,
+                            &simulation->tools);
+    free(checkpoint);
+    if (status) return status;
     lar_interactions_forget(&simulation->interactions);
     return lar_simulation_take_up(simulation, error);
 }

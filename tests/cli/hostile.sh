@@ -15,6 +15,26 @@ ln -s /dev/zero "$SCRATCH/zero.vtk"
 expect 1 timeout 20 "$LARIAT" info "$SCRATCH/zero.vtk"
 complains 'is not a regular file'
 
+# A path as long as can be leaves room for what is wrong with it.
+long=$(awk 'BEGIN { for (i = 0; i < 1200; i++) printf "x/" }')
+for command in run info view; do
+    expect 1 "$LARIAT" $command "$SCRATCH/${long}beam.yaml"
+    complains "^lariat $command: $SCRATCH/x/x/.*\.\.\..*/x/beam.yaml: .*No such file"
+done
+expect 1 "$LARIAT" run "$beam" --steps 1 --out "$SCRATCH/beam.vtk/$long"
+complains "^lariat run: .*/x/: .*Not a directory; choose another"
+
+# A small stack: what a run keeps is elsewhere. Sanitizers need more for themselves.
+if [ -z "${LARIAT_TEST_SANITIZED:-}" ]; then
+    small() {
+        expect 0 sh -c 'ulimit -s 96; exec "$@"' sh "$LARIAT" run "$beam" --steps 5 "$@"
+    }
+    small --save "$SCRATCH/small.checkpoint" --out "$SCRATCH/small"
+    small --resume "$SCRATCH/small.checkpoint"
+    small --grid 2x1x1 --comm shm --no-pin
+    expect 0 sh -c 'ulimit -s 96; exec "$@"' sh "$LARIAT" demo-model "$SCRATCH/small_demo"
+fi
+
 # What a file says to the terminal is not passed on.
 sed 's/^title:.*/title: "a\\e[31mred \\u009b1m"/' "$beam" >"$SCRATCH/red.yaml"
 for command in info "run --steps 1"; do
