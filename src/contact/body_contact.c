@@ -29,7 +29,9 @@ typedef struct survey {
     double x[3];  /* the node [m] */
     double reach; /* of the faces for the node [m] */
     bool flush;   /* with the body: some of its faces are not seen */
-    double fade;  /* by how much others than the closest may be farther away and still count [m] */
+    double fade;  /* by how much others than the closest may be farther away and still count, at
+                     most, [m] */
+    double above; /* the same before the faces [m] */
     int32_t count;
     int32_t entry[LAR_GROUP_FACES_MAX]; /* ascending */
     double distance[LAR_GROUP_FACES_MAX];
@@ -46,11 +48,14 @@ static double tie_of(const lar_body_contact *contact, int32_t face) {
 
 /* Of the contact distance, that part; 0 within a body. What goes over from one face to the next
  * within it is not the slope of anything: the less, the less energy comes from nowhere. */
-static double fade_of(const lar_body_contact *contact, int32_t node, int32_t face) {
+static double fade_above(const lar_body_contact *contact, int32_t node, int32_t face) {
     static const double FADE = 0.06;
     const lar_contact_surface *surface = contact->surface;
     return FADE * lar_contact_standoff(surface, &surface->node[node], &surface->face[face]);
 }
+
+/* And of the depth behind the faces of another body. */
+static const double FADE_BEHIND = 0.02;
 
 /* Looks at face f. Returns its distance, or at least so much; *point is that of the closest faces.
  */
@@ -90,7 +95,9 @@ static void survey_group(lar_body_contact *contact, const lar_state *state, int3
     int32_t first = contact->last[g];
     s->reach = lar_contact_reach(contact->surface, &contact->surface->node[group->node],
                                  &contact->surface->face[face[0]]);
-    s->fade = fade_of(contact, group->node, face[0]);
+    s->above = fade_above(contact, group->node, face[0]);
+    s->fade = lar_same_body(contact, group->node, face[0]) ? s->above
+                                                           : fmax(s->above, FADE_BEHIND * s->reach);
     s->min = s->gap = s->next = INFINITY;
     s->count = 0;
     s->flush = lar_offset_is_flush(contact, state, g);
@@ -179,18 +186,44 @@ static void point_of(const lar_body_contact *contact, const lar_state *state, co
     point->mass = 1 / compliance;
 }
 
-/* Above a hollow the closest point jumps from face to face, and so would the direction of the
- * force: there the faces that are about as close as the closest one push together. */
+/* By how much others may be farther away than the closest triangle and still count; 0: it counts
+ * alone [m]. */
+static double fade_at(const lar_face_point *closest, const survey *s) {
+    /* Beside an edge that is convex as seen from the node the closest point is on the edge, not
+     * straight below, and goes its way smoothly. */
+    double upright = 1 - 50 * (1 - fabs(closest->height) / closest->distance);
+    if (!(upright > 0)) return 0;
+    bool behind = closest->height < 0;
+    /* Who is out of reach is not in every list. */
+    double fade =
+        behind ? fmin(FADE_BEHIND * s->min, s->reach - s->min) : fmin(s->above, 0.5 * s->min);
+    return fade * fmin(upright, 1);
+}
+
+/* Whether no other triangle of the closest face counts, behind it: with no other face then, the
+ * closest point stays what it is, to the last bit, whether others had to be looked at or not. */
+static bool alone(const survey *s, const lar_face_point *closest, double fade) {
+    return closest->height < 0 && !(closest->next < s->min + fade);
+}
+
+static bool others_near(const survey *s, double fade) {
+    int32_t count = 0;
+    for (int32_t k = 0; k < s->count; k++) count += s->distance[k] < s->min + fade;
+    return count > 1;
+}
+
+/* Above a hollow, and behind a ridge, the closest point jumps from face to face, and so would the
+ * direction of the force: there the faces that are about as close as the closest one push together.
+ */
 static void blend(const lar_body_contact *contact, int32_t g, const lar_face_point *closest,
                   const survey *s, touching *t) {
     const lar_contact_group *group = &contact->list.group[g];
     const lar_contact_surface *surface = contact->surface;
-    /* Beside a convex edge the closest point is on the edge, not straight below, and goes its way
-     * smoothly. */
-    double upright = 1 - 50 * (1 - closest->height / closest->distance);
-    double fade = upright > 0 ? fmin(s->fade, 0.5 * s->min) * fmin(upright, 1) : 0, all = 0;
+    double fade = fade_at(closest, s), all = 0;
+    bool lone = alone(s, closest, fade);
+    if (!(fade > 0) || (lone && !others_near(s, fade))) return;
     touching blended = {.fading = -1};
-    for (int32_t k = 0; k < s->count && fade > 0; k++) {
+    for (int32_t k = 0; k < s->count; k++) {
         int32_t f = contact->list.face[group->first + s->entry[k]];
         double sum[4] = {0}, far = 0;
         if (!(s->distance[k] < s->min + fade) ||
@@ -205,6 +238,7 @@ static void blend(const lar_body_contact *contact, int32_t g, const lar_face_poi
         memcpy(blended.weight[blended.count++], sum, sizeof sum);
     }
     if (!(all > 0)) return;
+    if (lone && blended.count == 1 && blended.face[0] == t->face[0]) return;
     for (int32_t f = 0; f < blended.count; f++)
         for (int a = 0; a < 4; a++) blended.weight[f][a] /= all;
     blended.far /= all;
@@ -237,7 +271,7 @@ static double outward(const double x[3], const contact_point *point, double sign
 static double push_together(const touching *t, double tie, double *depth) {
     if (!(t->far > tie)) return 1;
     double share = fabs(*depth) / t->far;
-    *depth = -t->far;
+    *depth = copysign(t->far, *depth);
     return share;
 }
 
@@ -276,15 +310,13 @@ static double fade(const lar_body_contact *contact, const double x[3], const kno
                    const lar_face_point *closest, double full, double mass, double depth,
                    double rate, touching *t) {
     const lar_contact_face *f = &contact->surface->face[known->face];
-    double value[5], slope[5][3], stored;
-    for (int a = 0; a < 4; a++) value[a] = contact->surface->node[f->corner[a]].blunt;
-    value[4] = 1;
-    double part = lar_face_value(closest, value), steep = 6 * part * (1 - part);
-    part = part * part * (3 - 2 * part);
+    double blunt[4], change[5], slope[5][3], stored;
+    for (int a = 0; a < 4; a++) blunt[a] = contact->surface->node[f->corner[a]].blunt;
+    double part = lar_face_firmness(closest, blunt, change);
     double all = lar_contact_force(&contact->law, mass, depth, rate);
     double late = lar_contact_late_force(&contact->law, mass, full, depth, rate, &stored);
-    double more = (0.5 * all * depth - stored) * steep;
-    lar_face_slope(x, (const double(*)[3])known->x, closest, value, slope);
+    double more = 0.5 * all * depth - stored;
+    lar_face_slope(x, (const double(*)[3])known->x, closest, change, slope);
     for (int a = 0; a < 5; a++)
         for (int i = 0; i < 3; i++) slope[a][i] *= -more;
     double within = within_force(fmax(all, late), (const double(*)[3])slope);
@@ -308,8 +340,9 @@ static bool push(lar_body_contact *contact, const lar_state *state, int32_t g, i
     lar_contact_corners(contact, state, face, known.x, known.v);
     *t = (touching){.count = 1, .face = {face}, .fading = -1};
     memcpy(t->weight[0], closest->weight, sizeof closest->weight);
-    bool before = !(closest->height < 0);
-    if (before && lar_contact_active(&surface->node[node], f)) blend(contact, g, closest, s, t);
+    bool before = !(closest->height < 0), own = lar_same_body(contact, node, face);
+    if ((before || !own) && lar_contact_active(&surface->node[node], f))
+        blend(contact, g, closest, s, t);
     point_of(contact, state, t, &known, &point);
     double depth = outward(x, &point, before ? -1 : 1, LAR_FACE_TIE * f->size,
                            (const double(*)[3])known.x, way);
@@ -317,7 +350,6 @@ static bool push(lar_body_contact *contact, const lar_state *state, int32_t g, i
     if (isnan(depth)) return false;
     double together = push_together(t, LAR_FACE_TIE * f->size, &depth);
     for (int i = 0; i < 3; i++) rate += together * (point.velocity[i] - v[i]) * way[i];
-    bool own = lar_same_body(contact, node, face);
     double offset = own ? lar_offset_follow(contact, state, node, face, depth, rate) : 0;
     if (!own && !lar_offset_pushes(contact, state, g, face, depth, rate)) return false;
     if (!lar_contact_active(&surface->node[node], f)) return false;

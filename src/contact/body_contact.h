@@ -13,9 +13,9 @@
  * corners, and the node gets minus their sum: momentum is kept to the last bit.
  *
  * Different bodies push from a contact distance on, before they touch (contact_surface.h). Above a
- * hollow several faces are about as close and the closest point jumps: up to LAR_CONTACT_FACES of
- * them push together, with the mean of their forces, in the line to a mean of their points, which
- * does not jump. docs/theory.md, contact.
+ * hollow, and behind a ridge, several faces are about as close and the closest point jumps: up to
+ * LAR_CONTACT_FACES of them push together, with the mean of their forces, in the line to a mean of
+ * their points, which does not jump. docs/theory.md, contact.
  *
  * Sharp edges (contact_edges.c): towards them springs fade, with a force
  * along the face; and points of them are pushed by faces of other bodies as nodes are.

@@ -167,6 +167,9 @@ void lar_face_closest(const double x[3], const double corner[4][3], double tie,
     point->distance = parts.distance[point->triangle];
     point->height = best.height;
     point->toward = best.toward;
+    point->next = INFINITY;
+    for (int t = 0; t < 4; t++)
+        if (t != point->triangle) point->next = fmin(point->next, parts.distance[t]);
     memcpy(point->weight, parts.weight[point->triangle], sizeof point->weight);
 }
 
@@ -385,11 +388,36 @@ static void shares_of(const lar_face_point *point, double part[3]) {
     part[2] = 4 * point->weight[other];
 }
 
-double lar_face_value(const lar_face_point *point, const double value[5]) {
-    double part[3];
-    shares_of(point, part);
-    return part[0] * value[point->triangle] + part[1] * value[(point->triangle + 1) % 4] +
-           part[2] * value[4];
+/* From 0 to 1, without a slope at either end. */
+static double ease(double t, double *slope) {
+    *slope = 6 * t * (1 - t);
+    return t * t * (3 - 2 * t);
+}
+
+/* Bilinear in coordinates that are eased, and a hill in the middle that ends on the sides without a
+ * slope. */
+double lar_face_firmness(const lar_face_point *point, const double blunt[4], double change[5]) {
+    const double *weight = point->weight;
+    const double at[2] = {weight[1] + weight[2], weight[2] + weight[3]};
+    double eased[2], steep[2], hill[2], rise[2];
+    for (int d = 0; d < 2; d++) {
+        bool over = at[d] > 0.5;
+        eased[d] = ease(at[d], &steep[d]);
+        hill[d] = ease(over ? 2 * (1 - at[d]) : 2 * at[d], &rise[d]);
+        rise[d] *= over ? -2 : 2;
+    }
+    double low = blunt[1] - blunt[0], high = blunt[2] - blunt[3];
+    double side = (blunt[3] - blunt[0]) + eased[0] * (high - low);
+    double base = blunt[0] + eased[0] * low + eased[1] * side, top = hill[0] * hill[1];
+    double slope[2] = {(1 - top) * steep[0] * (low + eased[1] * (high - low)) +
+                           (1 - base) * rise[0] * hill[1],
+                       (1 - top) * steep[1] * side + (1 - base) * hill[0] * rise[1]};
+    change[0] = 0;
+    change[1] = slope[0];
+    change[2] = slope[0] + slope[1];
+    change[3] = slope[1];
+    change[4] = 0.5 * (slope[0] + slope[1]);
+    return base + (1 - base) * top;
 }
 
 void lar_face_slope(const double x[3], const double corner[4][3], const lar_face_point *point,

@@ -34,6 +34,7 @@ typedef struct lar_face_point {
                          comes closest to it: 0 but where the closest point is a corner */
     double weight[4]; /* of the corners */
     int triangle;     /* at corners `triangle` and the next */
+    double next;      /* the distance of the closest one of the others [m] */
 } lar_face_point;
 
 /* Distances closer to each other than this part of the size of a face are equal: rounding must not
@@ -88,11 +89,16 @@ void lar_face_segment_closest(const lar_segment *segment, const double corner[4]
 double lar_face_blend(const double x[3], const double corner[4][3], double min, double fade,
                       double sum[4], double *far);
 
-/* A number at the closest point of a face that is `value` at its corners and, last, in its middle,
- * linear in its triangles. */
-double lar_face_value(const lar_face_point *point, const double value[5]);
+/* What part of a spring there is at the closest point of a face, from `blunt` at its corners to 1
+ * in its middle, and change[]: the numbers of the corners and, last, of the middle that, linear in
+ * the triangles, have the same slope there. Along a side it depends on that side's ends alone, and
+ * across the side it has no slope: where two faces meet a spring is not driven from one to the
+ * other. Along the lines of bilinear coordinates, that is: of faces that are no parallelograms a
+ * part of the kink is left. */
+double lar_face_firmness(const lar_face_point *point, const double blunt[4], double change[5]);
 
-/* Its slopes with the places of the corners and, last, with x [1/m]: forces and moments that
+/* The slopes of a number that is `value` at the corners of a face and, last, in its middle, linear
+ * in the triangles: with the places of the corners and, last, with x [1/m]. Forces and moments that
  * balance, as those of any potential of the five places. */
 void lar_face_slope(const double x[3], const double corner[4][3], const lar_face_point *point,
                     const double value[5], double slope[5][3]);

@@ -5,10 +5,10 @@
 static const brick lower_brick = {{5, 4, 2}, 0.01, 0, LAR_LAW_neo_hookean, 2e4, 4e5, 1000};
 static const brick upper_brick = {{3, 3, 3}, 0.008, 0, LAR_LAW_neo_hookean, 2e4, 4e5, 1000};
 
-/* How a brick lies on another: where its side is, whether it is kept from sliding, and how deep the
- * hollow is that it lies in. */
+/* How a brick lies on another: where its sides are, whether it is kept from sliding, and how deep
+ * the hollow is that it lies in. */
 typedef struct laid {
-    double y; /* [m] */
+    double x, y; /* [m] */
     bool kept;
     double hollow; /* [m] */
 } laid;
@@ -18,7 +18,7 @@ static lar_model *laid_model(const brick *lower, const brick *upper, const laid 
     add_brick(model, lower, (double[]){0, 0, 0});
     int32_t split = model->mesh.element_count;
     double top = lower->edge * lower->cells[2];
-    int32_t first = add_brick(model, upper, (double[]){0.013, how->y, top});
+    int32_t first = add_brick(model, upper, (double[]){how->x, how->y, top});
     for (int32_t n = 0; n < first; n++) {
         double *x = model->mesh.position[n], side[2];
         if (x[2] < top - 0.5 * lower->edge) continue;
@@ -72,19 +72,20 @@ static void come_to_rest(const brick *lower, const brick *upper, const laid *how
     print_message("at rest: %d nodes touch, %.2g of an element deep, kinetic %.2g of %.2g J\n",
                   (int)info.touching, info.deepest / upper->edge, e.kinetic, e.strain);
     assert_true(info.touching >= 16);
-    assert_below(info.deepest, (how->hollow > 0 ? 0.04 : 0.02) * upper->edge);
+    bool deep = how->hollow > 0 || lower->bulk < 10 * lower->shear;
+    assert_below(info.deepest, (deep ? 0.04 : 0.02) * upper->edge);
     assert_below(trembling(s, 0, (double[]){0, 0, 0}), 1e-9 * e.strain);
     finish(s, model);
 }
 
-static const double middle = 0.008, beside = 0.0071;
+static const double ahead = 0.013, middle = 0.008, beside = 0.0071;
 
 /* In the middle nothing drives it to one side, kept in its place it cannot go, and in a hollow it
  * finds the deepest place. */
 static void a_body_comes_to_rest_on_another(void **unused) {
     (void)unused;
-    const laid balanced = {.y = middle}, kept = {.y = beside, .kept = true},
-               hollow = {.y = beside, .hollow = 0.001};
+    const laid balanced = {.x = ahead, .y = middle}, kept = {.x = ahead, .y = beside, .kept = true},
+               hollow = {.x = ahead, .y = beside, .hollow = 0.001};
     brick lower = lower_brick, upper = upper_brick;
     for (int soft = 0; soft < 2; soft++) {
         if (soft) {
@@ -97,6 +98,16 @@ static void a_body_comes_to_rest_on_another(void **unused) {
     }
 }
 
+/* Nodes lie exactly over lines between faces and between triangles, some of them beside a sharp
+ * edge: no line may drive them to and fro. */
+static void a_body_comes_to_rest_amid_another(void **unused) {
+    (void)unused;
+    const brick lower = {{4, 4, 2}, 0.01, 0, LAR_LAW_neo_hookean, 3.57e3, 1.67e4, 1000};
+    const brick upper = {{6, 6, 3}, 0.005, 0, LAR_LAW_neo_hookean, 1.07e4, 5e4, 1000};
+    come_to_rest(&lower, &upper, &(laid){.x = 0.005, .y = 0.005}, 3);
+    come_to_rest(&lower, &upper, &(laid){.x = 0.005, .y = 0.005, .kept = true}, 1.5);
+}
+
 /* Beside the middle the lower one sags askew, and without friction there is no rest: as one piece,
  * and only so, the upper one goes down the slope, as slowly as the damping has it. */
 static void a_body_beside_the_middle_slides_and_does_not_tremble(void **unused) {
@@ -106,7 +117,7 @@ static void a_body_beside_the_middle_slides_and_does_not_tremble(void **unused) 
     lower.bulk = upper.bulk = 4e4;
     double way[2][3];
     for (int side = 0; side < 2; side++) {
-        const laid how = {.y = side ? 2 * middle - beside : beside};
+        const laid how = {.x = ahead, .y = side ? 2 * middle - beside : beside};
         lar_model *model = laid_model(&lower, &upper, &how);
         int32_t first = brick_node(&lower, lower.cells[0], lower.cells[1], lower.cells[2]) + 1;
         lar_simulation *s = start(model);
@@ -188,6 +199,7 @@ static void bodies_come_to_rest_around_a_tool(void **unused) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_body_comes_to_rest_on_another),
+        cmocka_unit_test(a_body_comes_to_rest_amid_another),
         cmocka_unit_test(a_body_beside_the_middle_slides_and_does_not_tremble),
         cmocka_unit_test(bodies_come_to_rest_around_a_tool),
     };

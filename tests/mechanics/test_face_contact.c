@@ -294,6 +294,37 @@ static void the_widest_has_the_same_bits(void **unused) {
     }
 }
 
+/* Over a flat row of two squares, one corner row on a sharp edge: no kink from face to face, nor
+ * between triangles, and the slope is that of the number. */
+static void springs_fade_without_kinks(void **unused) {
+    (void)unused;
+    static const double blunt[2][4] = {{0, 0.2, 1, 1}, {0.2, 0, 0.7, 1}}, ahead = 1e-6;
+    double worst = 0;
+    for (int trial = 0; trial < 2000; trial++) {
+        double y = 0.5 + 0.49 * noise(), x = trial % 2 ? 1 : 1 + 0.98 * noise(), part[3],
+               slope[2] = {0};
+        for (int k = 0; k < 3; k++) {
+            double point[3] = {x + (k == 1) * ahead, y + (k == 2) * ahead, -0.01}, change[5];
+            double corner[4][3] = {{0}}, value[5], by[5][3];
+            int face = point[0] > 1;
+            for (int a = 0; a < 4; a++) {
+                corner[a][0] = face + (a == 1 || a == 2);
+                corner[a][1] = a >= 2;
+            }
+            lar_face_point found;
+            lar_face_closest(point, (const double(*)[3])corner, 1e-9, &found);
+            part[k] = lar_face_firmness(&found, blunt[face], change);
+            memcpy(value, change, sizeof value);
+            lar_face_slope(point, (const double(*)[3])corner, &found, value, by);
+            for (int i = 0; i < 2 && k == 0; i++) slope[i] = by[4][i];
+        }
+        assert_true(part[0] >= 0 && part[0] <= 1);
+        for (int i = 0; i < 2; i++)
+            worst = fmax(worst, fabs((part[1 + i] - part[0]) / ahead - slope[i]));
+    }
+    assert_below(worst, 1e-4);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_closest_point_is_the_closest),
@@ -302,6 +333,7 @@ int main(void) {
         cmocka_unit_test(inside_is_inside_also_at_dented_corners),
         cmocka_unit_test(who_is_before_a_face_stays_so),
         cmocka_unit_test(what_has_no_size_makes_no_trouble),
+        cmocka_unit_test(springs_fade_without_kinks),
         cmocka_unit_test(the_widest_has_the_same_bits),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
