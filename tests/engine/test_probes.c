@@ -61,6 +61,7 @@ static void same_contact(const lar_simulation *simulation, int32_t nodes, const 
         for (int32_t n = 0; n < nodes; n++)
             for (int i = 0; i < 3; i++) sum[i] += force[n][i];
     }
+    free(force);
     for (int i = 0; i < 3; i++) assert_below(fabs(sum[i] - value[i]), 1e-12);
 }
 

@@ -44,7 +44,9 @@ static lar_results *opened(const bench *b) {
 static bool refused(const bench *b) {
     lar_results *results = NULL;
     lar_status status = lar_results_open(FOLDER, b->simulation, &results, &error);
-    return status == LAR_ERROR_IO && !results && strstr(error.message, "another run");
+    bool none = !results;
+    lar_results_close(results, NULL);
+    return status == LAR_ERROR_IO && none && strstr(error.message, "another run");
 }
 
 static void one_at_a_time(void **unused) {

@@ -114,9 +114,9 @@ page 'npm is not there'
 
 # `make install` into a folder whose name has spaces, and into one's own home.
 (cd "$source" && make -n install PREFIX='/x y/z') >"$scratch/install"
-grep -q '^cmake --install build --prefix /x\\ y/z$' "$scratch/install" || fail "a prefix with a space"
+grep -q 'cmake --install build --prefix /x\\ y/z$' "$scratch/install" || fail "a prefix with a space"
 (cd "$source" && make -n install PREFIX='~/z') >"$scratch/install"
-grep -q '^cmake --install build --prefix ~/z$' "$scratch/install" || fail "a prefix at home"
+grep -q 'cmake --install build --prefix ~/z$' "$scratch/install" || fail "a prefix at home"
 
 [ $failures -eq 0 ] || exit 1
 rm -rf "$scratch"
