@@ -45,7 +45,7 @@ else
     compile kernel_c -DLAR_SIMD=1 "$source/src/mechanics/hex8_kernel.c"
     compile kernel_neon -DLAR_SIMD=2 "$source/src/mechanics/hex8_kernel.c"
     compile kernels -DLAR_HAVE_C -DLAR_HAVE_NEON "$source/src/mechanics/kernels.c"
-    for file in base/error base/memory mechanics/hex8 mechanics/hex8_lean mechanics/hexahedron \
+    for file in base/error base/text base/memory mechanics/hex8 mechanics/hex8_lean mechanics/hexahedron \
         mechanics/stress law/law model/material model/mesh/mesh; do
         compile "$(basename $file)" "$source/src/$file.c"
     done
