@@ -196,7 +196,7 @@ static void what_is_too_fast_says_who_and_where(void **unused) {
             options.time_step = 7e-5;
             lar_simulation *s = start_with(model, options);
             lar_error error = {0};
-            advance(s, 17); /* what is sudden is watched at the start */
+            advance(s, 17);                  /* what is sudden is watched at the start */
             s->tools.division.untouched = 1; /* a tool has touched the body lately */
             hurl(s);
             s->computer->contact.too_many_pairs = too_many_pairs;

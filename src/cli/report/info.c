@@ -238,7 +238,8 @@ static void print_duration(const lar_model *model) {
         printf("one frame at the end\n");
 }
 
-/* One element bends with no stress that differs over its thickness (docs/theory.md, hourglass control). */
+/* One element bends with no stress that differs over its thickness (docs/theory.md, hourglass
+ * control). */
 static void print_thin(const lar_model_info *info) {
     if (info->thin_elements == 0) return;
     printf(

@@ -275,8 +275,8 @@ static void print_hourglass(const lar_energy *energy, FILE *out) {
     if (energy->strain < 0 || !(hourglass_share(energy) > MUCH)) return;
     fprintf(out,
             "%-17s%.3g %% of strain and hourglass energy: the mesh is too coarse for how it is "
-            "bent or crushed; give it two or more elements through the thickness, twice as many "
-            "as there are\n",
+            "bent or crushed; give it two or more elements through the thickness, or twice as "
+            "many where it has them\n",
             "hourglass", 100 * hourglass_share(energy));
 }
 
