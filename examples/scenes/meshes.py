@@ -98,6 +98,14 @@ def cup():
     mesh.write("cup.inp", "A cup with a thick wall")
 
 
+def gel():
+    """A block of gel."""
+    mesh = Mesh()
+    mesh.grid((12, 12, 6), lambda u, v, w: (40 * u - 20, 40 * v - 20, 20 * w), "gel")
+    mesh.sets["bottom"] = list(range(1, 13 * 13 + 1))
+    mesh.write("gel.inp", "A block of gel")
+
+
 def tube():
     """A tube of 60 mm along z."""
     def place(u, v, w):
@@ -124,5 +132,6 @@ blocks()
 strip()
 bar()
 cup()
+gel()
 tube()
 ring()

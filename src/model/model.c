@@ -42,7 +42,10 @@ void lar_model_destroy(lar_model *model) {
         free(model->contact[i].face);
         free(model->contact[i].against);
     }
-    for (int i = 0; i < model->tool_count; i++) free(model->tool[i].name);
+    for (int i = 0; i < model->tool_count; i++) {
+        free(model->tool[i].name);
+        lar_tool_script_destroy(&model->tool[i].path);
+    }
     for (int i = 0; i < model->output.probe_count; i++) {
         free(model->output.probe[i].name);
         free(model->output.probe[i].nodes.node);

@@ -11,6 +11,7 @@
 #include "model/material.h"
 #include "model/mesh/mesh.h"
 #include "model/mesh/surface.h"
+#include "model/tool_script.h"
 
 /* A list of node indices, owned. */
 typedef struct lar_node_list {
@@ -85,6 +86,8 @@ typedef struct lar_tool {
     double spread;         /* [rad] between open jaws */
     double friction;       /* Coulomb's coefficient */
     lar_tool_pose rest;
+    lar_tool_script
+        path; /* begins at time 0 with `rest`; no rows: stays there; owned by the model */
 } lar_tool;
 
 /* What the public header tells of it; the name stays its own. */

@@ -71,5 +71,9 @@ double lar_model_loads_end(const lar_model *model) {
         if (wave->speed > 0 && !(wave->every > 0))
             end = fmax(end, (wave->span + wave->length) / wave->speed);
     }
+    for (int i = 0; i < model->tool_count; i++) {
+        const lar_tool_script *path = &model->tool[i].path;
+        if (path->count > 0) end = fmax(end, path->row[path->count - 1].time);
+    }
     return end;
 }

@@ -101,21 +101,17 @@ static lar_status add_row(script_reader *reader, lar_tool_script *script, lar_sp
                         "%s:%d: time %g does not come after %g; times must grow from row to row",
                         path, reader->line, value[TIME], script->row[script->count - 1].time);
     for (int i = X; i <= Z; i++)
-        if (fabs(value[i]) > 100)
+        if (fabs(value[i]) > LAR_TOOL_SCRIPT_FAR)
             return lar_fail(error, LAR_ERROR_FORMAT,
-                            "%s:%d: %s is %g m; positions are in metres, within 100", path,
-                            reader->line, column_name[i], value[i]);
-    lar_tool_pose pose = {.opening = value[OPENING]};
-    memcpy(pose.position, &value[X], sizeof pose.position);
-    memcpy(pose.orientation, &value[QW], sizeof pose.orientation);
-    status = take_pose(reader, &pose, error);
-    if (status) return status;
-    if (!LAR_GROW(script->row, script->capacity, script->count))
-        return lar_fail_memory(error, script->capacity * sizeof *script->row, "a script");
-    lar_tool_script_row *row = &script->row[script->count++];
-    row->time = value[TIME];
-    row->pose = pose;
-    return LAR_OK;
+                            "%s:%d: %s is %g m; positions are in metres, within %g", path,
+                            reader->line, column_name[i], value[i], LAR_TOOL_SCRIPT_FAR);
+    lar_tool_script_row row = {.time = value[TIME], .pose.opening = value[OPENING]};
+    memcpy(row.pose.position, &value[X], sizeof row.pose.position);
+    memcpy(row.pose.orientation, &value[QW], sizeof row.pose.orientation);
+    status = take_pose(reader, &row.pose, error);
+    if (!status && !lar_tool_script_insert(script, script->count, &row))
+        status = lar_fail_memory(error, script->capacity * sizeof row, "a script");
+    return status;
 }
 
 lar_status lar_tool_script_read(const char *path, lar_tool_script *script, lar_error *error) {
@@ -135,9 +131,25 @@ lar_status lar_tool_script_read(const char *path, lar_tool_script *script, lar_e
     return status;
 }
 
+bool lar_tool_script_insert(lar_tool_script *script, size_t at, const lar_tool_script_row *row) {
+    if (!LAR_GROW(script->row, script->capacity, script->count)) return false;
+    lar_tool_script_row *place = &script->row[at];
+    memmove(place + 1, place, (script->count++ - at) * sizeof *place);
+    *place = *row;
+    return true;
+}
+
 void lar_tool_script_destroy(lar_tool_script *script) {
     free(script->row);
     *script = (lar_tool_script){0};
+}
+
+void lar_tool_script_between(const lar_tool_script_row *row, double time, lar_tool_pose *pose) {
+    double share = (time - row->time) / (row[1].time - row->time);
+    for (int i = 0; i < 3; i++)
+        pose->position[i] = (1 - share) * row->pose.position[i] + share * row[1].pose.position[i];
+    lar_quaternion_blend(row->pose.orientation, row[1].pose.orientation, share, pose->orientation);
+    pose->opening = (1 - share) * row->pose.opening + share * row[1].pose.opening;
 }
 
 void lar_tool_script_at(lar_tool_script *script, double time, lar_tool_pose *pose) {
@@ -146,10 +158,6 @@ void lar_tool_script_at(lar_tool_script *script, double time, lar_tool_pose *pos
     while (script->at + 1 < script->count && row[script->at + 1].time <= time) script->at++;
     row += script->at;
     *pose = row->pose;
-    if (time <= row->time || script->at + 1 == script->count) return;
-    double share = (time - row->time) / (row[1].time - row->time);
-    for (int i = 0; i < 3; i++)
-        pose->position[i] = (1 - share) * row->pose.position[i] + share * row[1].pose.position[i];
-    lar_quaternion_blend(row->pose.orientation, row[1].pose.orientation, share, pose->orientation);
-    pose->opening = (1 - share) * row->pose.opening + share * row[1].pose.opening;
+    if (time > row->time && script->at + 1 < script->count)
+        lar_tool_script_between(row, time, pose);
 }

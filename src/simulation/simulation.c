@@ -144,6 +144,7 @@ static lar_status compile(const lar_model *model, const lar_options *options,
     if (!status) status = check_damping(domain, error);
     if (!status)
         status = lar_simulation_create_state(simulation, options->search_always != 0, error);
+    if (!status) status = lar_simulation_check_paths(simulation, error);
     if (!status) lar_simulation_set_start(simulation);
     return status;
 }
@@ -313,8 +314,10 @@ static lar_status advance(lar_simulation *simulation, uint64_t end, lar_step_cal
     bool goes_on = true;
     for (bool first = true; !status && goes_on && (first || step < end); first = false) {
         uint64_t look = (step / STEPS_BETWEEN_LOOKS + 1) * STEPS_BETWEEN_LOOKS;
-        status = advance_portion(simulation, look < end ? look : end, first, callback, context,
-                                 &goes_on, error);
+        uint64_t stop = look < end ? look : end;
+        status = lar_simulation_follow_paths(simulation, &stop, error);
+        if (status) break;
+        status = advance_portion(simulation, stop, first, callback, context, &goes_on, error);
         step = lar_simulation_steps(simulation);
         if (status || simulation->fault.kind || step % STEPS_BETWEEN_LOOKS != 0) continue;
         status = check_contact(simulation, error);

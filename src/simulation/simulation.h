@@ -93,6 +93,13 @@ lar_status lar_simulation_check_change(const lar_simulation *simulation, const c
 lar_status lar_tool_check_grasp(const lar_tool *tool, const double point[3], lar_error *error);
 void lar_simulation_tool_asked(const lar_simulation *simulation, int32_t tool, lar_tool_pose *pose);
 
+/* Whether tools that have a path in the scene are slow enough for the time step. */
+lar_status lar_simulation_check_paths(const lar_simulation *simulation, lar_error *error);
+/* Before a step: tools whose path goes on here set out. *stop becomes the step before which the
+ * next of them does, where that is earlier. */
+lar_status lar_simulation_follow_paths(lar_simulation *simulation, uint64_t *stop,
+                                       lar_error *error);
+
 /* The start as lar_simulation_create makes it, into state and tools, also again. */
 void lar_simulation_set_start(lar_simulation *simulation);
 

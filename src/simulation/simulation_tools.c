@@ -139,20 +139,16 @@ static lar_status check_speed(const lar_tool *tool, const lar_tool_pose *now,
         0.5 * tool->radius / time_step, ceil(2 * way / tool->radius));
 }
 
-lar_status lar_simulation_tool_move(lar_simulation *simulation, int32_t index,
-                                    const lar_tool_pose *pose, uint64_t steps, lar_error *error) {
-    lar_status status = check_tool(simulation, index, pose, error);
-    if (!status) status = lar_simulation_check_idle(simulation, "lar_simulation_tool_move", error);
-    if (status) return status;
+/* On processor 0, between two steps. */
+static lar_status move_tool(lar_simulation *simulation, int32_t index, const lar_tool_pose *pose,
+                            uint64_t steps, lar_error *error) {
     const lar_tool *tool = &simulation->list.tool[index];
-    if (tool->shape == LAR_TOOL_NONE)
-        return lar_fail(error, LAR_ERROR_ARGUMENT,
-                        "tool %ld is not there; add one with lar_simulation_add_tool", (long)index);
     lar_tools *tools = &simulation->tools;
     lar_tool_motion *motion = &tools->motion[index];
     lar_tool_pose now, wanted;
     uint64_t step = lar_simulation_steps(simulation);
     double time_step = simulation->domain.time_step;
+    lar_status status = LAR_OK;
     if (steps < 1 || (double)steps > STEPS_MAX)
         return lar_fail(error, LAR_ERROR_ARGUMENT, "tool %s: a way takes 1 to 2^53 steps, not %llu",
                         tool->name, (unsigned long long)steps);
@@ -177,6 +173,98 @@ lar_status lar_simulation_tool_move(lar_simulation *simulation, int32_t index,
                  &(lar_tool_motion){.from = now, .to = wanted, .start = step, .end = step + steps});
     if (simulation->computer) simulation->computer->tools_sent = false;
     return LAR_OK;
+}
+
+lar_status lar_simulation_tool_move(lar_simulation *simulation, int32_t index,
+                                    const lar_tool_pose *pose, uint64_t steps, lar_error *error) {
+    lar_status status = check_tool(simulation, index, pose, error);
+    if (!status) status = lar_simulation_check_idle(simulation, "lar_simulation_tool_move", error);
+    if (!status && simulation->list.tool[index].shape == LAR_TOOL_NONE)
+        status =
+            lar_fail(error, LAR_ERROR_ARGUMENT,
+                     "tool %ld is not there; add one with lar_simulation_add_tool", (long)index);
+    return status ? status : move_tool(simulation, index, pose, steps, error);
+}
+
+/* ---- paths of the scene -------------------------------------------------------------------- */
+
+/* The step before which a row's time is. */
+static uint64_t step_of(const lar_tool_script_row *row, double time_step) {
+    return (uint64_t)fmin(floor(row->time / time_step + 0.5), STEPS_MAX);
+}
+
+lar_status lar_simulation_check_paths(const lar_simulation *simulation, lar_error *error) {
+    double time_step = simulation->domain.time_step;
+    for (int32_t i = 0; i < simulation->list.count; i++) {
+        const lar_tool *tool = &simulation->list.tool[i];
+        for (size_t j = 0; j + 1 < tool->path.count; j++) {
+            const lar_tool_script_row *row = &tool->path.row[j];
+            uint64_t steps = step_of(row + 1, time_step) - step_of(row, time_step);
+            double way = way_of(tool, &row->pose, &row[1].pose);
+            double max = 0.5 * tool->radius * fmax(1, (double)steps);
+            if (way > max)
+                return lar_fail(error, LAR_ERROR_MODEL,
+                                "%s: tool %s: its path goes %.4g m from %.6g to %.6g s, more than "
+                                "half its radius in a step of %.3g s; give it %.3g s or more",
+                                lar_model_source(simulation->domain.model), tool->name, way,
+                                row->time, row[1].time, time_step,
+                                2 * way / tool->radius * time_step);
+        }
+    }
+    return LAR_OK;
+}
+
+/* The part of a path that a step belongs to: from `row` to the one behind it, NULL at the end.
+ * Jaws take hold as they close, so where they move the part goes in pieces of about a millisecond,
+ * as devices move tools; else in one. */
+typedef struct path_part {
+    const lar_tool_script_row *row;
+    uint64_t begin, end; /* of the piece [steps] */
+} path_part;
+
+static path_part part_at(const lar_tool_script *path, uint64_t step, double time_step) {
+    static const double PIECE = 1e-3;   /* [s] */
+    size_t low = 0, high = path->count; /* the last row at or before the step: low */
+    while (high - low > 1) {
+        size_t middle = low + (high - low) / 2;
+        *(step_of(&path->row[middle], time_step) <= step ? &low : &high) = middle;
+    }
+    const lar_tool_script_row *row = &path->row[low];
+    if (high == path->count) return (path_part){0};
+    path_part part = {row, step_of(row, time_step), step_of(row + 1, time_step)};
+    if (row->pose.opening != row[1].pose.opening) {
+        uint64_t piece = (uint64_t)fmax(1, floor(PIECE / time_step + 0.5));
+        part.begin += (step - part.begin) / piece * piece;
+        if (part.begin + piece < part.end) part.end = part.begin + piece;
+    }
+    return part;
+}
+
+/* What moved a tool otherwise may have left it where its path is too far for the time. */
+static lar_status follow_part(lar_simulation *simulation, int32_t index, const path_part *part,
+                              lar_error *error) {
+    double time_step = simulation->domain.time_step;
+    const lar_tool_script_row *row = part->row;
+    lar_tool_pose pose = row[1].pose;
+    if (part->end < step_of(row + 1, time_step))
+        lar_tool_script_between(row, fmax(row->time, (double)part->end * time_step), &pose);
+    uint64_t steps = part->end - part->begin, least = steps_for(simulation, index, &pose, 0);
+    return move_tool(simulation, index, &pose, steps > least ? steps : least, error);
+}
+
+lar_status lar_simulation_follow_paths(lar_simulation *simulation, uint64_t *stop,
+                                       lar_error *error) {
+    uint64_t step = lar_simulation_steps(simulation);
+    lar_status status = LAR_OK;
+    for (int32_t i = 0; i < simulation->list.count && !status; i++) {
+        const lar_tool_script *path = &simulation->list.tool[i].path;
+        if (path->count == 0) continue;
+        path_part part = part_at(path, step, simulation->domain.time_step);
+        if (!part.row) continue;
+        if (part.begin == step) status = follow_part(simulation, i, &part, error);
+        if (part.end < *stop) *stop = part.end;
+    }
+    return status;
 }
 
 /* ---- taking hold --------------------------------------------------------------------------- */

@@ -195,6 +195,11 @@ static uint64_t hash_contacts(const lar_model *model) {
     return hash;
 }
 
+static uint64_t hash_row(uint64_t hash, const lar_tool_script_row *row) {
+    hash = hash_doubles(lar_hash_double(hash, row->time), row->pose.position, 3);
+    return lar_hash_double(hash_doubles(hash, row->pose.orientation, 4), row->pose.opening);
+}
+
 /* Spares come and go. */
 static uint64_t hash_tools(const lar_tool_list *list) {
     int32_t count = list ? lar_spares_first(list) : 0;
@@ -207,6 +212,7 @@ static uint64_t hash_tools(const lar_tool_list *list) {
         hash = hash_doubles(hash, t->rest.orientation, 4);
         hash = lar_hash_double(hash, t->rest.opening);
         if (t->friction > 0) hash = lar_hash_double(hash, t->friction);
+        for (size_t j = 0; j < t->path.count; j++) hash = hash_row(hash, &t->path.row[j]);
     }
     return hash;
 }

@@ -1,4 +1,5 @@
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "model/contact_check.h"
@@ -12,7 +13,7 @@ typedef struct shape_keys {
     const char *name, *what;
     lar_tool_shape shape;
     bool is_long, grasps;
-    const char *keys[11];
+    const char *keys[12];
 } shape_keys;
 
 static const shape_keys known[] = {
@@ -21,19 +22,20 @@ static const shape_keys known[] = {
      LAR_TOOL_SPHERE,
      false,
      false,
-     {"name", "shape", "radius", "at", "friction", NULL}},
+     {"name", "shape", "radius", "at", "path", "friction", NULL}},
     {"capsule",
      "a capsule",
      LAR_TOOL_CAPSULE,
      true,
      false,
-     {"name", "shape", "radius", "length", "at", "towards", "friction", NULL}},
+     {"name", "shape", "radius", "length", "at", "towards", "path", "friction", NULL}},
     {"grasper",
      "a grasper",
      LAR_TOOL_GRASPER,
      true,
      true,
-     {"name", "shape", "radius", "length", "spread", "at", "towards", "turn", "friction", NULL}}};
+     {"name", "shape", "radius", "length", "spread", "at", "towards", "turn", "path", "friction",
+      NULL}}};
 enum { SHAPES = sizeof known / sizeof known[0] };
 
 static lar_status read_shape(const lar_scene *scene, const lar_yaml *node,
@@ -88,18 +90,124 @@ static void orient(const double towards[3], double turn, double q[4]) {
     q[3] = w * s;
 }
 
+/* ---- the key `path` ----------------------------------------------------------------------- */
+
+static lar_status read_path_file(lar_scene *scene, const lar_yaml *node, lar_tool *tool) {
+    const char *name;
+    lar_status status = lar_scene_text(
+        scene, node, "the name of a file of positions at times (docs/devices.md), or a list",
+        &name);
+    if (!status && scene->given)
+        status =
+            lar_scene_fail(scene, node, LAR_ERROR_UNSUPPORTED,
+                           "path: a scene from memory reads no files; give the positions here, "
+                           "path: [[0, 0, 0, 0.02], [0.5, 0, 0, 0.01]]");
+    if (status) return status;
+    char *path = lar_path_beside(scene->path, name);
+    if (!path) return lar_scene_no_memory(scene, strlen(name));
+    lar_error own = {0};
+    status = lar_tool_script_read(path, &tool->path, &own);
+    free(path);
+    return status ? lar_scene_fail(scene, node, status, "%s", own.message) : LAR_OK;
+}
+
+/* Four numbers, or five with the opening of a grasper's jaws. */
+static lar_status read_path_row(const lar_scene *scene, const lar_yaml *entry, bool grasps,
+                                lar_tool_script *path) {
+    const char *const expected =
+        grasps ? "four or five numbers, [time in seconds, x, y, z in metres, opening from 0 to 1]"
+               : "four numbers, [time in seconds, x, y, z in metres]";
+    lar_tool_script_row row = {.pose = {.orientation = {1, 0, 0, 0}, .opening = 1}};
+    double *const place[] = {&row.time, &row.pose.position[0], &row.pose.position[1],
+                             &row.pose.position[2], &row.pose.opening};
+    lar_status status = LAR_OK;
+    if (entry->kind != LAR_YAML_LIST || entry->count < 4 || entry->count > (grasps ? 5 : 4))
+        return lar_scene_fail(scene, entry, LAR_ERROR_FORMAT, "path: expected %s", expected);
+    const lar_yaml *number = entry->first;
+    for (int i = 0; number && !status; i++, number = number->next) {
+        status = lar_scene_number(scene, number, expected, place[i]);
+        if (!status && i > 0 && i < 4 && fabs(*place[i]) > LAR_TOOL_SCRIPT_FAR)
+            status = lar_scene_fail(scene, number, LAR_ERROR_MODEL,
+                                    "path: %g m; positions are in metres, within %g", *place[i],
+                                    LAR_TOOL_SCRIPT_FAR);
+        if (!status && i == 4 && !(*place[i] >= 0 && *place[i] <= 1))
+            status = lar_scene_fail(scene, number, LAR_ERROR_MODEL,
+                                    "path: jaws are open by 0 (closed) to 1, not by %g", *place[i]);
+    }
+    if (!status && path->count > 0 && !(row.time > path->row[path->count - 1].time))
+        status = lar_scene_fail(scene, entry, LAR_ERROR_MODEL,
+                                "path: time %g does not come after %g; times must grow from row to "
+                                "row",
+                                row.time, path->row[path->count - 1].time);
+    if (!status && !lar_tool_script_insert(path, path->count, &row))
+        status = lar_scene_no_memory(scene, path->capacity * sizeof row);
+    return status;
+}
+
+static lar_status read_path(lar_scene *scene, const lar_yaml *entry, const shape_keys *shape,
+                            lar_tool *tool) {
+    const lar_yaml *node = lar_yaml_get(entry, "path");
+    lar_status status = LAR_OK;
+    if (!node) return LAR_OK;
+    if (node->kind != LAR_YAML_LIST) {
+        status = read_path_file(scene, node, tool);
+    } else {
+        if (node->count == 0)
+            status = lar_scene_fail(scene, node, LAR_ERROR_FORMAT,
+                                    "path: the list is empty; give at least one row, for example "
+                                    "[0.5, 0, 0, 0.01]");
+        for (const lar_yaml *row = node->first; row && !status; row = row->next)
+            status = read_path_row(scene, row, shape->grasps, &tool->path);
+    }
+    if (!status && tool->path.row[0].time < 0)
+        status = lar_scene_fail(scene, node, LAR_ERROR_MODEL,
+                                "path: it begins at %g s; scenes begin at time 0",
+                                tool->path.row[0].time);
+    return status;
+}
+
+/* A path that does not say how the tool is turned leaves it as the scene has it; one that begins
+ * later than the scene begins where the scene has the tool. */
+static lar_status begin_path(lar_scene *scene, const lar_yaml *at, lar_tool *tool) {
+    static const double SAME = 1e-6; /* of a radius */
+    lar_tool_script *path = &tool->path;
+    if (path->count == 0) return LAR_OK;
+    for (size_t i = 0; i < path->count && !path->turns; i++)
+        memcpy(path->row[i].pose.orientation, tool->rest.orientation,
+               sizeof tool->rest.orientation);
+    if (path->row[0].time > 0) {
+        lar_tool_script_row row = {.time = 0, .pose = tool->rest};
+        return lar_tool_script_insert(path, 0, &row)
+                   ? LAR_OK
+                   : lar_scene_no_memory(scene, path->capacity * sizeof row);
+    }
+    const double *begins = path->row[0].pose.position;
+    for (int i = 0; i < 3 && at; i++)
+        if (!(fabs(begins[i] - tool->rest.position[i]) <= SAME * tool->radius))
+            return lar_scene_fail(scene, at, LAR_ERROR_MODEL,
+                                  "at and the path's place at time 0, [%g, %g, %g], are not the "
+                                  "same; leave one of them out",
+                                  begins[0], begins[1], begins[2]);
+    tool->rest = path->row[0].pose;
+    return LAR_OK;
+}
+
 static lar_status read_pose(lar_scene *scene, const lar_yaml *entry, const shape_keys *shape,
                             lar_tool *tool) {
     const lar_yaml *at = NULL, *towards = lar_yaml_get(entry, "towards");
     const lar_yaml *turn = lar_yaml_get(entry, "turn");
     double direction[3] = {0, 0, -1}, degrees = 0;
-    lar_status status = lar_scene_need(scene, entry, shape->what, "at", "at: [0, 0, 0.1]", &at);
-    if (!status) status = lar_scene_vector(scene, at, LAR_IN_POSITION, tool->rest.position);
+    lar_status status = LAR_OK;
+    if (tool->path.count > 0 && tool->path.row[0].time == 0) /* where a path begins */
+        at = lar_yaml_get(entry, "at");
+    else
+        status = lar_scene_need(scene, entry, shape->what, "at", "at: [0, 0, 0.1]", &at);
+    if (!status && at) status = lar_scene_vector(scene, at, LAR_IN_POSITION, tool->rest.position);
     if (!status && towards) status = lar_scene_direction(scene, towards, direction);
     if (!status && turn) status = lar_scene_number(scene, turn, LAR_IN_DEGREES, &degrees);
     orient(direction, degrees * LAR_PI / 180, tool->rest.orientation);
     tool->rest.opening = 1;
-    return status;
+    return status ? status : begin_path(scene, at, tool);
 }
 
 static lar_status read_size(lar_scene *scene, const lar_yaml *entry, const shape_keys *shape,
@@ -125,8 +233,8 @@ static lar_status read_size(lar_scene *scene, const lar_yaml *entry, const shape
 }
 
 static lar_status read_tool(lar_scene *scene, const lar_yaml *entry) {
-    static const char *const keys[] = {"name", "shape",   "radius", "length",   "spread",
-                                       "at",   "towards", "turn",   "friction", NULL};
+    static const char *const keys[] = {"name",    "shape", "radius", "length",   "spread", "at",
+                                       "towards", "turn",  "path",   "friction", NULL};
     const char *const what = "a tool";
     const lar_yaml *name = NULL, *word = NULL;
     const shape_keys *shape = NULL;
@@ -144,6 +252,7 @@ static lar_status read_tool(lar_scene *scene, const lar_yaml *entry) {
     tool->shape = shape->shape;
     status = read_name(scene, name, tool);
     if (!status) status = read_size(scene, entry, shape, tool);
+    if (!status) status = read_path(scene, entry, shape, tool);
     if (!status) status = read_pose(scene, entry, shape, tool);
     if (!status) status = lar_scene_friction(scene, entry, &tool->friction);
     char problem[LAR_PROBLEM_SIZE];

@@ -169,6 +169,11 @@ static lar_status choose_tool(const reader *r, const lar_yaml *node, lar_inverse
             "the tool %s is no sphere; indentation is with a sphere, or with a flat "
             "punch: the tissue's nodes under it in move, and no tool",
             name[e->tool]);
+    if (e->tool >= 0 && m->tool[e->tool].path.count > 0)
+        return lar_scene_fail(&r->scene, own ? own : node, LAR_ERROR_MODEL,
+                              "the tool %s has a path in the scene %s, and a fit moves it as the "
+                              "table says; leave the path out",
+                              name[e->tool], e->scene);
     if (e->tool >= 0) return LAR_OK;
     if (own)
         return lar_scene_unknown(&r->scene, own, LAR_ERROR_MODEL, "the tool", "the tools are", name,
