@@ -107,6 +107,13 @@ static PyObject *energies(PyObject *me, PyObject *nothing) {
     PYTHON_UNLOCKED(lar_simulation_energy(simulation, &e));
     python_simulation_give(self);
     if (!python_simulation_sound(self, "energies")) return NULL;
+    if (!isfinite(e.kinetic + e.strain + e.hourglass)) {
+        lar_error error = {.status = LAR_ERROR_UNSTABLE};
+        snprintf(error.message, sizeof error.message,
+                 "energies: they are no numbers after the last step, in which an element was "
+                 "crushed to nothing or turned inside out; the next one ends the run");
+        return python_raise(&error);
+    }
     return Py_BuildValue("{s:d,s:d,s:d,s:d,s:d,s:d,s:d}", "kinetic", e.kinetic, "strain", e.strain,
                          "hourglass", e.hourglass, "external", e.external, "damping", e.damping,
                          "contact", e.contact, "viscous", e.viscous);

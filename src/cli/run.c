@@ -1,5 +1,6 @@
 /* lariat run: a scene in, motion, figures and results out. */
 #include <errno.h>
+#include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -273,6 +274,22 @@ static int advance_stretch(run *r) {
     return status;
 }
 
+/* What the last step did shows in the next one: a state whose energy is no number is none to end
+ * with. */
+static int check_end(run *r) {
+    lar_error error;
+    lar_energy e;
+    lar_simulation_energy(r->simulation, &e);
+    if (isfinite(e.kinetic + e.strain + e.hourglass)) return CLI_DONE;
+    uint64_t step = lar_simulation_steps(r->simulation);
+    if (!lar_simulation_advance(r->simulation, 1, &error)) {
+        error.status = LAR_ERROR_UNSTABLE;
+        snprintf(error.message, sizeof error.message,
+                 "unstable at step %" PRIu64 ": the energy is no number any more", step);
+    }
+    return fail_by(r, &error);
+}
+
 static int advance(run *r) {
     int status = r->interval > 0 ? add_frame(r) : CLI_DONE;
     if (r->interval > 0)
@@ -283,6 +300,7 @@ static int advance(run *r) {
         status = advance_stretch(r);
     r->elapsed = lar_step_clock_elapsed(&r->clock);
     clear_progress(r);
+    if (!status) status = check_end(r);
     return status ? status : add_frame(r);
 }
 

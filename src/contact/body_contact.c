@@ -26,12 +26,13 @@ typedef struct touching {
 
 /* What is known of a group's faces: distances of those that may matter, at least so much. */
 typedef struct survey {
-    double x[3];  /* the node [m] */
-    double reach; /* of the faces for the node [m] */
-    bool flush;   /* with the body: some of its faces are not seen */
-    double fade;  /* by how much others than the closest may be farther away and still count, at
-                     most, [m] */
-    double above; /* the same before the faces [m] */
+    double x[3];   /* the node [m] */
+    double reach;  /* of the faces for the node [m] */
+    bool flush;    /* with the body: some of its faces are not seen */
+    unsigned held; /* axes that the node is held along; 0 for other bodies than its own */
+    double fade;   /* by how much others than the closest may be farther away and still count, at
+                      most, [m] */
+    double above;  /* the same before the faces [m] */
     int32_t count;
     int32_t entry[LAR_GROUP_FACES_MAX]; /* ascending */
     double distance[LAR_GROUP_FACES_MAX];
@@ -58,7 +59,9 @@ static double fade_above(const lar_body_contact *contact, int32_t node, int32_t 
 static const double FADE_BEHIND = 0.02;
 
 /* Looks at face f. Returns its distance, or at least so much; *point is that of the closest faces.
- */
+ * INFINITY: it is not seen. A slice of one element between two planes has its nodes in the planes
+ * of its sides: a wall that goes through another one would find that one's side closest, at no
+ * distance, and nothing that pushes. */
 static double survey_face(lar_body_contact *contact, const lar_state *state, int32_t f, survey *s,
                           double corner[4][3], lar_face_point *point) {
     double tie = tie_of(contact, f);
@@ -68,6 +71,10 @@ static double survey_face(lar_body_contact *contact, const lar_state *state, int
         contact->info.tested++;
         lar_face_closest(s->x, (const double(*)[3])corner, tie, point);
         distance = point->distance;
+        if ((s->held & contact->surface->face[f].plane) && fabs(point->height) <= tie) {
+            s->gap = fmin(s->gap, 0); /* it is looked at again in the next step */
+            return INFINITY;
+        }
         if (distance <= s->reach && distance < s->min) s->min = distance;
     }
     if (distance - s->reach < s->gap) s->gap = distance - s->reach;
@@ -83,6 +90,7 @@ static double farther_by(double distance, double tie, const survey *s) {
 /* The travel until which a face cannot be the closest one within reach: it is out of reach, or
  * farther away. */
 static double away_until(double travel, double distance, double tie, const survey *s) {
+    if (distance == INFINITY) return 0; /* not seen now */
     double reach = distance - tie - s->reach, min = farther_by(distance, tie, s);
     return travel + 0.999 * (reach > min ? reach : min) / APPROACH;
 }
@@ -101,6 +109,8 @@ static void survey_group(lar_body_contact *contact, const lar_state *state, int3
     s->min = s->gap = s->next = INFINITY;
     s->count = 0;
     s->flush = lar_offset_is_flush(contact, state, g);
+    s->held =
+        lar_same_body(contact, group->node, face[0]) ? contact->surface->node[group->node].held : 0;
     lar_face_point of_first;
     double corner_of_first[4][3];
     lar_contact_place(contact, state, group->node, s->x, NULL);
@@ -276,11 +286,15 @@ static double push_together(const touching *t, double tie, double *depth) {
 }
 
 /* What part of its stiffness a spring has: what it stores while it keeps the contact distance must
- * not throw a light node. */
-static double softness(const lar_body_contact *contact, double standoff) {
+ * not throw a light node. But tissue that is as stiff as springs would give way to them then. */
+static double softness(const lar_body_contact *contact, int32_t node, int32_t face,
+                       double standoff) {
     static const double SPEED = 3; /* [m/s] */
-    double max = SPEED / standoff;
-    return max * max < contact->law.stiffness ? max * max / contact->law.stiffness : 1;
+    const lar_contact_surface *s = contact->surface;
+    double speed = SPEED / standoff, stiffness = contact->law.stiffness;
+    if (!(speed * speed < stiffness)) return 1;
+    double firm = fmin(s->body[s->node[node].body].firm, s->body[s->face[face].body].firm);
+    return fmin(1, fmax(speed * speed, firm) / stiffness);
 }
 
 /* How far a spring is pressed in where a sharp edge pushes like any other place [m]. */
@@ -356,7 +370,7 @@ static bool push(lar_body_contact *contact, const lar_state *state, int32_t g, i
     double moved = lar_contact_pair_mass(surface->node[node].mass, point.mass);
     double standoff = lar_contact_standoff(surface, &surface->node[node], f);
     double from = standoff - offset;
-    moved *= softness(contact, standoff);
+    moved *= softness(contact, node, face, standoff);
     double force = f->fades && !own && !s->flush
                        ? fade(contact, x, &known, closest, full_of(contact, node, face), moved,
                               depth + from, rate, t)

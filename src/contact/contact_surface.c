@@ -189,7 +189,7 @@ static lar_status number_bodies(workspace *d, lar_error *error) {
     s->body = lar_calloc((size_t)s->body_count, sizeof *s->body);
     if (!s->body) return lar_fail_memory(error, (size_t)s->body_count * sizeof *s->body, "bodies");
     for (int32_t b = 0; b < s->body_count; b++)
-        s->body[b] = (lar_contact_body){{INFINITY, INFINITY}, INFINITY, 0};
+        s->body[b] = (lar_contact_body){.reach = {INFINITY, INFINITY}, .clear = INFINITY};
     for (int32_t f = 0; f < d->model->surface.face_count; f++) {
         if (d->face_of[f] < 0) continue;
         lar_contact_face *face = &s->face[d->face_of[f]];
@@ -233,11 +233,15 @@ static void count_possible(lar_contact_surface *s) {
 /* ---- springs -------------------------------------------------------------------------------- */
 
 /* The springs at a node take what its own elements leave of the step, those at the body's worst
- * element the least (docs/theory.md, contact). */
+ * element the least (docs/theory.md, contact). And how stiff the body wants them. */
 static lar_status fit_masses(const lar_model *model, double time_step, double stable_step,
                              lar_contact_surface *s, lar_error *error) {
+    /* A quarter makes it of the frequency's square and the stable step's; but light nodes between
+     * sharp edges are thrown by more than this (engine/edges). */
+    static const double FIRM = 0.375 * 0.25;
     const lar_mesh *mesh = &model->mesh;
-    double *fastest = lar_calloc((size_t)mesh->node_count, sizeof *fastest), max = 0, *squares;
+    double *fastest = lar_calloc(2 * (size_t)mesh->node_count, sizeof *fastest), max = 0, *squares;
+    double *firm = fastest + mesh->node_count; /* 0: none */
     if (!fastest) return lar_fail_memory(error, 8 * (size_t)mesh->node_count, "springs of contact");
     lar_status status = lar_spring_squares(model, &squares, error);
     if (status) {
@@ -254,13 +258,19 @@ static lar_status fit_masses(const lar_model *model, double time_step, double st
         double frequency = lar_model_slowed(model, lar_hex8_frequency(&hex8, material));
         if (squares) frequency = sqrt(frequency * frequency + lar_spring_square(model, squares, e));
         max = fmax(max, frequency);
+        double own =
+            FIRM * lar_contact_wanted(lar_material_confined(material)) * frequency * frequency;
         for (int a = 0; a < 8; a++) {
-            double *of = &fastest[mesh->element[e][a]];
-            *of = fmax(*of, frequency);
+            int32_t n = mesh->element[e][a];
+            fastest[n] = fmax(fastest[n], frequency);
+            firm[n] = firm[n] > 0 ? fmin(firm[n], own) : own;
         }
     }
     double body = lar_contact_law_for(time_step, stable_step).stiffness;
+    for (int32_t b = 0; b < s->body_count; b++) s->body[b].firm = INFINITY;
     for (int32_t n = 0; n < s->node_count; n++) {
+        double *softest = &s->body[s->node[n].body].firm;
+        *softest = fmin(*softest, firm[s->node[n].node]);
         double stable = stable_step * max / fastest[s->node[n].node];
         s->node[n].mass *= lar_contact_law_for(time_step, stable).stiffness / body;
     }
@@ -387,6 +397,29 @@ bool lar_contact_apart(const lar_contact_surface *surface, int32_t node, int32_t
     return low < end && surface->apart[low] == face;
 }
 
+/* ---- slices between two planes -------------------------------------------------------------- */
+
+/* What lies in a plane across which it is held (docs/decisions.md, 185). */
+static lar_status note_planes(const lar_model *model, lar_contact_surface *s, lar_error *error) {
+    unsigned *held = lar_calloc((size_t)model->mesh.node_count, sizeof *held);
+    if (!held) return lar_fail_memory(error, 4 * (size_t)model->mesh.node_count, "supports");
+    for (int i = 0; i < model->fix_count; i++)
+        for (int32_t n = 0; n < model->fix[i].nodes.count; n++)
+            held[model->fix[i].nodes.node[n]] |= model->fix[i].axes;
+    for (int32_t n = 0; n < s->node_count; n++) s->node[n].held = held[s->node[n].node];
+    for (int32_t f = 0; f < s->face_count; f++) {
+        const int32_t *corner = s->face[f].corner;
+        unsigned all = ~0U;
+        for (int a = 0; a < 4; a++) all &= s->node[corner[a]].held;
+        for (int axis = 0; axis < 3; axis++)
+            for (int a = 1; a < 4; a++)
+                if (s->rest[corner[a]][axis] != s->rest[corner[0]][axis]) all &= ~(1U << axis);
+        s->face[f].plane = all;
+    }
+    free(held);
+    return LAR_OK;
+}
+
 /* ---- all of it ------------------------------------------------------------------------------ */
 
 static bool asked_for(const lar_model *model) {
@@ -406,6 +439,7 @@ lar_status lar_contact_surface_create(const lar_model *model, const double *mass
     if (!status) status = add_passes(&d, error);
     if (!status) status = list_all(&d, mass, local, error);
     if (!status) status = lar_contact_surface_edges(surface, error);
+    if (!status) status = note_planes(model, surface, error);
     if (!status) status = list_apart(&d, error);
     if (!status) count_possible(surface);
     clear_workspace(&d);

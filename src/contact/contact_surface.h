@@ -33,6 +33,7 @@ typedef struct lar_contact_face {
     uint64_t active, mute; /* passes */
     double size;           /* its longer diagonal at rest [m] */
     bool fades;            /* a corner is on a sharp edge */
+    unsigned plane;        /* axes: its corners are in one plane across it, and held there */
 } lar_contact_face;
 
 typedef struct lar_contact_body {
@@ -41,6 +42,7 @@ typedef struct lar_contact_body {
     double clear;    /* to the nearest other body at rest; INFINITY: none is within a layer [m] */
     double standoff; /* the contact distance: how far apart it and others push each other already,
                         at most [m] */
+    double firm;     /* springs beside it are at least so stiff, where the step bears it [1/s^2] */
 } lar_contact_body;
 
 /* Nodes of the faces below: "contact nodes". */
@@ -49,6 +51,7 @@ typedef struct lar_contact_node {
     int32_t body;
     uint64_t passes; /* in which it is looked at against faces */
     double mass;     /* that a spring of the law counts it with, see lar_contact_surface_fit [kg] */
+    unsigned held;   /* axes that supports of the scene hold it along */
     double blunt;    /* 1, or less where it is on a sharp edge, down to 0: contact_edges.c */
 } lar_contact_node;
 

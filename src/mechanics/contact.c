@@ -20,6 +20,17 @@ lar_contact_law lar_contact_law_for(double time_step, double stable_step) {
     return (lar_contact_law){.stiffness = beta / (time_step * time_step), .lead = time_step};
 }
 
+double lar_contact_wanted(double confined) {
+    static const double ENOUGH = 2; /* K = 22 G at 0.8 of the stable step */
+    return ENOUGH / confined;
+}
+
+/* beta(s) / s^2 falls with s; STIFFEST holds where s is small. */
+double lar_contact_longest(double confined) {
+    double wanted = lar_contact_wanted(confined), square = (4.0 / 9) / (wanted + 4.0 / 9);
+    return sqrt(wanted * square > STIFFEST ? STIFFEST / wanted : square);
+}
+
 /* Of the 4 (1 - s^2) that elements leave, grasps take a sixth, and tools all the rest: beta
  * (1 + 2 lead). So much of it is the damper's that a hand does not feel the spring tremble. */
 lar_contact_law lar_contact_tool_law_for(double time_step, double stable_step) {

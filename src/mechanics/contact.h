@@ -33,6 +33,14 @@ lar_contact_law lar_contact_law_for(double time_step, double stable_step);
  * bodies need as well: where a tool is, no other body is. */
 lar_contact_law lar_contact_tool_law_for(double time_step, double stable_step);
 
+/* How stiff springs should be beside tissue, per mass and stable step of its own elements; they are
+ * in series with its layers. `confined`: lar_material_confined, by which the stable step knows
+ * tissue as stiffer than it is when it is pressed. */
+double lar_contact_wanted(double confined);
+
+/* The longest step, in stable steps of those elements, at which they are. */
+double lar_contact_longest(double confined);
+
 /* The force [N], at least 0, on a point that moves so much mass [kg]. */
 static inline double lar_contact_force(const lar_contact_law *law, double mass, double depth,
                                        double rate) {

@@ -31,6 +31,13 @@ double lar_material_bulk(const lar_material *material);
 double lar_material_instant_shear(const lar_material *material);
 double lar_material_instant_bulk(const lar_material *material);
 
+/* How much stiffer it is at once where it cannot give way to the sides, as in a pressure wave, than
+ * where it can: (K + 4/3 G) / E, 1 for nu = 0. */
+static inline double lar_material_confined(const lar_material *material) {
+    double shear = lar_material_instant_shear(material), bulk = lar_material_instant_bulk(material);
+    return (bulk + 4.0 / 3 * shear) * (3 * bulk + shear) / (9 * bulk * shear);
+}
+
 /* Makes a viscous material elastic: as it is at once, or in the end. */
 void lar_material_freeze(lar_material *material, bool at_once);
 

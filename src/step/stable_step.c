@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mechanics/contact.h"
 #include "mechanics/hex8_full.h"
 #include "mechanics/hex8_guard.h"
 #include "model/springs.h"
@@ -139,8 +140,31 @@ lar_status lar_stable_step(const lar_model *model, lar_element_kind kind, double
     return LAR_OK;
 }
 
+/* Of the pressure wave's speed. */
+static double wave_square(const lar_material *material) {
+    double shear = lar_material_instant_shear(material), bulk = lar_material_instant_bulk(material);
+    return (bulk + 4.0 / 3 * shear) / material->density;
+}
+
+/* Where bodies touch, springs of a longer step would be softer than their tissue: it would go
+ * through them. Elements are taken to be of one size. */
+static double share_for_contact(const lar_model *model) {
+    double share = 1, fastest = 0;
+    bool bodies = false;
+    for (int i = 0; i < model->contact_count; i++)
+        bodies = bodies || model->contact[i].kind != LAR_CONTACT_PLANE;
+    for (int i = 0; i < model->material_count; i++)
+        fastest = fmax(fastest, wave_square(&model->material[i]));
+    for (int i = 0; i < model->material_count && bodies; i++) {
+        const lar_material *material = &model->material[i];
+        double slower = sqrt(fastest / wave_square(material));
+        share = fmin(share, slower * lar_contact_longest(lar_material_confined(material)));
+    }
+    return share;
+}
+
 double lar_auto_step(const lar_model *model, double stable_step) {
-    double step = 0.8 * stable_step;
+    double step = fmin(0.8, share_for_contact(model)) * stable_step;
     if (model->duration > 0) step = fmin(step, model->duration / 200);
     for (int i = 0; model->by_material_time && i < model->material_count; i++)
         for (int k = 0; k < model->material[i].viscosity.terms; k++)

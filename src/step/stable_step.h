@@ -37,7 +37,9 @@ lar_status lar_stable_step(const lar_model *model, lar_element_kind kind, double
                            lar_gid *worst, lar_error *error);
 
 /* The step that `time_step: auto` takes: 0.8 of the stable step, which leaves room for elements
- * that are squeezed during the run, and at most 1/200 of a duration that the model states. */
+ * that are squeezed during the run; less where bodies touch whose volume gives way (K below 22 G),
+ * for springs that are as stiff as they are; and at most 1/200 of a duration that the model states.
+ */
 double lar_auto_step(const lar_model *model, double stable_step);
 
 /* What an undivided step bears of elements and springs together, (omega dt / 2)^2, what the

@@ -212,7 +212,8 @@ static void print_contact(const run_report *report, FILE *out) {
     if (part > MUCH)
         fprintf(out,
                 "%-17s%.2g of the shortest edge: forces are less than those of bodies that only "
-                "touch; --time-step %.1g lets in a quarter of it\n",
+                "touch; --time-step %.1g lets in a quarter of it, but where one body is much "
+                "stiffer: let these touch at the start\n",
                 "", part, 0.5 * lar_simulation_time_step(simulation));
 }
 
@@ -270,9 +271,10 @@ static void print_open_account(const run_report *report, FILE *out) {
 
 /* Where hourglass modes bear much, the mesh answers and not the tissue. */
 static void print_hourglass(const lar_energy *energy, FILE *out) {
-    static const double MUCH = 0.1;
+    static const double MUCH = 0.1, NOTHING = 1e-9;
     /* Where muscles have shortened, strain energy is below zero or near it: a part of nothing. */
     if (energy->strain < 0 || !(hourglass_share(energy) > MUCH)) return;
+    if (energy->hourglass < NOTHING * turnover_of(energy)) return;
     fprintf(out,
             "%-17s%.3g %% of strain and hourglass energy: the mesh is too coarse for how it is "
             "bent or crushed; give it two or more elements through the thickness, or twice as "
