@@ -407,7 +407,8 @@ typedef struct lar_tool_force {
 } lar_tool_force;
 
 /* Writes the demonstration organ into a folder, which is made when it is missing: uterus.vtu, and
- * its scenes uterus.yaml (pulled by a force) and uterus_live.yaml (to take hold of). */
+ * its scenes uterus.yaml (pulled by a force) and uterus_live.yaml (to take hold of). A scene that
+ * is there already and differs, as after an edit, is left as it is. */
 LAR_API lar_status lar_demo_write(const char *folder, lar_error *error);
 
 /* ---- meshing: from a scan to a model ------------------------------------------------------ */

@@ -291,9 +291,24 @@ static bool take_sequence(PyObject *source, const char *name, int columns, size_
     return ok;
 }
 
+/* numpy.ma: its buffer has what is masked, too. */
+bool python_unmasked(PyObject *source, const char *name) {
+    PyObject *mask = PyObject_GetAttrString(source, "mask");
+    PyObject *any = mask ? PyObject_CallMethod(mask, "any", NULL) : NULL;
+    const bool masked = any && PyObject_IsTrue(any) == 1;
+    Py_XDECREF(any);
+    Py_XDECREF(mask);
+    PyErr_Clear();
+    return !masked || python_refuse("%s: some of the array is masked, and nothing here may be left "
+                                    "open; fill it (array.filled(value)), or leave it out "
+                                    "(array.compressed())",
+                                    name);
+}
+
 /* Opens the view of a buffer of that shape, whatever its items. */
 static bool open_buffer(PyObject *source, const char *name, const char *kind, int columns,
                         python_rows *out) {
+    if (!python_unmasked(source, name)) return false;
     if (PyObject_GetBuffer(source, &out->view, PyBUF_RECORDS_RO)) return false;
     out->held = true;
     char got[160], shape[32];
@@ -339,39 +354,47 @@ bool python_doubles(PyObject *source, const char *name, int columns, python_rows
     return ok;
 }
 
-/* One integer of another kind. */
-static bool convert(const void *from, char type, Py_ssize_t item, int32_t *to) {
-    long long value;
-    bool is_signed = strchr("bhilq", type) != NULL;
-    if (item == 8) {
-        long long wide;
-        memcpy(&wide, from, 8);
-        value = !is_signed && wide < 0 ? LLONG_MAX : wide;
-    } else {
-        int32_t narrow;
-        memcpy(&narrow, from, 4);
-        value = is_signed ? narrow : (long long)(uint32_t)narrow;
-    }
+/* One integer of another kind: `item` bytes, the first the highest where it is turned. */
+static bool convert(const unsigned char *from, char type, Py_ssize_t item, bool turned,
+                    int32_t *to) {
+    unsigned long long bits = 0;
+    for (Py_ssize_t i = 0; i < item; i++) bits = bits << 8 | from[turned ? i : item - 1 - i];
+    const bool is_signed = strchr("bhilq", type) != NULL;
+    const int unused = 64 - 8 * (int)item;
+    const long long value = is_signed                    ? (long long)(bits << unused) >> unused
+                            : bits > (uint64_t)LLONG_MAX ? LLONG_MAX
+                                                         : (long long)bits;
     if (value < INT32_MIN || value > INT32_MAX) return false;
     *to = (int32_t)value;
     return true;
 }
 
+/* As type_of, also of the other order of bytes: *turned. */
+static char integer_type_of(const Py_buffer *view, bool *turned) {
+    const char *format = view->format ? view->format : "B";
+    *turned = *format == '>' || *format == '!';
+    const char type = *turned && !format[2] ? format[1] : type_of(view);
+    const Py_ssize_t item = view->itemsize;
+    const bool known = item == 1 || item == 2 || item == 4 || item == 8;
+    return type && known && strchr("bBhHiIlLqQ", type) ? type : 0;
+}
+
 static bool narrow(const char *name, int columns, python_rows *out) {
-    char type = type_of(&out->view), got[160];
+    bool turned;
+    char type = integer_type_of(&out->view, &turned), got[160];
     Py_ssize_t item = out->view.itemsize, width = columns > 0 ? columns : 1;
-    if (!type || !strchr("ilqILQ", type) || (item != 4 && item != 8)) {
+    if (!type) {
         describe(&out->view, got, sizeof got);
         return python_refuse("%s: expected int32 (format 'i'), got %s; "
                              "array.astype(numpy.int32) converts",
                              name, got);
     }
-    if (item == 4 && strchr("il", type)) return true;
+    if (item == 4 && !turned && strchr("il", type)) return true;
     Py_ssize_t count = out->rows * width;
     int32_t *own = out->own = PyMem_Calloc((size_t)count + 1, sizeof *own);
     if (!own) return PyErr_NoMemory() != NULL;
     for (Py_ssize_t i = 0; i < count; i++)
-        if (!convert((const char *)out->data + i * item, type, item, &own[i]))
+        if (!convert((const unsigned char *)out->data + i * item, type, item, turned, &own[i]))
             return python_refuse("%s: row %zd has a number beyond 32 bits", name, i / width);
     out->data = own;
     return true;
@@ -425,6 +448,7 @@ static bool block_of_layers(PyObject *source, const char *name, const Py_ssize_t
 
 static bool block_of_buffer(PyObject *source, const char *name, const Py_ssize_t shape[3],
                             python_rows *out) {
+    if (!python_unmasked(source, name)) return false;
     if (PyObject_GetBuffer(source, &out->view, PyBUF_RECORDS_RO)) return false;
     out->held = true;
     out->data = out->view.buf;

@@ -192,6 +192,22 @@ static bool take_surfaces(request *r) {
 
 /* ---- label images --------------------------------------------------------------------------- */
 
+static bool check_affine_shape(PyObject *affine) {
+    Py_buffer view;
+    if (!PyObject_CheckBuffer(affine)) return true;
+    if (PyObject_GetBuffer(affine, &view, PyBUF_RECORDS_RO)) return false;
+    const int dimensions = view.ndim;
+    const Py_ssize_t rows = dimensions == 2 ? view.shape[0] : 0;
+    const Py_ssize_t columns = dimensions == 2 ? view.shape[1] : 0;
+    PyBuffer_Release(&view);
+    if ((rows == 3 || rows == 4) && columns == 4) return true;
+    if (dimensions != 2)
+        return python_refuse("affine: expected shape [4, 4] or [3, 4], got %d dimensions",
+                             dimensions);
+    return python_refuse("affine: expected shape [4, 4] or [3, 4], got [%zd, %zd]%s", rows, columns,
+                         columns == 3 ? "; the fourth column is where voxel (0, 0, 0) is" : "");
+}
+
 /* Three rows, or four of which the last is 0 0 0 1; `scale`: metres per unit. */
 static bool take_affine(request *r) {
     if (r->affine == Py_None)
@@ -199,7 +215,8 @@ static bool take_affine(request *r) {
                              "k, 1) to the world; for a nibabel image image.affine with "
                              "scale=0.001");
     python_rows rows;
-    if (!python_doubles(r->affine, "affine", 4, &rows)) return false;
+    if (!check_affine_shape(r->affine) || !python_doubles(r->affine, "affine", 4, &rows))
+        return false;
     const double(*row)[4] = rows.data;
     bool ok = rows.rows == 3 || rows.rows == 4 ||
               python_refuse("affine: expected shape [4, 4] or [3, 4], got [%zd, 4]", rows.rows);
@@ -320,6 +337,7 @@ static bool take_names(request *r) {
 static bool take_image(request *r) {
     Py_buffer view;
     if (!take_affine(r) || !take_names(r)) return false;
+    if (!python_unmasked(r->source, "source")) return false;
     if (PyObject_GetBuffer(r->source, &view, PyBUF_RECORDS_RO)) return false;
     bool ok = take_buffer(r, &view);
     PyBuffer_Release(&view);

@@ -81,8 +81,8 @@ static PyObject *checkpoint_info(PyObject *module, PyObject *source) {
 static PyMethodDef functions[] = {
     {"write_demo", demo, METH_O,
      "write_demo(folder)\n--\n\nWrites the demonstration organ into a folder: uterus.vtu and its "
-     "scenes uterus.yaml (pulled by a force) and uterus_live.yaml (to take hold of). Returns the "
-     "folder."},
+     "scenes uterus.yaml (pulled by a force) and uterus_live.yaml (to take hold of). A scene "
+     "that is there already and differs, as after an edit, is left as it is. Returns the folder."},
     {"mesh", (PyCFunction)(void (*)(void))python_mesh, METH_VARARGS | METH_KEYWORDS,
      "mesh(source, triangles=None, *, affine=None, label=None, names=None, elements=0, size=0.0,\n"
      "     scale=0.0, fuse=False, principal=False, voxel=False, fix=None, title=None,\n"

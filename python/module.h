@@ -235,6 +235,8 @@ bool python_doubles(PyObject *source, const char *name, int columns, python_rows
 /* Likewise int32; other integers are converted. */
 bool python_integers(PyObject *source, const char *name, int columns, python_rows *out);
 void python_rows_free(python_rows *rows);
+/* Refuses an array of numpy.ma of which something is masked. */
+bool python_unmasked(PyObject *source, const char *name);
 /* Likewise float64 [members][rows][columns], of exactly this shape. */
 bool python_block(PyObject *source, const char *name, const Py_ssize_t shape[3], python_rows *out);
 

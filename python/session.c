@@ -372,7 +372,7 @@ static const char session_doc[] =
     "pace        simulated seconds per second of the clock; 0: as fast as it goes\n"
     "tool_speed  tools follow no faster than this [m/s]; 0: 1 m/s\n"
     "hand_force  hands pull no harder than this [N]; 0: 1 N\n"
-    "record      path of a recording to write\n"
+    "record      path of a recording to write, in place of one that is there\n"
     "priority    1 to 99: before all ordinary threads of the machine, where the system allows "
     "it\n\n"
     "All calls may come from any thread; none makes the engine wait. docs/session.md.";

@@ -191,6 +191,8 @@ PyMethodDef python_session_state_methods[] = {
      "load($self, source)\n--\n\nTakes up a checkpoint at a path, or a Saved."},
     {"record", record, METH_O,
      "record($self, path)\n--\n\nBegins a recording at a path, after the end of the one under way; "
+     "one "
+     "that is there is replaced; "
      "None ends that."},
     {"replay", replay, METH_O,
      "replay($self, path)\n--\n\nPlays a recording, at the session's pace; None ends that. Returns "

@@ -20,11 +20,15 @@ import threading
 import warnings
 
 from ._lariat import (
-    ArgumentError, Error, FileError, PeerError, UnstableError, UnsupportedError, __version__)
+    ArgumentError, Error, FileError, FormatError, ModelError, OutOfMemoryError, PeerError,
+    UnstableError, UnsupportedError, __version__)
 
 from ._scene_text import check_text
 
 _FAILED, _USAGE, _UNSTABLE, _INTERRUPTED = 1, 2, 3, 130
+_ERRORS = {kind.status: kind for kind in (
+    ArgumentError, FileError, FormatError, ModelError, UnsupportedError, OutOfMemoryError,
+    UnstableError, PeerError)}
 _versions = {}  # (path, time, inode): what it says it is
 
 
@@ -141,17 +145,19 @@ class _Child:
 
 
 def _follow(child, progress):
-    """Until it has nothing more to say: its messages, and whether somebody wanted it to stop. A
-    second Ctrl-C does not wait for it."""
-    messages, stopped = [], None
+    """Until it has nothing more to say: its messages, whether somebody wanted it to stop, and the
+    kind of its failure where it tells. A second Ctrl-C does not wait for it."""
+    messages, stopped, failed = [], None, None
     while True:
         try:
             line = child.lines.get()
             if line is None:
                 child.process.wait()
-                return messages, stopped
+                return messages, stopped, failed
             if not line.startswith("{"):
                 messages.append(line)
+            elif line.startswith('{"failed"'):
+                failed = json.loads(line)["failed"]
             elif progress and not stopped and _is_no(progress(json.loads(line))):
                 stopped = "progress"
                 child.stop()
@@ -170,10 +176,11 @@ def _in_words_of_python(text):
                   lambda found: found[1].replace("-", "_"), text)
 
 
-def _refuse(status, text):
+def _refuse(status, text, failed):
     if status < 0:
         raise PeerError(f"the command was ended by signal {-status}" + (f": {text}" if text else ""))
-    raise {_USAGE: ArgumentError, _UNSTABLE: UnstableError}.get(status, Error)(
+    kind = {_USAGE: ArgumentError, _UNSTABLE: UnstableError}.get(status, Error)
+    raise _ERRORS.get(failed, kind)(
         text or f"the command ended with status {status} and no message")
 
 
@@ -198,7 +205,7 @@ def ask(command, arguments, *, folder, progress=None, keeps=False, level=3):
     except OSError as error:
         raise FileError(f"{path} cannot be run: {error.strerror}") from None
     try:
-        messages, stopped = _follow(child, progress)
+        messages, stopped, failed = _follow(child, progress)
     finally:
         status = child.end()
     prefix = f"lariat {command}: "
@@ -211,7 +218,7 @@ def ask(command, arguments, *, folder, progress=None, keeps=False, level=3):
             raise KeyboardInterrupt
         raise Error(rest or "stopped before there was an answer")
     if status != 0 and not (stopped and status == _INTERRUPTED):
-        _refuse(status, rest)
+        _refuse(status, rest, failed)
     answer = json.loads(child.answer.decode("utf-8", "replace"))
     for note in notes:
         if note not in answer.get("notices", ()):

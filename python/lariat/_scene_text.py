@@ -19,9 +19,19 @@ def check_text(text, name):
         ) from None
 
 
-def _tidy(value, where):
+def _check_name(text, where):
+    """Files may have such names, which are shown with ? then; two that differ there are one."""
+    if re.search("[\0-\x1f\x7f-\x9f]", text):
+        raise ArgumentError(f"{where}: {text!r} has a tab, a new line or another control character; "
+                            "leave it out of the name")
+
+
+def _tidy(value, where, above=()):
     """The value with numpy's scalars, arrays and paths as json knows them. What a file could not
-    say is refused, with the key at which it stands."""
+    say is refused, with the key at which it stands. `above`: ids of what it is in."""
+    if id(value) in above:
+        raise ArgumentError(f"{where}: it contains itself, which no scene can; put a copy of what is "
+                            "meant there, without itself")
     if value is None:
         raise ArgumentError(f"{where}: None is no value; leave the key out")
     if isinstance(value, float):
@@ -30,21 +40,26 @@ def _tidy(value, where):
         return value
     if isinstance(value, str):
         check_text(value, where)
+        if where.endswith(".name"):
+            _check_name(value, where)
         return value
     if isinstance(value, (bool, int)):
         return value
+    if isinstance(value, (dict, list, tuple)):
+        above = (*above, id(value))
     if isinstance(value, dict):
         for key in value:
             if isinstance(key, str):
                 check_text(key, f"{where}: the key {key!r}")
-        return {key: _tidy(one, f"{where}.{key}") for key, one in value.items()}
+        return {key: _tidy(one, f"{where}.{key}", above) for key, one in value.items()}
     if isinstance(value, (list, tuple)):
-        return [_tidy(one, f"{where}[{i}]") for i, one in enumerate(value)]
+        return [_tidy(one, f"{where}[{i}]", above) for i, one in enumerate(value)]
     if hasattr(value, "tolist"):
         return _tidy(value.tolist(), where)
     if isinstance(value, os.PathLike):
         return os.fspath(value)
-    raise TypeError(f"{where}: a value of {type(value)!r} is nothing that scenes have")
+    remedy = "; write a list" if isinstance(value, (set, frozenset)) else ""
+    raise TypeError(f"{where}: a value of {type(value)!r} is nothing that scenes have{remedy}")
 
 
 class DictText(str):

@@ -359,7 +359,7 @@ def profiles(film, view, *, out=None):
     from ._scenes import Folder, path_of
 
     with Folder() as folder:
-        options = ["--profile", path_of(film, "film")]
+        options = ["--progress", "--profile", path_of(film, "film")]
         if out is not None:
             options += ["--out", path_of(out, "out")]
         if isinstance(view, dict):

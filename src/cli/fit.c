@@ -39,7 +39,12 @@ static void write_progress(void *context, const lar_inverse_progress *p) {
 
 /* ---- the command ----------------------------------------------------------------------------- */
 
-static int complain(const lar_error *error) {
+/* `lines`: also the kind of failure in a word, for whoever reads the lines of progress. */
+static int complain(const lar_error *error, bool lines) {
+    static const char *const word[] = {
+        "", "argument", "io", "format", "model", "unsupported", "memory", "unstable", "peer"};
+    if (lines && error->status > LAR_OK && error->status <= LAR_ERROR_PEER)
+        fprintf(stderr, "{\"failed\": \"%s\"}\n", word[error->status]);
     return cli_complain(&cli_fit, error->status == LAR_ERROR_UNSTABLE ? CLI_UNSTABLE : CLI_FAILED,
                         "%s", error->message);
 }
@@ -61,9 +66,9 @@ static int fit(const lar_inverse_problem *problem, const char *folder, bool json
             cli_complain(&cli_fit, CLI_INTERRUPTED,
                          "interrupted before the first guess was computed: there is no answer");
     else if (failed)
-        status = complain(&error);
+        status = complain(&error, lines);
     if (!status && folder && lar_inverse_write_folder(folder, problem, &result, &full))
-        status = complain(&full);
+        status = complain(&full, lines);
     /* What took long is told also where the disk is full. */
     if (!failed && !status && json) lar_inverse_json(problem, &result, stdout);
     if (!failed && (status || !json)) fit_report_table(problem, &result, json ? stderr : stdout);
@@ -85,7 +90,7 @@ static lar_status write_profiles(const lar_profiles *p, const char *folder, lar_
     return status ? status : lar_profiles_draw(p, path, error);
 }
 
-static int measure(const char *film, const char *view, const char *folder, bool json) {
+static int measure(const char *film, const char *view, const char *folder, bool json, bool lines) {
     lar_profiles profiles = {0};
     lar_error error = {0};
     int status = CLI_DONE;
@@ -93,9 +98,10 @@ static int measure(const char *film, const char *view, const char *folder, bool 
     lar_status failed = lar_profiles_read(film, view, &cli_stop_asked, &profiles, &error);
     if (!failed && !json) profile_report_table(&profiles, stdout);
     if (!failed && folder) failed = write_profiles(&profiles, folder, &error);
-    if (failed)
-        status = cli_complain(&cli_fit, cli_stop_asked ? CLI_INTERRUPTED : CLI_FAILED, "%s",
-                              error.message);
+    if (failed && cli_stop_asked)
+        status = cli_complain(&cli_fit, CLI_INTERRUPTED, "%s", error.message);
+    else if (failed)
+        status = complain(&error, lines);
     else if (json)
         profile_report_json(&profiles, stdout);
     lar_profiles_clear(&profiles);
@@ -117,21 +123,21 @@ static int fit_main(int argc, char **argv) {
                  &folder),
         CLI_FLAG("--progress",
                  "a line of JSON on standard error after every simulation:\ndoing, residual, runs, "
-                 "remaining (s)",
+                 "remaining (s); after a failure one with its kind",
                  &lines),
         CLI_FLAG("--json", "the answer as one JSON object on standard output", &json), CLI_END};
     int status = cli_parse(&cli_fit, options, argc, argv, &path, 1);
     if (status >= 0) return status;
-    if (film) return measure(film, path, folder, json);
+    if (film) return measure(film, path, folder, json, lines);
     lar_inverse_problem problem = {0};
     lar_error error = {0};
     if (!lar_inverse_available())
-        return cli_complain(&cli_fit, CLI_FAILED,
-                            "this program was built without cminpack, which fits need; apt-get "
-                            "install libcminpack-dev, then make");
-    if (lar_inverse_problem_read(path, &problem, &error) ||
+        lar_fail(&error, LAR_ERROR_UNSUPPORTED,
+                 "this program was built without cminpack, which fits need; apt-get install "
+                 "libcminpack-dev, then make");
+    if (error.status || lar_inverse_problem_read(path, &problem, &error) ||
         (folder && lar_folder_make(folder, &error)))
-        status = complain(&error);
+        status = complain(&error, lines);
     else
         status = fit(&problem, folder, json, lines);
     lar_inverse_problem_clear(&problem);

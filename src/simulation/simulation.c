@@ -1,6 +1,7 @@
 #include "simulation/simulation.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -18,17 +19,39 @@ lar_options lar_options_default(void) {
     return (lar_options){.element = LAR_ELEMENT_HEX8, .isa = LAR_ISA_AUTO, .listener = -1};
 }
 
+/* Why a step is so long that no damping would do: a material that is no body's, whose units are
+ * wrong. The limits are those of the command's notes. */
+static void explain_long_step(const lar_model *model, char *text, size_t size) {
+    static const double HEAVY = 3e4, SOFT = 10; /* [kg/m^3], [Pa] */
+    *text = '\0';
+    for (int i = 0; i < model->material_count && !*text; i++) {
+        const lar_material *m = &model->material[i];
+        const double shear = lar_material_shear(m);
+        if (m->density > HEAVY)
+            snprintf(text, size,
+                     ". It is so long for material %d has a density of %.4g; densities are in "
+                     "kg/m^3, water has 1000",
+                     i + 1, m->density);
+        else if (shear < SOFT)
+            snprintf(text, size,
+                     ". It is so long for material %d has a shear modulus of %.4g; moduli are in "
+                     "pascals, soft organs have some thousand",
+                     i + 1, shear);
+    }
+}
+
 /* Within one step damping can stop a node, but not turn it around: v' = keep v needs keep > 0. */
 static lar_status check_damping(const lar_domain *domain, lar_error *error) {
     const lar_model *model = domain->model;
     if (domain->leapfrog.keep > 0) return LAR_OK;
-    char line[LAR_LINE_TEXT];
-    return lar_fail(
-        error, LAR_ERROR_MODEL,
-        "%s%s: damping %g 1/s stops a node within less than one time step of %.3g s; use "
-        "a damping below %.3g 1/s or a time_step below %.3g s",
-        lar_model_source(model), lar_line_text(model->damping_line, line), model->damping,
-        domain->time_step, 2 / domain->time_step, 2 / model->damping);
+    char line[LAR_LINE_TEXT], why[200], remedy[100];
+    snprintf(remedy, sizeof remedy, "; use a damping below %.3g 1/s or a time_step below %.3g s",
+             2 / domain->time_step, 2 / model->damping);
+    explain_long_step(model, why, sizeof why);
+    return lar_fail(error, LAR_ERROR_MODEL,
+                    "%s%s: damping %g 1/s stops a node within less than one time step of %.3g s%s",
+                    lar_model_source(model), lar_line_text(model->damping_line, line),
+                    model->damping, domain->time_step, *why ? why : remedy);
 }
 
 static lar_status check_options(const lar_options *options, lar_error *error) {

@@ -14,7 +14,7 @@ static void test_root(void **state) {
          "sets: [ { name: base, nodes: { box: "},
         {"hello\n", "1:1", "this is no scene"},
         {"mesh: a.vtu\n", "1:1", "needs the key \"lariat\"; add it, for example lariat: 1"},
-        {"lariat: 2\n", "1:9", "expected 1, the version of the scene format"},
+        {"lariat: 2\n", "1:9", "write lariat: 1, or take a newer program"},
         {"lariat: '1'\n", "1:9", "found \"1\""},
         {"lariat: 1\ntitle: x\n", "1:1", "needs the key \"mesh\""},
         {"lariat: 1\nmesh: brick.vtu\n", "1:1", "needs the key \"materials\""},

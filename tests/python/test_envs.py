@@ -218,6 +218,14 @@ class Runs(unittest.TestCase):
 
 
 class Misuse(unittest.TestCase):
+    def test_closed_ones_say_what_to_do(self):
+        for env in (envs.Lift(), envs.VectorEnv(envs.Lift, 2)):
+            env.reset(seed=0)
+            env.close()
+            for call, ask in (("reset", env.reset), ("step", lambda e=env: e.step([0] * 4))):
+                with self.assertRaisesRegex(lariat.StateError, f"^{call}: .*closed; make a new one"):
+                    ask()
+
     def test_actions_seeds_options(self):
         env = envs.Lift()
         env.reset(seed=0)
@@ -240,6 +248,8 @@ class Misuse(unittest.TestCase):
                         {"stiffness": 100}):
             with self.assertRaises(ValueError, msg=options):
                 env.reset(options=options)
+        with self.assertRaisesRegex(TypeError, "^options: expected a dict.*list"):
+            env.reset(options=[1])
         env.reset(seed=numpy.int64(4))
         for one in (env, envs.VectorEnv(type(env), 2)):  # the run goes on where it was
             one.reset(seed=1)

@@ -136,6 +136,11 @@ class Images(unittest.TestCase):
         labels = ball_labels()
         self.refused("affine: an array of labels needs it", labels)
         self.refused(r"expected shape \[4, 4\]", labels, affine=AFFINE[:2])
+        if numpy is not None:
+            self.refused(r"\[4, 4\] or \[3, 4\], got \[3, 3\]; the fourth", labels,
+                         affine=numpy.eye(3))
+            self.refused("source: .*masked", numpy.ma.masked_less(numpy.asarray(labels), 1),
+                         affine=AFFINE)
         self.refused("must be 0 0 0 1", labels, affine=AFFINE[:3] + [[0, 0, 1, 1]])
         self.refused("not finite", labels, affine=[[math.nan] * 4] * 3)
         self.refused("voxels are 0 m long", labels, affine=[[0, 0, 0, 0]] * 3)

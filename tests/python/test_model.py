@@ -104,6 +104,28 @@ class Arrays(unittest.TestCase):
         model = lariat.Model.from_arrays(view, hexahedra, SCENE, sets=sets)
         self.assertEqual(model.positions.tolist(), nodes)
 
+    def test_names_with_control_characters(self):
+        nodes, hexahedra, _ = block_arrays()
+        for name in ("tab\tname", "tab\nname", "\x7f", "\x85"):
+            with self.assertRaisesRegex(lariat.ArgumentError, "control character.*leave it out"):
+                lariat.Model.from_arrays(nodes, hexahedra, sets={"good": [1], name: [1]})
+            scene = {**SCENE, "materials": [{**SCENE["materials"][0], "name": name}]}
+            with self.assertRaisesRegex(lariat.ArgumentError,
+                                        r"scene\.materials\[0\]\.name.*control character"):
+                lariat.Model.from_arrays(nodes, hexahedra, scene)
+
+    def test_dicts_that_no_scene_can_be(self):
+        nodes, hexahedra, _ = block_arrays()
+        itself = {**SCENE}
+        itself["tools"] = [itself]
+        with self.assertRaisesRegex(lariat.ArgumentError, r"scene\.tools\[0\]: it contains itself"):
+            lariat.Model.from_arrays(nodes, hexahedra, itself)
+        with self.assertRaisesRegex(TypeError, r"scene\.fix: .*write a list"):
+            lariat.Model.from_arrays(nodes, hexahedra, {**SCENE, "fix": {1, 2}})
+        corner = [0, 0, 0]  # twice, and not in itself
+        lariat.Model.from_arrays(nodes, hexahedra, {**SCENE, "fix": [
+            {"nodes": {"box": [corner, corner]}, "axes": "xyz"}]}, sets={"floor": [1]})
+
     def test_pickles(self):
         for model in (block(), lariat.Model(os.path.join(demo(), "uterus.yaml"))):
             again = pickle.loads(pickle.dumps(model))
@@ -182,7 +204,7 @@ class Arrays(unittest.TestCase):
         self.refuses(lariat.ArgumentError, r"^scene\.title: None", scene={**SCENE, "title": None})
         endless = {**SCENE}
         endless["sets"] = [endless]
-        self.refuses(lariat.ArgumentError, "^scene: .*recursion", scene=endless)
+        self.refuses(lariat.ArgumentError, r"^scene\.sets\[0\]: it contains itself", scene=endless)
 
     def test_what_is_wrong_in_a_dict_is_named_by_its_keys(self):
         material, tool = SCENE["materials"][0], SCENE["tools"][0]
@@ -235,6 +257,23 @@ class Arrays(unittest.TestCase):
         with self.assertRaisesRegex(lariat.ModelError, "^model:2: time step 1 s"):
             lariat.Simulation(lariat.Model.from_arrays(nodes, hexahedra, text, sets=sets))
 
+    def test_units_and_ratios_that_no_tissue_has(self):
+        def tissue(density=1000, modulus=3e3, ratio=0.49):
+            return [{"cells": "all", "law": "neo-hookean", "density": density,
+                     "youngs_modulus": modulus, "poisson_ratio": ratio}]
+
+        for words, material in (("density of 1e\\+30.*water has 1000", tissue(density=1e30)),
+                                ("shear modulus of .*pascals", tissue(modulus=1e-30))):
+            with self.assertRaisesRegex(lariat.ModelError, r"^scene\.damping: .*" + words):
+                lariat.Simulation(block(damping=2.0, materials=material))
+        self.assertEqual(block(materials=tissue(ratio=0.4999)).notices, [])
+        notice, = block(materials=tissue(ratio=0.49999)).notices
+        self.assertRegex(notice, r"^scene\.materials\[0\]\.poisson_ratio: 0\.49999 makes the time step "
+                         r"10\.0 times shorter .*0\.49 to 0\.499")
+        steps = [lariat.Simulation(block(materials=tissue(ratio=r))).time_step
+                 for r in (0.499, 0.49999)]
+        self.assertAlmostEqual(steps[0] / steps[1], 10, delta=0.1)
+
     def test_notices_about_a_dict_name_its_keys(self):
         probe = {"name": "p", "nodes": "top", "sum": "reaction"}
         notices = block(output={"probes": [probe]}).notices
@@ -267,7 +306,9 @@ class Numpy(unittest.TestCase):
     def test_arrays_in_and_out_without_a_copy(self):
         nodes, hexahedra, sets = block_arrays()
         sets = {name: numpy.array(index) for name, index in sets.items()}
-        for kind in (numpy.int32, numpy.int64, numpy.uint32):
+        # Of one or two bytes below; this block has more nodes than a byte counts.
+        kinds = "<i4 >i4 <u4 >u4 <i8 >i8 <u8 >u8 <i2 >i2 <u2 >u2".split()
+        for kind in kinds:
             model = lariat.Model.from_arrays(numpy.array(nodes), numpy.array(hexahedra, kind),
                                              {**SCENE, "gravity": numpy.array([0, 0, -9.81])},
                                              sets=sets)
@@ -277,6 +318,26 @@ class Numpy(unittest.TestCase):
             self.assertTrue(numpy.array_equal(positions, nodes))
             self.assertEqual(positions.__array_interface__["data"],
                              numpy.asarray(model.positions).__array_interface__["data"])
+
+    def test_integers_of_one_byte(self):
+        nodes, hexahedra, _ = block_arrays()
+        for kind in "bB":
+            lariat.Model.from_arrays(nodes, hexahedra, SCENE, tags=numpy.ones(len(hexahedra), kind),
+                                     sets={"floor": numpy.arange(3, dtype=kind)})
+            model = lariat.Model.from_arrays(
+                nodes, hexahedra, sets={"a": numpy.array([127, 0], kind)})
+            self.assertEqual(model.sets[0]["count"], 2)
+        with self.assertRaisesRegex(lariat.Error, "-1"):
+            lariat.Model.from_arrays(nodes, hexahedra, sets={"a": numpy.array([-1], ">i2")})
+
+    def test_what_is_masked_is_refused(self):
+        nodes, hexahedra, _ = block_arrays()
+        open_mask = numpy.ma.masked_array(nodes)
+        self.assertEqual(lariat.Model.from_arrays(open_mask, hexahedra).node_count, len(nodes))
+        for taken in ((numpy.ma.masked_greater(nodes, 0.03), hexahedra),
+                      (nodes, numpy.ma.masked_greater(numpy.array(hexahedra), 9))):
+            with self.assertRaisesRegex(lariat.ArgumentError, "masked.*filled"):
+                lariat.Model.from_arrays(*taken)
 
     def test_the_wrong_kinds(self):
         nodes, hexahedra, _ = block_arrays()
@@ -291,7 +352,7 @@ class Numpy(unittest.TestCase):
         refused("contiguous", numpy.asfortranarray(right))
         refused(r"\[n, 3\]", right[:, :2].copy())
         refused("int32", hexahedra=wide.astype(float))
-        refused("int32", hexahedra=wide.astype(numpy.int16))
+        refused("int32", hexahedra=wide.astype(bool))
         refused("32 bits", hexahedra=wide + 2**40)
         refused("32 bits", hexahedra=wide.astype(numpy.uint64) - 2**20)
         refused("int32", hexahedra=wide.astype(bool))

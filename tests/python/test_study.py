@@ -199,6 +199,16 @@ class Quick(unittest.TestCase):
         self.assertEqual(said[0].filename, __file__)
 
 
+    def test_profiles_fail_as_all_else(self):
+        with tempfile.TemporaryDirectory(prefix="lariat-test-") as folder:
+            with self.assertRaises(lariat.FormatError) as raised:
+                lariat.profiles(folder, {"no key": 1})
+            self.assertEqual(raised.exception.status, "format")
+            with self.assertRaises(lariat.FileError) as raised:
+                lariat.profiles(folder, os.path.join(folder, "none.yaml"))
+            self.assertIsInstance(raised.exception, OSError)
+
+
 def can_fit():
     try:
         lariat.fit(experiment())
@@ -266,6 +276,24 @@ class Fits(unittest.TestCase):
                                           "force": numpy.array(FORCE)}, noise=numpy.float64(1e-3)))
         self.assertTrue(fit.converged)
 
+    def test_failures_have_the_kinds_of_all_others(self):
+        def fails(kind, sentence, *args, **keywords):
+            with self.assertRaisesRegex(kind, sentence) as raised:
+                lariat.fit(*args, **keywords)
+            self.assertEqual(raised.exception.status, kind.status)
+
+        no_such = experiment()
+        no_such["parameters"][0]["material"] = "liver"
+        unknown = {**experiment(), "parametres": []}
+        falls = experiment(data={"displacement": PULLED, "force": [-f for f in FORCE]})
+        missing = experiment(data="missing.csv")
+        fails(lariat.ModelError, "liver", no_such)
+        fails(lariat.FormatError, "parametres", unknown)
+        fails(lariat.ModelError, "opposite sign", falls)
+        fails(lariat.FileError, "missing.csv", missing)
+        with tempfile.NamedTemporaryFile() as file:
+            fails(lariat.FileError, "as a folder", experiment(), out=file.name)
+
     def test_unstable_guess(self):
         with self.assertRaises(lariat.Error):
             lariat.fit(experiment(bar(time_step=1.0e-2)))
@@ -273,6 +301,8 @@ class Fits(unittest.TestCase):
     def test_callbacks_end_it(self):
         fit = lariat.fit(experiment(), progress=lambda now: False)
         self.assertTrue(fit.interrupted and not fit.converged)
+        self.assertEqual([note.split()[0] for note in fit.notes], ["interrupted"])
+        self.assertFalse(fit.experiments[0].systematic)
         self.assertNotEqual(fit.parameters[0].low, fit.parameters[0].low)  # nan
         with self.assertRaisesRegex(ZeroDivisionError, "division"):
             lariat.fit(experiment(), progress=lambda now: 1 / 0)

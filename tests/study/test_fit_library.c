@@ -268,6 +268,9 @@ static void a_callback_stops_with_the_best_so_far(void **state) {
     run_one(fit, &options);
     lar_fit_info info = inspected(fit);
     assert_true(info.done && info.interrupted && isnan(info.deviation));
+    /* Of the first guess nothing is to be concluded. */
+    assert_int_equal(info.notes, 1);
+    assert_non_null(strstr(lar_fit_note(fit, 0), "interrupted"));
     assert_int_equal(h.calls, 2);
     lar_fit_parameter_info p = parameter(fit, 0);
     assert_true(isnan(p.low) && !p.told && p.value > 100);

@@ -114,6 +114,8 @@ class Core:
 
     def reset(self, which, seeds=None, options=None):
         """Begins runs anew: array of their numbers, and a seed or None for each."""
+        if options is not None and not isinstance(options, dict):
+            raise TypeError(f"options: expected a dict, as {{\"stiffness\": 2}}, got {type(options)!r}")
         options = dict(options or {})
         stiffness = options.pop("stiffness", None)
         goal = options.pop("goal", None)
@@ -241,7 +243,7 @@ class Env(Base):
         """Begins a run; returns observation and info. seed: an int; None goes on with the random
         numbers. options: dict, `stiffness` (how many times as stiff all materials are, 0.1 to 4)
         and `goal` (three numbers, m)."""
-        self._open()
+        self._open("reset")
         core = self._core
         if self._np_random is not None:
             core.random[0] = self._np_random
@@ -254,7 +256,7 @@ class Env(Base):
 
     def step(self, action):
         """One control step; returns observation, reward, terminated, truncated, info."""
-        self._open()
+        self._open("step")
         core = self._core
         if core.done[0]:
             raise lariat.StateError("step: the run is over, or has not begun; call reset")
@@ -266,20 +268,20 @@ class Env(Base):
         return (core.observations[0].copy(), float(rewards[0]), bool(terminated[0]),
                 bool(truncated[0]), info)
 
-    def _open(self):
+    def _open(self, call):
         if self._core is None:
-            raise lariat.StateError("the environment is closed")
+            raise lariat.StateError(f"{call}: the environment is closed; make a new one")
 
     @property
     def simulation(self):
         """The Simulation, to look at."""
-        self._open()
+        self._open("simulation")
         return self._core.batch[0]
 
     @property
     def steps(self):
         """Control steps of the run, an int."""
-        self._open()
+        self._open("steps")
         return int(self._core.steps[0])
 
     def hash(self):
@@ -350,14 +352,14 @@ class VectorEnv(VectorBase):
             return [None if one is None else check_seed(one) for one in seed]
         return [check_seed(seed) + i for i in range(self.num_envs)]
 
-    def _open(self):
+    def _open(self, call):
         if self._core is None:
-            raise lariat.StateError("the environment is closed")
+            raise lariat.StateError(f"{call}: the environment is closed; make a new one")
 
     def reset(self, *, seed=None, options=None):
         """Begins all runs; returns observations [n, ...] and infos. seed: an int, run i gets
         seed + i; or one for each. options as those of Env."""
-        self._open()
+        self._open("reset")
         self._core.reset(self._all, self._seeds(seed), options)
         self._begun = True
         self._core.observe()
@@ -368,7 +370,7 @@ class VectorEnv(VectorBase):
         """One control step of all runs; returns observations, rewards, terminations, truncations,
         infos, arrays [n, ...]. infos["success"]: [n]; infos["unstable"], where there are any: why,
         [n], None for those that are sound (infos["_unstable"] says which)."""
-        self._open()
+        self._open("step")
         if not self._begun:
             raise lariat.StateError("step: no run has begun; call reset")
         core, n = self._core, self.num_envs
@@ -394,7 +396,7 @@ class VectorEnv(VectorBase):
     @property
     def batch(self):
         """The Batch, to look at."""
-        self._open()
+        self._open("batch")
         return self._core.batch
 
     def hashes(self):

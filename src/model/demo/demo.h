@@ -12,6 +12,9 @@
 #ifndef LAR_MODEL_DEMO_DEMO_H
 #define LAR_MODEL_DEMO_DEMO_H
 
+#include <stdbool.h>
+
+#include "model/demo/demo_scene.h"
 #include "model/mesh/mesh.h"
 
 enum { LAR_DEMO_ELEMENTS = 1840 };
@@ -19,5 +22,10 @@ enum { LAR_DEMO_ELEMENTS = 1840 };
 /* Fills a zeroed mesh, in metres; the same bits on every machine. The caller clears it, also on
  * failure. Fails only without memory. */
 lar_status lar_demo_mesh(lar_mesh *mesh, lar_error *error);
+
+/* lar_demo_write (lariat.h), which says also which scenes were there, differ and stay as they are;
+ * with `force` all are written. */
+lar_status lar_demo_write_beside(const char *folder, bool force, bool kept[LAR_DEMO_SCENES],
+                                 lar_error *error);
 
 #endif

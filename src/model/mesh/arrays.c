@@ -1,10 +1,12 @@
 #include "model/mesh/arrays.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/error.h"
+#include "base/text.h"
 
 static lar_status check_counts(const lar_mesh_arrays *a, lar_error *error) {
     if (a->nodes < 1 || a->elements < 1 || a->elements > INT32_MAX / 6)
@@ -68,11 +70,28 @@ static bool kind_of(const char *word, lar_set_kind *kind) {
     return !word;
 }
 
+/* Files may have such names, which are shown with ? then; two that differ there are one. */
+static lar_status check_name(const char *name, int32_t s, lar_error *error) {
+    char shown[101];
+    if (!name || !*name)
+        return lar_fail(error, LAR_ERROR_ARGUMENT, "set %ld has no name; give it one", (long)s);
+    for (const unsigned char *c = (const unsigned char *)name; *c; c++) {
+        if (*c >= ' ' && *c != 0x7f && !(c[0] == 0xc2 && c[1] >= 0x80 && c[1] <= 0x9f)) continue;
+        snprintf(shown, sizeof shown, "%.100s", name);
+        lar_text_show(shown);
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "set %ld, '%s', has a tab, a new line or another control character in its "
+                        "name (? here); leave it out",
+                        (long)s, shown);
+    }
+    return LAR_OK;
+}
+
 static lar_status check_set(const lar_mesh_arrays *a, int32_t s, lar_set_kind *kind,
                             lar_error *error) {
     const lar_array_set *set = &a->set[s];
-    if (!set->name || !*set->name)
-        return lar_fail(error, LAR_ERROR_ARGUMENT, "set %ld has no name; give it one", (long)s);
+    lar_status status = check_name(set->name, s, error);
+    if (status) return status;
     if (!kind_of(set->kind, kind))
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "set '%.100s' is of kind '%.40s'; a set is of nodes, elements or faces",

@@ -24,7 +24,8 @@ static lar_status check_root(const lar_scene *scene) {
         char shown[LAR_YAML_SHOWN];
         return lar_scene_fail(scene, version, LAR_ERROR_UNSUPPORTED,
                               "lariat: expected 1, the version of the scene format that this "
-                              "program reads, but found %s",
+                              "program reads, but found %s; write lariat: 1, or take a "
+                              "newer program",
                               lar_yaml_show(version, shown));
     }
     return lar_scene_keys(scene, scene->root, "a scene", keys);

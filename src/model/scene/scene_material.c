@@ -1,5 +1,6 @@
 #include "model/scene/scene.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -115,6 +116,22 @@ static lar_status read_numbers(const lar_scene *scene, const lar_yaml *node,
     return status;
 }
 
+/* Of the speed of a pressure wave, with which the stable step shrinks, at one Young's modulus. */
+static double wave_of(double ratio) {
+    return sqrt((1 - ratio) / ((1 + ratio) * (1 - 2 * ratio)));
+}
+
+static lar_status notice_ratio(const lar_scene *scene, const lar_yaml *node, double ratio) {
+    static const double NEARLY = 0.499, DOUBTED = 0.4999;
+    if (ratio <= DOUBTED) return LAR_OK;
+    const double shorter = wave_of(ratio) / wave_of(NEARLY);
+    return lar_model_notice(scene->model, scene->error,
+                            "%.300s:%d: poisson_ratio: %.40s makes the time step %.*f times "
+                            "shorter than 0.499 does; take 0.49 to 0.499, as nearly "
+                            "incompressible tissue has",
+                            scene->path, node->line, node->text, shorter < 10 ? 1 : 0, shorter);
+}
+
 static lar_status read_young(const lar_scene *scene, const lar_yaml *node, lar_material *material) {
     const lar_yaml *ratio_node = lar_yaml_get(node, "poisson_ratio");
     double young, ratio;
@@ -130,7 +147,7 @@ static lar_status read_young(const lar_scene *scene, const lar_yaml *node, lar_m
                               "nearly incompressible tissue has 0.49 to 0.499",
                               ratio_node->text);
     lar_material_from_young(material, young, ratio);
-    return LAR_OK;
+    return notice_ratio(scene, ratio_node, ratio);
 }
 
 static lar_status read_stiffness(const lar_scene *scene, const lar_yaml *node,

@@ -410,6 +410,21 @@ static lar_status take(const lar_inverse_solver *s, lar_inverse_result *result) 
     return LAR_OK;
 }
 
+/* Where it was stopped; nothing else is to be made of what the model answers there. */
+static void note_interrupted(const lar_inverse_solver *s, lar_inverse_result *result) {
+    const bool guess = memcmp(s->best_u, s->start, (size_t)s->parameters * sizeof *s->start) == 0;
+    if (result->converged)
+        lar_inverse_note(result,
+                         "interrupted after the values were found and before the intervals: "
+                         "fit again for those");
+    else if (guess)
+        lar_inverse_note(result, "interrupted before anything better than the guess was found: the "
+                                 "values are the guess, and say nothing about the tissue");
+    else
+        lar_inverse_note(result, "interrupted: the values are where the fit was stopped, without "
+                                 "intervals and without a word on the law; fit on from there");
+}
+
 lar_status lar_inverse_solve(const lar_inverse_problem *problem, const lar_inverse_options *options,
                              lar_inverse_result *result, lar_error *error) {
     lar_inverse_solver s;
@@ -430,6 +445,7 @@ lar_status lar_inverse_solve(const lar_inverse_problem *problem, const lar_inver
     }
     result->interrupted = lar_inverse_stopped(&s);
     if (result->interrupted && result->model) status = LAR_OK;
+    if (!status && result->interrupted) note_interrupted(&s, result);
     if (!status) lar_inverse_look_at_residuals(problem, result);
     if (!status && isnan(result->deviation) && !result->interrupted &&
         !lar_inverse_at_bound(result))

@@ -163,6 +163,7 @@ static void look_for_slips(const lar_inverse_experiment *e, const double *left,
 
 void lar_inverse_look_at_residuals(const lar_inverse_problem *problem, lar_inverse_result *result) {
     double *model = result->model; /* becomes what is left, and the model again */
+    const bool judged = result->converged || !result->interrupted;
     for (int k = 0; k < problem->experiments; model += problem->experiment[k++].values) {
         const lar_inverse_experiment *e = &problem->experiment[k];
         lar_inverse_residuals *r = &result->residuals[k];
@@ -174,11 +175,12 @@ void lar_inverse_look_at_residuals(const lar_inverse_problem *problem, lar_inver
         }
         r->rms = sqrt(squares / n);
         r->relative = r->rms / e->whole;
+        r->lag = NAN;
         test_runs(r, model, n);
-        look_for_slips(e, model, result);
-        if (e->kind >= LAR_INVERSE_MARKERS) {
+        if (judged) look_for_slips(e, model, result);
+        if (judged && e->kind >= LAR_INVERSE_MARKERS) {
             look_at_points(e, r, model, result);
-        } else {
+        } else if (judged) {
             r->lag = lag_of(model, n);
             r->systematic = r->rms > TINY * e->largest &&
                             (one_sided(e, model) ||
