@@ -236,6 +236,7 @@ static lar_model *heap(bool rough) {
     for (int i = 0; i < model->contact_count; i++) model->contact[i].friction = rough ? 0.4 : 0;
     memcpy(model->gravity, (double[]){0.5, 0.3, -9.81}, 24);
     model->damping = 5;
+    model->time_step = 0.8 * stable_step_of(model); /* the shorter it is the more places round */
     return model;
 }
 
