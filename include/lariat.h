@@ -1001,6 +1001,10 @@ typedef struct lar_contact_info {
     uint64_t steps;    /* steps done with contact */
     int32_t touching;  /* nodes in contact in the last step, with bodies and planes */
     double deepest;    /* immersion of these [m] */
+    uint64_t through;  /* times that a node was pressed through a face, deeper than contact reaches or
+                          over to the other side: bodies lie in each other, or behind */
+    double way;        /* the farthest that a node went in a step along an axis, where bodies may
+                          touch; of those on supports what they would go [m] */
 } lar_contact_info;
 
 LAR_SIZED void lar_simulation_contact(const lar_simulation *simulation, lar_contact_info *info);

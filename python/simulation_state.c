@@ -125,7 +125,8 @@ static PyObject *contact(PyObject *me, PyObject *nothing) {
     if (!simulation) return NULL;
     lar_contact_info c;
     lar_simulation_contact(simulation, &c);
-    return Py_BuildValue("{s:i,s:d,s:K,s:K}", "touching", (int)c.touching, "deepest", c.deepest,
+    return Py_BuildValue("{s:i,s:d,s:K,s:d,s:K,s:K}", "touching", (int)c.touching, "deepest",
+                         c.deepest, "through", (unsigned long long)c.through, "way", c.way,
                          "searches", (unsigned long long)c.searches, "tested",
                          (unsigned long long)c.tested);
 }
@@ -291,7 +292,8 @@ PyMethodDef python_state_methods[] = {
      "off: they are not finite then."},
     {"contact", contact, METH_NOARGS,
      "contact($self)\n--\n\ndict: touching (nodes in contact with bodies and planes), deepest [m], "
-     "searches, tested."},
+     "through (times that a node was pressed through a face: bodies lie in each other, or behind), "
+     "way (the farthest that a node went in a step) [m], searches, tested."},
     {"reset", reset, METH_NOARGS,
      "reset($self)\n--\n\nBack to the state that it was made with, settings too. Added tools stay, "
      "where "

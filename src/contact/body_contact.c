@@ -463,7 +463,7 @@ static bool in_contact(lar_body_contact *contact, const lar_state *state, int32_
         lar_offset_leave(contact, state, group->node, face);
         return false;
     }
-    lar_offset_out(contact, state, g);
+    lar_offset_out(contact, state, g, face < 0 ? s.gap : INFINITY);
     if (s.flush) {
         lar_offset_stay_flush(contact, g, face, &point);
     } else if (face >= 0) {

@@ -233,9 +233,9 @@ void lar_offset_leave(lar_body_contact *contact, const lar_state *state, int32_t
 bool lar_offset_pushes(lar_body_contact *contact, const lar_state *state, int32_t g, int32_t face,
                        double depth, double rate);
 
-/* The node of group g touches no face of that other body: from now on it is pushed like any other.
- */
-void lar_offset_out(lar_body_contact *contact, const lar_state *state, int32_t g);
+/* The node of group g touches no face of that other body, `gap` out of their reach [m] (INFINITY: it
+ * is before one): from now on it is pushed like any other. */
+void lar_offset_out(lar_body_contact *contact, const lar_state *state, int32_t g, double gap);
 
 /* Whether the node or point of group g is flush still with the body of that (history/flush.h), and
  * does not see all of its faces. */

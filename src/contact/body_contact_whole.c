@@ -200,6 +200,7 @@ void lar_body_contact_moved(lar_body_contact *contact, lar_state *state, double 
     if (contact->friction) lar_body_friction_keep(contact, state);
     contact->moved += way;
     contact->way = way;
+    contact->info.way = fmax(contact->info.way, way);
     if (!contact->search_state) return;
     /* Who does not have all nodes hears how fast the others are (contact_exchange.h). */
     contact->travel += way;

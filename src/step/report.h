@@ -24,6 +24,8 @@ static inline void lar_report_contact(lar_contact_info *sum, const lar_contact_i
     if (other->steps > sum->steps) sum->steps = other->steps;
     sum->touching += other->touching;
     if (other->deepest > sum->deepest) sum->deepest = other->deepest;
+    sum->through += other->through;
+    if (other->way > sum->way) sum->way = other->way;
 }
 
 /* Before an advance: what one thread has felt is forgotten. */

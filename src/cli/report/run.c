@@ -97,6 +97,8 @@ static void write_contact(lar_json *json, const lar_simulation *simulation) {
     lar_json_open(json, "contact", '{');
     lar_json_integer(json, "touching", info.touching);
     lar_json_number(json, "deepest", info.deepest);
+    lar_json_integer(json, "through", (int64_t)info.through);
+    lar_json_number(json, "way", info.way);
     lar_json_integer(json, "possible", (int64_t)info.possible);
     lar_json_integer(json, "boxed", (int64_t)info.boxed);
     lar_json_integer(json, "tested", (int64_t)info.tested);
@@ -194,6 +196,23 @@ static void print_division(const lar_parallel *parallel, FILE *out) {
             local ? parallel->channels : "", parallel->comm);
 }
 
+/* Nothing where all went well. */
+static void print_through(const run_report *report, const lar_contact_info *info, FILE *out) {
+    static const double FAR = 0.5; /* of the shortest edge */
+    double step = lar_simulation_time_step(report->simulation);
+    if (info->through > 0)
+        fprintf(out,
+                "%-17sTHROUGH: %" PRIu64 " times a node was pressed through a face: bodies lie in "
+                "each other, or behind; --time-step %.1g makes contact four times as hard\n",
+                "", info->through, 0.5 * step);
+    if (info->way > FAR * report->info.shortest_edge)
+        fprintf(out,
+                "%-17sa node went %.3g mm in a step, where the shortest edge is %.3g mm: contact "
+                "may not see it in time; --time-step %.1g would\n",
+                "", 1e3 * info->way, 1e3 * report->info.shortest_edge,
+                0.25 * step * report->info.shortest_edge / info->way);
+}
+
 /* Nothing where nothing came close. What is let in is missing in the force: contact is as hard as a
  * step bears (docs/theory.md, "Contact"), so a shorter one lets in less. */
 static void print_contact(const run_report *report, FILE *out) {
@@ -201,7 +220,10 @@ static void print_contact(const run_report *report, FILE *out) {
     const lar_simulation *simulation = report->simulation;
     lar_contact_info info;
     lar_simulation_contact(simulation, &info);
-    if (info.tested == 0) return;
+    if (info.tested == 0) {
+        print_through(report, &info, out);
+        return;
+    }
     double steps = fmax(1, (double)info.steps);
     fprintf(out,
             "%-17s%d nodes touch, at most %.3g mm deep; %" PRIu64
@@ -215,6 +237,7 @@ static void print_contact(const run_report *report, FILE *out) {
                 "touch; --time-step %.1g lets in a quarter of it, but where one body is much "
                 "stiffer: let these touch at the start\n",
                 "", part, 0.5 * lar_simulation_time_step(simulation));
+    print_through(report, &info, out);
 }
 
 /* Nothing of tools that neither touch nor hold. */

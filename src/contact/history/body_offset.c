@@ -25,6 +25,12 @@ static double deep_of(const lar_body_contact *contact, int32_t node, int32_t fac
     return 0.25 * lar_contact_reach(s, &s->node[node], &s->face[face]);
 }
 
+/* The node goes through faces that should keep it out: only counted. */
+static void count_through(lar_body_contact *contact, int32_t node) {
+    if (node < contact->surface->node_count && (!contact->adds_node || contact->adds_node[node]))
+        contact->info.through++;
+}
+
 /* ---- its own body ---------------------------------------------------------------------------- */
 
 double lar_offset_follow(lar_body_contact *contact, const lar_state *state, int32_t node,
@@ -46,6 +52,7 @@ void lar_offset_leave(lar_body_contact *contact, const lar_state *state, int32_t
                       int32_t face) {
     double before = offset_of(contact, state, node), offset = 0;
     if (lar_offset_is_behind(before)) return;
+    if (before == LAR_OFFSET_FRONT && face < 0) count_through(contact, node);
     bool inside =
         before == LAR_OFFSET_RETURN || (face >= 0 && before >= deep_of(contact, node, face));
     if (before == LAR_OFFSET_OUT || (face >= 0 && inside)) offset = LAR_OFFSET_OUT;
@@ -96,46 +103,78 @@ static void place_before(const double v[3], double past, double x[3]) {
     for (int i = 0; i < 3; i++) x[i] -= past * v[i];
 }
 
-/* Where the node of group g was when forces were computed the last time, to the face that was
- * closest then. */
-static void point_before(const lar_body_contact *contact, const lar_state *state, int32_t g,
-                         lar_face_point *point) {
+/* A face, and where on it. */
+typedef struct closest_face {
+    lar_face_point point; /* distance INFINITY: there is none */
+    double normal[3];     /* of any length */
+} closest_face;
+
+/* The closest face to the node of group g, `past` ago [s]: 0, or when forces were computed the last
+ * time. */
+static void closest_ago(const lar_body_contact *contact, const lar_state *state, int32_t g,
+                        double past, closest_face *closest) {
     const lar_contact_group *group = &contact->list.group[g];
     const int32_t *face = contact->list.face + group->first;
     double x[3], v[3], corner[4][3], speed[4][3], min = INFINITY;
-    lar_face_point all[LAR_GROUP_FACES_MAX];
+    closest_face all[LAR_GROUP_FACES_MAX];
     lar_contact_place(contact, state, group->node, x, v);
-    place_before(v, state->past, x);
+    place_before(v, past, x);
     const bool flush = lar_offset_is_flush(contact, state, g);
     for (int32_t i = 0; i < group->count; i++) {
-        all[i].distance = INFINITY;
+        all[i].point.distance = INFINITY;
         if (flush && lar_flush_hides(contact->surface, group->node, face[i])) continue;
         lar_contact_corners(contact, state, face[i], corner, speed);
-        for (int a = 0; a < 4; a++) place_before(speed[a], state->past, corner[a]);
+        for (int a = 0; a < 4; a++) place_before(speed[a], past, corner[a]);
         lar_face_closest(x, (const double(*)[3])corner,
-                         LAR_FACE_TIE * contact->surface->face[face[i]].size, &all[i]);
-        min = fmin(min, all[i].distance);
+                         LAR_FACE_TIE * contact->surface->face[face[i]].size, &all[i].point);
+        lar_face_normal((const double(*)[3])corner, all[i].normal);
+        min = fmin(min, all[i].point.distance);
     }
-    *point = (lar_face_point){.distance = INFINITY};
+    *closest = (closest_face){.point.distance = INFINITY};
     for (int32_t i = 0; i < group->count; i++) {
         double tie = LAR_FACE_TIE * contact->surface->face[face[i]].size;
-        if (!(all[i].distance <= min + tie)) continue;
-        if (isinf(point->distance) || lar_face_point_before(&all[i], point)) *point = all[i];
+        if (!(all[i].point.distance <= min + tie)) continue;
+        if (isinf(closest->point.distance) || lar_face_point_before(&all[i].point, &closest->point))
+            *closest = all[i];
     }
 }
 
-/* Whether a node that is deep behind a face was neither so a step ago, nor has come through it. */
-static bool comes_from_behind(const lar_body_contact *contact, const lar_state *state, int32_t g,
-                              int32_t face, double depth, double rate) {
+static bool is_behind(const closest_face *closest, double reach) {
+    return closest->point.height < 0 && closest->point.distance <= reach;
+}
+
+/* Whether faces look in opposite directions, or nearly so. */
+static bool opposite(const double a[3], const double b[3]) {
+    static const double COSINE = -0.5;
+    double ab = 0, aa = 0, bb = 0;
+    for (int i = 0; i < 3; i++) {
+        ab += a[i] * b[i];
+        aa += a[i] * a[i];
+        bb += b[i] * b[i];
+    }
+    return ab < COSINE * sqrt(aa * bb);
+}
+
+static double reach_of(const lar_body_contact *contact, int32_t node, int32_t face) {
     const lar_contact_surface *s = contact->surface;
+    return lar_contact_reach(s, &s->node[node], &s->face[face]);
+}
+
+/* Whether a node that is deep behind a face was neither so a step ago, nor has come through it. Who
+ * was behind the opposite side has been pressed through the middle of a body: that pushes it out at
+ * the back. */
+static bool comes_from_behind(lar_body_contact *contact, const lar_state *state, int32_t g,
+                              int32_t face, double depth, double rate) {
     const int32_t node = contact->list.group[g].node;
     if (!(depth > deep_of(contact, node, face)) || depth <= contact->time_step * rate ||
         !(state->past > 0))
         return false;
-    lar_face_point before;
-    point_before(contact, state, g, &before);
-    return !(before.height < 0 &&
-             before.distance <= lar_contact_reach(s, &s->node[node], &s->face[face]));
+    closest_face before, now;
+    closest_ago(contact, state, g, state->past, &before);
+    if (!is_behind(&before, reach_of(contact, node, face))) return true;
+    closest_ago(contact, state, g, 0, &now);
+    if (opposite(before.normal, now.normal)) count_through(contact, node);
+    return false;
 }
 
 bool lar_offset_pushes(lar_body_contact *contact, const lar_state *state, int32_t g, int32_t face,
@@ -155,11 +194,22 @@ bool lar_offset_pushes(lar_body_contact *contact, const lar_state *state, int32_
     return false;
 }
 
-void lar_offset_out(lar_body_contact *contact, const lar_state *state, int32_t g) {
+/* Who was behind a face a step ago and is now too deep for contact. */
+static void count_sunk(lar_body_contact *contact, const lar_state *state, int32_t g, double reach) {
+    closest_face now, before;
+    closest_ago(contact, state, g, 0, &now);
+    if (!(now.point.height < 0) || is_behind(&now, reach) || !(state->past > 0)) return;
+    closest_ago(contact, state, g, state->past, &before);
+    if (is_behind(&before, reach)) count_through(contact, contact->list.group[g].node);
+}
+
+void lar_offset_out(lar_body_contact *contact, const lar_state *state, int32_t g, double gap) {
     const lar_contact_group *group = &contact->list.group[g];
     const lar_contact_surface *s = contact->surface;
     if (group->node >= s->node_count) return;
-    int32_t body = s->face[contact->list.face[group->first]].body;
-    if (offset_of(contact, state, group->node) == lar_offset_behind(body))
+    int32_t face = contact->list.face[group->first];
+    if (offset_of(contact, state, group->node) == lar_offset_behind(s->face[face].body))
         set_offset(contact, state, group->node, 0);
+    else if (gap <= 0.5 * reach_of(contact, group->node, face))
+        count_sunk(contact, state, g, reach_of(contact, group->node, face));
 }
