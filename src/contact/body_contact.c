@@ -5,10 +5,8 @@
 
 #include "contact/history/body_friction.h"
 #include "contact/history/flush.h"
+#include "contact/survey/survey.h"
 #include "mechanics/face_contact.h"
-
-/* How much nearer a node and a face come when all nodes move by 1 along every axis. */
-static const double APPROACH = 3.4641016151377546; /* 2 sqrt 3 */
 
 /* ---- one group ------------------------------------------------------------------------------ */
 
@@ -23,138 +21,6 @@ typedef struct touching {
     double fade[4][3]; /* forces of that on its corners, the node gets minus them [N] */
     bool rubs;         /* there is friction in `fade`, which is of the one face */
 } touching;
-
-/* What is known of a group's faces: distances of those that may matter, at least so much. */
-typedef struct survey {
-    double x[3];   /* the node [m] */
-    double reach;  /* of the faces for the node [m] */
-    bool flush;    /* with the body: some of its faces are not seen */
-    unsigned held; /* axes that the node is held along; 0 for other bodies than its own */
-    double fade;   /* by how much others than the closest may be farther away and still count, at
-                      most, [m] */
-    double above;  /* the same before the faces [m] */
-    int32_t count;
-    int32_t entry[LAR_GROUP_FACES_MAX]; /* ascending */
-    double distance[LAR_GROUP_FACES_MAX];
-    double corner[LAR_GROUP_FACES_MAX][4][3];  /* [m] */
-    lar_face_point point[LAR_GROUP_FACES_MAX]; /* where they are closest, of those near `min` */
-    double min;                                /* of those within reach; INFINITY: none is */
-    double gap;  /* by which those looked at are out of reach, at most 0 when one is not [m] */
-    double next; /* travel at which the first of the others may matter [m] */
-} survey;
-
-static double tie_of(const lar_body_contact *contact, int32_t face) {
-    return LAR_FACE_TIE * contact->surface->face[face].size;
-}
-
-/* Of the contact distance, that part; 0 within a body. What goes over from one face to the next
- * within it is not the slope of anything: the less, the less energy comes from nowhere. */
-static double fade_above(const lar_body_contact *contact, int32_t node, int32_t face) {
-    static const double FADE = 0.06;
-    const lar_contact_surface *surface = contact->surface;
-    return FADE * lar_contact_standoff(surface, &surface->node[node], &surface->face[face]);
-}
-
-/* And of the depth behind the faces of another body. */
-static const double FADE_BEHIND = 0.02;
-
-/* Looks at face f. Returns its distance, or at least so much; *point is that of the closest faces.
- * INFINITY: it is not seen. A slice of one element between two planes has its nodes in the planes
- * of its sides: a wall that goes through another one would find that one's side closest, at no
- * distance, and nothing that pushes. */
-static double survey_face(lar_body_contact *contact, const lar_state *state, int32_t f, survey *s,
-                          double corner[4][3], lar_face_point *point) {
-    double tie = tie_of(contact, f);
-    lar_contact_corners(contact, state, f, corner, NULL);
-    double distance = lar_face_box_distance(s->x, (const double(*)[3])corner);
-    if (distance <= s->min + s->fade + tie && distance <= s->reach + tie) {
-        contact->info.tested++;
-        lar_face_closest(s->x, (const double(*)[3])corner, tie, point);
-        distance = point->distance;
-        if ((s->held & contact->surface->face[f].plane) && fabs(point->height) <= tie) {
-            s->gap = fmin(s->gap, 0); /* it is looked at again in the next step */
-            return INFINITY;
-        }
-        if (distance <= s->reach && distance < s->min) s->min = distance;
-    }
-    if (distance - s->reach < s->gap) s->gap = distance - s->reach;
-    return distance;
-}
-
-/* How far nodes may move against each other until a face that is farther away than the closest one
- * may be that: both distances change. */
-static double farther_by(double distance, double tie, const survey *s) {
-    return 0.5 * (distance - 8 * tie - s->fade - s->min);
-}
-
-/* The travel until which a face cannot be the closest one within reach: it is out of reach, or
- * farther away. */
-static double away_until(double travel, double distance, double tie, const survey *s) {
-    if (distance == INFINITY) return 0; /* not seen now */
-    double reach = distance - tie - s->reach, min = farther_by(distance, tie, s);
-    return travel + 0.999 * (reach > min ? reach : min) / APPROACH;
-}
-
-/* The one that was closest the last time goes first: most others then need no more than a look. */
-static void survey_group(lar_body_contact *contact, const lar_state *state, int32_t g, survey *s) {
-    const lar_contact_group *group = &contact->list.group[g];
-    const int32_t *face = contact->list.face + group->first;
-    double *away = contact->away + group->first;
-    int32_t first = contact->last[g];
-    s->reach = lar_contact_reach(contact->surface, &contact->surface->node[group->node],
-                                 &contact->surface->face[face[0]]);
-    s->above = fade_above(contact, group->node, face[0]);
-    s->fade = lar_same_body(contact, group->node, face[0]) ? s->above
-                                                           : fmax(s->above, FADE_BEHIND * s->reach);
-    s->min = s->gap = s->next = INFINITY;
-    s->count = 0;
-    s->flush = lar_offset_is_flush(contact, state, g);
-    s->held =
-        lar_same_body(contact, group->node, face[0]) ? contact->surface->node[group->node].held : 0;
-    lar_face_point of_first;
-    double corner_of_first[4][3];
-    lar_contact_place(contact, state, group->node, s->x, NULL);
-    double distance_of_first = 0;
-    if (!s->flush || !lar_flush_hides(contact->surface, group->node, face[first]))
-        distance_of_first = survey_face(contact, state, face[first], s, corner_of_first, &of_first);
-    for (int32_t i = 0; i < group->count; i++) {
-        if (s->flush && lar_flush_hides(contact->surface, group->node, face[i])) continue;
-        if (i != first && contact->travel < away[i]) {
-            if (away[i] < s->next) s->next = away[i];
-            continue;
-        }
-        int32_t k = s->count++;
-        s->entry[k] = i;
-        s->distance[k] = distance_of_first;
-        if (i != first) {
-            s->distance[k] = survey_face(contact, state, face[i], s, s->corner[k], &s->point[k]);
-            continue;
-        }
-        s->point[k] = of_first;
-        memcpy(s->corner[k], corner_of_first, sizeof corner_of_first);
-    }
-    for (int32_t k = 0; k < s->count; k++) {
-        int32_t i = s->entry[k];
-        away[i] = away_until(contact->travel, s->distance[k], tie_of(contact, face[i]), s);
-    }
-}
-
-/* The closest face of a group, an entry of it. All that are as close as the closest one were so
- * when they were looked at. */
-static int32_t choose_face(const lar_body_contact *contact, int32_t g, const survey *s,
-                           lar_face_point *point) {
-    const lar_contact_group *group = &contact->list.group[g];
-    int32_t chosen = -1;
-    for (int32_t k = 0; k < s->count; k++) {
-        int32_t i = s->entry[k], f = contact->list.face[group->first + i];
-        double tie = tie_of(contact, f);
-        if (!(s->distance[k] <= s->min + tie) || s->distance[k] > s->reach + tie) continue;
-        if (chosen >= 0 && !lar_face_point_before(&s->point[k], point)) continue;
-        *point = s->point[k];
-        chosen = i;
-    }
-    return chosen;
-}
 
 /* ---- one node and one face ------------------------------------------------------------------ */
 
@@ -198,7 +64,7 @@ static void point_of(const lar_body_contact *contact, const lar_state *state, co
 
 /* By how much others may be farther away than the closest triangle and still count; 0: it counts
  * alone [m]. */
-static double fade_at(const lar_face_point *closest, const survey *s) {
+static double fade_at(const lar_face_point *closest, const lar_survey *s) {
     /* Beside an edge that is convex as seen from the node the closest point is on the edge, not
      * straight below, and goes its way smoothly. */
     double upright = 1 - 50 * (1 - fabs(closest->height) / closest->distance);
@@ -206,17 +72,17 @@ static double fade_at(const lar_face_point *closest, const survey *s) {
     bool behind = closest->height < 0;
     /* Who is out of reach is not in every list. */
     double fade =
-        behind ? fmin(FADE_BEHIND * s->min, s->reach - s->min) : fmin(s->above, 0.5 * s->min);
+        behind ? fmin(LAR_FADE_BEHIND * s->min, s->reach - s->min) : fmin(s->above, 0.5 * s->min);
     return fade * fmin(upright, 1);
 }
 
 /* Whether no other triangle of the closest face counts, behind it: with no other face then, the
  * closest point stays what it is, to the last bit, whether others had to be looked at or not. */
-static bool alone(const survey *s, const lar_face_point *closest, double fade) {
+static bool alone(const lar_survey *s, const lar_face_point *closest, double fade) {
     return closest->height < 0 && !(closest->next < s->min + fade);
 }
 
-static bool others_near(const survey *s, double fade) {
+static bool others_near(const lar_survey *s, double fade) {
     int32_t count = 0;
     for (int32_t k = 0; k < s->count; k++) count += s->distance[k] < s->min + fade;
     return count > 1;
@@ -226,7 +92,7 @@ static bool others_near(const survey *s, double fade) {
  * direction of the force: there the faces that are about as close as the closest one push together.
  */
 static void blend(const lar_body_contact *contact, int32_t g, const lar_face_point *closest,
-                  const survey *s, touching *t) {
+                  const lar_survey *s, touching *t) {
     const lar_contact_group *group = &contact->list.group[g];
     const lar_contact_surface *surface = contact->surface;
     double fade = fade_at(closest, s), all = 0;
@@ -343,7 +209,7 @@ static double fade(const lar_body_contact *contact, const double x[3], const kno
 /* The force on the node of group g by a face which it is behind, or before it by less than the
  * contact distance. False: they do not touch, or no longer push. */
 static bool push(lar_body_contact *contact, const lar_state *state, int32_t g, int32_t face,
-                 const lar_face_point *closest, const survey *s, touching *t) {
+                 const lar_face_point *closest, const lar_survey *s, touching *t) {
     const lar_contact_surface *surface = contact->surface;
     const lar_contact_face *f = &surface->face[face];
     int32_t node = contact->list.group[g].node;
@@ -397,21 +263,6 @@ static bool push(lar_body_contact *contact, const lar_state *state, int32_t g, i
     return true;
 }
 
-/* The face that counts of group g, and where; -1: none is within reach. Sets when it is due. */
-static int32_t closest(lar_body_contact *contact, const lar_state *state, int32_t g, survey *s,
-                       lar_face_point *point) {
-    const lar_contact_group *group = &contact->list.group[g];
-    survey_group(contact, state, g, s);
-    /* A little earlier, for rounding. */
-    contact->due[g] =
-        s->gap > 0 && !s->flush ? fmin(contact->travel + 0.999 * s->gap / APPROACH, s->next) : 0;
-    if (!(s->min < INFINITY)) return -1;
-    int32_t chosen = choose_face(contact, g, s, point);
-    if (chosen < 0) return -1;
-    contact->last[g] = chosen;
-    return contact->list.face[group->first + chosen];
-}
-
 /* Who does not see the sides of a body is beside it, and not in it, where it is not straight behind
  * a face. */
 static bool is_beside(const lar_face_point *closest) {
@@ -419,8 +270,8 @@ static bool is_beside(const lar_face_point *closest) {
     return closest->height < 0 && -closest->height < STRAIGHT * closest->distance;
 }
 
-static bool touches(const lar_body_contact *contact, int32_t node, int32_t face, const survey *s,
-                    const lar_face_point *point) {
+static bool touches(const lar_body_contact *contact, int32_t node, int32_t face,
+                    const lar_survey *s, const lar_face_point *point) {
     const lar_contact_surface *surface = contact->surface;
     if (s->flush && is_beside(point)) return false;
     return point->height < 0 ||
@@ -428,35 +279,12 @@ static bool touches(const lar_body_contact *contact, int32_t node, int32_t face,
                lar_contact_standoff(surface, &surface->node[node], &surface->face[face]);
 }
 
-/* How far nodes may move against each other [m] until a node that touches nothing is looked at
- * again: half of the way to where it touches the closest face of another body, and no farther than
- * it surely stays before every face that may be the closest one then. Before the closest one alone
- * is not enough: a body that is crushed has faces whose back is as near. Of its own body a node
- * does not see all faces, and may come behind one from the side. */
-static double clear_of(const lar_body_contact *contact, int32_t g, const survey *s,
-                       const lar_face_point *point) {
-    const lar_contact_surface *surface = contact->surface;
-    const lar_contact_group *group = &contact->list.group[g];
-    const int32_t *face = contact->list.face + group->first;
-    double standoff =
-        lar_contact_standoff(surface, &surface->node[group->node], &surface->face[face[0]]);
-    double clear = 0.5 * (point->distance - standoff);
-    for (int32_t k = 0; k < s->count && clear > 0; k++) {
-        int32_t f = face[s->entry[k]];
-        double farther = farther_by(s->distance[k], tie_of(contact, f), s);
-        if (farther >= clear) continue;
-        double before = lar_face_before(s->x, (const double(*)[3])s->corner[k]);
-        clear = fmin(clear, fmax(farther, before));
-    }
-    return clear;
-}
-
 /* Contact of group g. */
 static bool in_contact(lar_body_contact *contact, const lar_state *state, int32_t g, touching *t) {
     const lar_contact_group *group = &contact->list.group[g];
     lar_face_point point;
-    survey s;
-    int32_t face = closest(contact, state, g, &s, &point);
+    lar_survey s;
+    int32_t face = lar_survey_closest(contact, state, g, &s, &point);
     if (face >= 0 && touches(contact, group->node, face, &s, &point))
         return push(contact, state, g, face, &point, &s, t);
     if (lar_group_is_own(contact->surface, &contact->list, group)) {
@@ -467,7 +295,7 @@ static bool in_contact(lar_body_contact *contact, const lar_state *state, int32_
     if (s.flush) {
         lar_offset_stay_flush(contact, g, face, &point);
     } else if (face >= 0) {
-        double clear = 0.999 * clear_of(contact, g, &s, &point) / APPROACH;
+        double clear = 0.999 * lar_survey_clear(contact, g, &s, &point) / LAR_APPROACH;
         contact->due[g] = fmax(contact->due[g], fmin(contact->travel + clear, s.next));
     }
     return false;

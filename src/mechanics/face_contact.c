@@ -205,6 +205,108 @@ double lar_face_before(const double x[3], const double corner[4][3]) {
     return lar_face_before_one_by_one(x, corner, middle);
 }
 
+/* ---- what decides at an edge ----------------------------------------------------------------- */
+
+/* Below, ways between nodes change by e at most, which is so small that second orders are no more
+ * than the first: e is halved for them in the end. */
+
+static double length_of(const double a[3]) {
+    return sqrt(dot(a, a));
+}
+
+/* Until the closest point to x of what lies behind an edge, at q now, may leave the edge: some of
+ * (y - q) (x - q) is no longer negative. q and x change by `rate` e against y. */
+static double edge_is_closest(const double x[3], const double q[3], const double y[3],
+                              double rate) {
+    double to_y[3], to_x[3];
+    between(q, y, to_y);
+    between(q, x, to_x);
+    double behind = -dot(to_y, to_x);
+    if (!(behind > 0)) return 0;
+    double lengths = length_of(to_y) + length_of(to_x);
+    return behind / (lengths + behind / lengths) / rate;
+}
+
+/* Of the ways from `end`, a corner of a face, along it the one that comes closest to the way to x,
+ * which decides where the closest point is that corner (lar_face_point.toward). */
+static void best_way(const double x[3], const double end[3], const double face[4][3],
+                     double best[3]) {
+    double middle[3], to_x[3], way[3], max = -INFINITY;
+    middle_of(face, middle);
+    between(end, x, to_x);
+    int at = 0;
+    while (at < 3 && memcmp(face[at], end, 3 * sizeof *end)) at++;
+    const double *to[3] = {face[(at + 1) % 4], face[(at + 3) % 4], middle};
+    for (int i = 0; i < 3; i++) {
+        between(end, to[i], way);
+        double turned = dot(way, to_x) / length_of(way);
+        if (!(turned > max)) continue;
+        max = turned;
+        memcpy(best, way, sizeof way);
+    }
+}
+
+/* Until that to y may come closer than `way`. */
+static double turns_most(const double x[3], const double end[3], const double way[3],
+                         const double y[3]) {
+    double to_y[3], to_x[3];
+    between(end, y, to_y);
+    between(end, x, to_x);
+    double far = length_of(to_x), length = length_of(to_y), best = length_of(way);
+    double more = dot(way, to_x) / best - dot(to_y, to_x) / length;
+    return more > 0 ? more / (2 + 2 * far / best + 2 * far / length) : 0;
+}
+
+/* The least height of x over the planes of a face's triangles, and by how much e changes it. */
+static double least_height(const double x[3], const double corner[4][3], double *rate) {
+    double middle[3], min = INFINITY;
+    middle_of(corner, middle);
+    *rate = 0;
+    for (int t = 0; t < 4; t++) {
+        double a[3], b[3], c[3], normal[3];
+        between(corner[t], corner[(t + 1) % 4], a);
+        between(corner[t], middle, b);
+        between(corner[t], x, c);
+        for (int i = 0; i < 3; i++) {
+            int j = (i + 1) % 3, k = (i + 2) % 3;
+            normal[i] = a[j] * b[k] - a[k] * b[j];
+        }
+        double twice = length_of(normal);
+        if (!(twice > 0)) return -INFINITY;
+        min = fmin(min, dot(c, normal) / twice);
+        *rate = fmax(*rate, 1 + 2 * length_of(c) * (length_of(a) + length_of(b)) / twice);
+    }
+    return min;
+}
+
+double lar_face_outdone(const double x[3], const double face[4][3], int edge,
+                        const double front[4][3]) {
+    const double *end[2] = {face[edge], face[(edge + 1) % 4]};
+    double middle[3], along[3], best[3] = {0}, u[3], q[3], to_x[3], rate[2];
+    middle_of(face, middle);
+    const double *others[3] = {face[(edge + 2) % 4], face[(edge + 3) % 4], middle};
+    between(end[0], end[1], along);
+    between(end[0], x, u);
+    double length = length_of(along), part = dot(u, along) / (length * length);
+    if (!(length > 0)) return 0;
+    part = fmin(fmax(part, 0), 1);
+    for (int i = 0; i < 3; i++) q[i] = end[0][i] + part * along[i];
+    between(q, x, to_x);
+    double slide = 3 + 4 * length_of(u) / length,
+           until = fmin(0.5 * length_of(to_x), 0.25 * length);
+    for (int k = 0; k < 3; k++) until = fmin(until, edge_is_closest(x, q, others[k], slide));
+    for (int k = 0; k < 2; k++) {
+        double inside = (k == 0 ? part : 1 - part) * length / slide, turned = INFINITY;
+        if (inside >= until) continue;
+        best_way(x, end[k], front, best);
+        for (int i = 0; i < 3; i++) turned = fmin(turned, turns_most(x, end[k], best, others[i]));
+        until = fmin(until, fmax(inside, turned));
+        if (!(until > 0)) return 0;
+    }
+    double height = least_height(x, front, &rate[0]) + least_height(x, face, &rate[1]);
+    return height > 0 ? 0.5 * fmin(until, height / (rate[0] + rate[1])) : 0;
+}
+
 lar_face_finders lar_face_finders_here(void) {
 #if defined(LAR_HAVE_FACE_LANES)
     if (lar_face_lanes())

@@ -70,6 +70,15 @@ void lar_face_closest(const double x[3], const double corner[4][3], double tie,
  * four triangles; 0 where it is not. */
 double lar_face_before(const double x[3], const double corner[4][3]);
 
+/* How much ways between nodes, x among them, may change [m] while `face` does not decide on which
+ * side x is, because `front`, which shares its edge from corner `edge` to the next one and which x
+ * is before, does: all of the face is turned away from x behind that edge, so the closest point of
+ * it is on the edge, and x is farther over the plane of `front` than under that of the face. 0: it
+ * may decide. So a node that is straight before the edge of a block need not be looked at in every
+ * step, although it is in the plane of the block's side. */
+double lar_face_outdone(const double x[3], const double face[4][3], int edge,
+                        const double front[4][3]);
+
 /* Where a segment comes closest to a face. */
 typedef struct lar_face_segment {
     double distance;  /* at least 0; 0 where the segment goes through the face [m] */

@@ -1,0 +1,191 @@
+#include "contact/survey/survey.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "contact/history/flush.h"
+
+static double tie_of(const lar_body_contact *contact, int32_t face) {
+    return LAR_FACE_TIE * contact->surface->face[face].size;
+}
+
+/* Of the contact distance, that part; 0 within a body. What goes over from one face to the next
+ * within it is not the slope of anything: the less, the less energy comes from nowhere. */
+static double fade_above(const lar_body_contact *contact, int32_t node, int32_t face) {
+    static const double FADE = 0.06;
+    const lar_contact_surface *surface = contact->surface;
+    return FADE * lar_contact_standoff(surface, &surface->node[node], &surface->face[face]);
+}
+
+/* Looks at face f. Returns its distance, or at least so much; *point is that of the closest faces.
+ * INFINITY: it is not seen. A slice of one element between two planes has its nodes in the planes
+ * of its sides: a wall that goes through another one would find that one's side closest, at no
+ * distance, and nothing that pushes. */
+static double survey_face(lar_body_contact *contact, const lar_state *state, int32_t f,
+                          lar_survey *s, double corner[4][3], lar_face_point *point) {
+    double tie = tie_of(contact, f);
+    lar_contact_corners(contact, state, f, corner, NULL);
+    double distance = lar_face_box_distance(s->x, (const double(*)[3])corner);
+    if (distance <= s->min + s->fade + tie && distance <= s->reach + tie) {
+        contact->info.tested++;
+        lar_face_closest(s->x, (const double(*)[3])corner, tie, point);
+        distance = point->distance;
+        if ((s->held & contact->surface->face[f].plane) && fabs(point->height) <= tie) {
+            s->gap = fmin(s->gap, 0); /* it is looked at again in the next step */
+            return INFINITY;
+        }
+        if (distance <= s->reach && distance < s->min) s->min = distance;
+    }
+    if (distance - s->reach < s->gap) s->gap = distance - s->reach;
+    return distance;
+}
+
+/* How far nodes may move against each other until a face that is farther away than the closest one
+ * may be that: both distances change. */
+static double farther_by(double distance, double tie, const lar_survey *s) {
+    return 0.5 * (distance - 8 * tie - s->fade - s->min);
+}
+
+/* The travel until which a face cannot be the closest one within reach: it is out of reach, or
+ * farther away. */
+static double away_until(double travel, double distance, double tie, const lar_survey *s) {
+    if (distance == INFINITY) return 0; /* not seen now */
+    double reach = distance - tie - s->reach, min = farther_by(distance, tie, s);
+    return travel + 0.999 * (reach > min ? reach : min) / LAR_APPROACH;
+}
+
+/* The one that was closest the last time goes first: most others then need no more than a look. */
+static void survey_group(lar_body_contact *contact, const lar_state *state, int32_t g,
+                         lar_survey *s) {
+    const lar_contact_group *group = &contact->list.group[g];
+    const int32_t *face = contact->list.face + group->first;
+    double *away = contact->away + group->first;
+    int32_t first = contact->last[g];
+    s->reach = lar_contact_reach(contact->surface, &contact->surface->node[group->node],
+                                 &contact->surface->face[face[0]]);
+    s->above = fade_above(contact, group->node, face[0]);
+    s->fade = lar_same_body(contact, group->node, face[0])
+                  ? s->above
+                  : fmax(s->above, LAR_FADE_BEHIND * s->reach);
+    s->min = s->gap = s->next = INFINITY;
+    s->count = 0;
+    s->flush = lar_offset_is_flush(contact, state, g);
+    s->held =
+        lar_same_body(contact, group->node, face[0]) ? contact->surface->node[group->node].held : 0;
+    lar_face_point of_first;
+    double corner_of_first[4][3];
+    lar_contact_place(contact, state, group->node, s->x, NULL);
+    double distance_of_first = 0;
+    if (!s->flush || !lar_flush_hides(contact->surface, group->node, face[first]))
+        distance_of_first = survey_face(contact, state, face[first], s, corner_of_first, &of_first);
+    for (int32_t i = 0; i < group->count; i++) {
+        if (s->flush && lar_flush_hides(contact->surface, group->node, face[i])) continue;
+        if (i != first && contact->travel < away[i]) {
+            if (away[i] < s->next) s->next = away[i];
+            continue;
+        }
+        int32_t k = s->count++;
+        s->entry[k] = i;
+        s->distance[k] = distance_of_first;
+        if (i != first) {
+            s->distance[k] = survey_face(contact, state, face[i], s, s->corner[k], &s->point[k]);
+            continue;
+        }
+        s->point[k] = of_first;
+        memcpy(s->corner[k], corner_of_first, sizeof corner_of_first);
+    }
+    for (int32_t k = 0; k < s->count; k++) {
+        int32_t i = s->entry[k];
+        away[i] = away_until(contact->travel, s->distance[k], tie_of(contact, face[i]), s);
+    }
+}
+
+/* The closest face of a group, an entry of it. All that are as close as the closest one were so
+ * when they were looked at. */
+static int32_t choose_face(const lar_body_contact *contact, int32_t g, const lar_survey *s,
+                           lar_face_point *point) {
+    const lar_contact_group *group = &contact->list.group[g];
+    int32_t chosen = -1;
+    for (int32_t k = 0; k < s->count; k++) {
+        int32_t i = s->entry[k], f = contact->list.face[group->first + i];
+        double tie = tie_of(contact, f);
+        if (!(s->distance[k] <= s->min + tie) || s->distance[k] > s->reach + tie) continue;
+        if (chosen >= 0 && !lar_face_point_before(&s->point[k], point)) continue;
+        *point = s->point[k];
+        chosen = i;
+    }
+    return chosen;
+}
+
+int32_t lar_survey_closest(lar_body_contact *contact, const lar_state *state, int32_t g,
+                           lar_survey *s, lar_face_point *point) {
+    const lar_contact_group *group = &contact->list.group[g];
+    survey_group(contact, state, g, s);
+    /* A little earlier, for rounding. */
+    contact->due[g] = s->gap > 0 && !s->flush
+                          ? fmin(contact->travel + 0.999 * s->gap / LAR_APPROACH, s->next)
+                          : 0;
+    if (!(s->min < INFINITY)) return -1;
+    int32_t chosen = choose_face(contact, g, s, point);
+    if (chosen < 0) return -1;
+    contact->last[g] = chosen;
+    return contact->list.face[group->first + chosen];
+}
+
+/* Which edge of face f two faces share, by its first corner; -1: none. */
+static int shared_edge(const lar_contact_face *f, const lar_contact_face *other) {
+    for (int a = 0; a < 4; a++)
+        for (int b = 0; b < 4; b++)
+            if (f->corner[a] == other->corner[(b + 1) % 4] &&
+                f->corner[(a + 1) % 4] == other->corner[b])
+                return a;
+    return -1;
+}
+
+/* How far nodes may move against each other [m] while face k of a survey does not say where the
+ * node is: for one that is beside it says so. */
+static double outdone(const lar_body_contact *contact, const int32_t *face, const lar_survey *s,
+                      int32_t k) {
+    const lar_contact_face *all = contact->surface->face, *f = &all[face[s->entry[k]]];
+    double until = 0;
+    for (int32_t m = 0; m < s->count; m++) {
+        if (m == k) continue;
+        int edge = shared_edge(f, &all[face[s->entry[m]]]);
+        if (edge < 0) continue;
+        double before = lar_face_before(s->x, (const double(*)[3])s->corner[m]);
+        if (!(before > until)) continue;
+        double than = lar_face_outdone(s->x, (const double(*)[3])s->corner[k], edge,
+                                       (const double(*)[3])s->corner[m]);
+        until = fmax(until, fmin(before, than));
+    }
+    return until;
+}
+
+/* Half of the way to where it touches the closest face, and no farther than it surely stays before
+ * every face that may be the closest one then, or before another one that decides. Before the
+ * closest one alone is not enough: a body that is crushed has faces whose back is as near. Of its
+ * own body a node does not see all faces, and may come behind one from the side. */
+double lar_survey_clear(const lar_body_contact *contact, int32_t g, const lar_survey *s,
+                        const lar_face_point *point) {
+    static const double LASTING = 0.02; /* a quarter of what is usual beside an edge */
+    const lar_contact_surface *surface = contact->surface;
+    const lar_contact_group *group = &contact->list.group[g];
+    const int32_t *face = contact->list.face + group->first;
+    double standoff =
+        lar_contact_standoff(surface, &surface->node[group->node], &surface->face[face[0]]);
+    double clear = 0.5 * (point->distance - standoff);
+    /* What does not last until the next step is not worth finding out. */
+    double step = LAR_APPROACH * contact->way;
+    if (!(clear > step)) return 0;
+    bool lasts = LASTING * point->distance > step;
+    for (int32_t k = 0; k < s->count && clear > step; k++) {
+        int32_t f = face[s->entry[k]];
+        double farther = farther_by(s->distance[k], tie_of(contact, f), s);
+        if (farther >= clear) continue;
+        double before = lar_face_before(s->x, (const double(*)[3])s->corner[k]);
+        farther = fmax(farther, before);
+        if (farther < clear && lasts) farther = fmax(farther, outdone(contact, face, s, k));
+        clear = fmin(clear, farther);
+    }
+    return clear;
+}
