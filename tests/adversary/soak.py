@@ -4,6 +4,8 @@ what was recorded is the same on every grid.
 
     soak.py LARIAT SCRATCH SOURCE [--seconds N] [--seed N]
 
+In less than a minute each recording is replayed on one processor and on one other grid, in turn.
+
 First a small scene, recorded from the command line; then the same where viewers record and play;
 then the demonstration organ, on processes. A recorded hash that is not found again is what `lariat
 replay` ends with 1 for.
@@ -116,6 +118,7 @@ class Soak:
     def __init__(self, settings):
         self.lariat, self.scratch = settings.lariat, os.path.abspath(settings.scratch)
         self.seed = settings.seed
+        self.short, self.played = settings.seconds < 60, 0
         self.failures = []
         self.mounted = []
 
@@ -241,7 +244,11 @@ class Soak:
     # ---- what was recorded --------------------------------------------------------------------------
 
     def replays(self, name, scene, recording, wanted):
-        for grid in GRIDS:
+        grids = GRIDS
+        if self.short:
+            grids = [GRIDS[0], GRIDS[1 + self.played % (len(GRIDS) - 1)]]
+            self.played += 1
+        for grid in grids:
             done = subprocess.run(
                 [self.lariat, "replay", scene, recording, "--json", "--no-pin"] + grid,
                 cwd=self.scratch, capture_output=True, check=False)
@@ -271,7 +278,7 @@ class Soak:
             self.replays("recorded", scene, "small.recording", report["state_hash"])
             size = os.path.getsize(os.path.join(self.scratch, "small.recording"))
             print(f"recorded: {report['ticks']} ticks, {report['recoveries']} times gone back, "
-                  f"{size} bytes, the hash {report['state_hash']} on {len(GRIDS)} grids in "
+                  f"{size} bytes, the hash {report['state_hash']} on other grids in "
                   f"{time.monotonic() - begun:.0f} s", flush=True)
 
     def by_viewers(self, name, scene, seconds, options, disk):
@@ -289,7 +296,7 @@ class Soak:
             same += 1
         if report:
             print(f"{name}: {report['ticks']} ticks, {report['recoveries']} times gone back; {same} "
-                  f"of {len(files)} recordings are whole, and the same on {len(GRIDS)} grids",
+                  f"of {len(files)} recordings are whole, and the same on other grids",
                   flush=True)
 
     def organ_scene(self):

@@ -321,7 +321,7 @@ static void bits_do_not_depend_on_the_division(void **unused) {
     lar_options options = lar_options_default();
     uint64_t one[2], other[2];
     straight(model, options, one);
-    for (int i = test_every(2) - 1; i < 8; i += test_every(2)) {
+    for (int i = test_every(3) - 1; i < 8; i += test_every(3)) {
         options = lar_options_default();
         options.grid = i < 6 ? grids[i] : NULL;
         options.threads = i < 6 ? 1 + i % 2 : 0;

@@ -422,7 +422,7 @@ static double period_of(lar_model *model, int periods) {
 /* A held bar that swings, with flat elements near its end, and with stiff ones there. */
 static void slow_motions_are_slowed_by_no_more_than_told(void **unused) {
     (void)unused;
-    for (int stiff = 0; stiff < 2; stiff++) {
+    for (int stiff = test_every(2) - 1; stiff < 2; stiff++) {
         double period[2];
         lar_mass_scaling t = {0};
         for (int i = 0; i < 2; i++) {

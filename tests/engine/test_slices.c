@@ -48,14 +48,14 @@ static double pressed_apart(const brick *block) {
 static void soft_slices_stay_outside(void **state) {
     (void)state;
     static const double bulk[] = {3e3, 1e4, 3e4};
-    for (int thick = 1; thick <= 3; thick++)
-        for (int i = 0; i < 3; i++) {
-            const brick block = {{6, thick, 4}, 0.0016, 0, LAR_LAW_neo_hookean, 3e3, bulk[i], 1060};
-            double apart = pressed_apart(&block);
-            print_message("%d elements thick, K = %g G: %.3f elements apart\n", thick,
-                          bulk[i] / 3e3, apart);
-            assert_below(-0.1, apart);
-        }
+    for (int k = 0; k < 9; k += test_every(4)) {
+        const int thick = 1 + k / 3, i = k % 3;
+        const brick block = {{6, thick, 4}, 0.0016, 0, LAR_LAW_neo_hookean, 3e3, bulk[i], 1060};
+        double apart = pressed_apart(&block);
+        print_message("%d elements thick, K = %g G: %.3f elements apart\n", thick, bulk[i] / 3e3,
+                      apart);
+        assert_below(-0.1, apart);
+    }
 }
 
 /* A block with a slot of one element from its right side to its left wall. */

@@ -227,7 +227,8 @@ static void limits_are_reported_in_every_kind(void **state) {
     const double nothing[3] = {0}, spoiled[3] = {0, NAN, 0}, endless[3] = {INFINITY, 0, 0};
     for (int turn = -1; turn < 3; turn++)
         for (int joined = 0; joined < LAR_ROWS_COUNT; joined++)
-            for (int law = 0; law < LAR_LAW_COUNT; law++) {
+            for (int law = (turn + 1 + joined) % test_every(4); law < LAR_LAW_COUNT;
+                 law += test_every(4)) {
                 uint64_t seed = 7;
                 make_body(&b, &seed, turn, (lar_law)law, (lar_block_rows)joined);
                 memset(b.u, 0, sizeof b.u);

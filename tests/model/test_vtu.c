@@ -1,5 +1,6 @@
 /* The .vtu reader: every encoding of the same mesh, real files, damaged and hostile ones. */
 #include "model/vtk_sample.h"
+#include "testing.h"
 
 #include <zlib.h>
 
@@ -224,13 +225,14 @@ static void test_truncation(void **state) {
 static void test_flipped_bytes(void **state) {
     (void)state;
     static const unsigned char masks[] = {0x01, 0x80, 0xff};
+    const size_t every = (size_t)test_every(sizeof masks);
     for (int k = 0; k < FORMATS * 2; k++) {
         vtu_style style = plain_style;
         style.format = (vtu_format)(k / 2);
         style.compressed = k % 2;
         sample_file file = make_vtu(&style);
         for (size_t i = 0; i < file.size; i++)
-            for (size_t m = 0; m < sizeof masks; m++) {
+            for (size_t m = i % every; m < sizeof masks; m += every) {
                 lar_mesh mesh;
                 lar_error error;
                 file.data[i] ^= masks[m];

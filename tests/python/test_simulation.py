@@ -14,6 +14,9 @@ import lariat
 from common import CELLS, EDGE, SCENE, WITHOUT_NUMPY, block, block_arrays, child, demo, numpy
 
 LARIAT = os.environ.get("LARIAT_COMMAND")
+FULL = bool(os.environ.get("LARIAT_TEST_FULL"))
+# Where only the module is built with sanitizers: what takes seconds in the library.
+LIBRARY_ONLY = bool(os.environ.get("LARIAT_TEST_SANITIZED")) and not FULL
 
 
 class Bits(unittest.TestCase):
@@ -86,6 +89,7 @@ class Bits(unittest.TestCase):
         self.assertEqual(len(ends), 1)
 
     @unittest.skipIf(numpy is None, WITHOUT_NUMPY)
+    @unittest.skipIf(LIBRARY_ONLY, "the library has no sanitizer")
     def test_tissue_that_becomes_stiff_while_it_is_pulled_flies_alike_on_every_grid(self):
         # Nodes at 30 m/s and more among crowded faces: too fast for lists that last some steps.
         model = lariat.Model(os.path.join(demo(), "uterus_live.yaml"))
@@ -119,11 +123,12 @@ class Bits(unittest.TestCase):
             return sim.hash()
 
     def ends_alike(self, model, seeds):
-        for seed in seeds:
+        for seed in seeds if FULL else seeds[:1]:
             ends = {self.throw_about(model, seed, options) for options in (
                 {}, {"search_always": True}, {"grid": "2x1x1"}, {"grid": "1x2x1", "threads": 2})}
             self.assertEqual(len(ends), 1, ends)
 
+    @unittest.skipIf(LIBRARY_ONLY, "the library has no sanitizer")
     def test_bodies_that_crush_each_other_break_alike_however_contact_is_looked_for(self):
         lower, upper = block_arrays((3, 2, 3)), block_arrays((2, 4, 2))
         nodes = lower[0] + [[x, y, z + 3.05 * EDGE] for x, y, z in upper[0]]
@@ -132,6 +137,7 @@ class Bits(unittest.TestCase):
         self.ends_alike(lariat.Model.from_arrays(nodes, hexahedra, scene,
                                                  sets={"floor": lower[2]["floor"]}), (2, 10, 42))
 
+    @unittest.skipIf(LIBRARY_ONLY, "the library has no sanitizer")
     def test_a_sheet_that_folds_remembers_alike_what_lay_within_it(self):
         nodes, hexahedra, _ = block_arrays((4, 2, 1))
         scene = {key: value for key, value in SCENE.items() if key not in ("fix", "tools")}
@@ -648,7 +654,7 @@ class Life(unittest.TestCase):
         def resident():
             with open("/proc/self/statm", encoding="ascii") as file:
                 return int(file.read().split()[1]) * os.sysconf("SC_PAGE_SIZE")
-        many = 10000 if os.environ.get("LARIAT_TEST_FULL") else 300
+        many = 10000 if FULL else 300
         model = block()
         for i in range(many + 100):
             if i == 100:

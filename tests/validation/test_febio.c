@@ -223,7 +223,8 @@ static void dy02_as_febio_steps(void **unused) {
     int32_t values = 3 * model->mesh.node_count;
     double *u = lar_calloc((size_t)values, sizeof *u), norm[2];
     assert_non_null(u);
-    for (int mass = NEWMARK_CONSISTENT; mass <= NEWMARK_LUMPED; mass++) {
+    const int last = test_in_full() ? NEWMARK_LUMPED : NEWMARK_CONSISTENT; /* only to be read */
+    for (int mass = NEWMARK_CONSISTENT; mass <= last; mass++) {
         assert_true(newmark_run(model, (newmark_mass)mass, NEWMARK_TRAPEZOIDAL, 0.1, 168, u));
         double square = 0; /* what is fixed is zero */
         for (int32_t i = 0; i < values; i++) square += u[i] * u[i];
