@@ -151,8 +151,15 @@ static double push_together(const touching *t, double tie, double *depth) {
     return share;
 }
 
-/* What part of its stiffness a spring has: what it stores while it keeps the contact distance must
- * not throw a light node. But tissue that is as stiff as springs would give way to them then. */
+/* What pushes a node is two springs of the same law, one behind the other: */
+typedef struct spring {
+    double mass;  /* which it counts its node with: its stiffness [kg] */
+    double depth; /* how far it is pressed in [m] */
+} spring;
+
+/* What part of its stiffness a spring has before the face: what it stores while it keeps the
+ * contact distance must not throw a light node. But tissue that is as stiff as springs would give
+ * way to them then. */
 static double softness(const lar_body_contact *contact, int32_t node, int32_t face,
                        double standoff) {
     static const double SPEED = 3; /* [m/s] */
@@ -161,6 +168,17 @@ static double softness(const lar_body_contact *contact, int32_t node, int32_t fa
     if (!(speed * speed < stiffness)) return 1;
     double firm = fmin(s->body[s->node[node].body].firm, s->body[s->face[face].body].firm);
     return fmin(1, fmax(speed * speed, firm) / stiffness);
+}
+
+/* The one acts from the contact distance on, the other, which is all that is left of the stiffness,
+ * behind the face. */
+static void springs_of(const lar_body_contact *contact, int32_t node, int32_t face, double mass,
+                       double depth, double offset, spring two[2]) {
+    const lar_contact_surface *s = contact->surface;
+    double standoff = lar_contact_standoff(s, &s->node[node], &s->face[face]);
+    double part = softness(contact, node, face, standoff);
+    two[0] = (spring){part * mass, depth + (standoff - offset)};
+    two[1] = (spring){(1 - part) * mass, depth};
 }
 
 /* How far a spring is pressed in where a sharp edge pushes like any other place [m]. */
@@ -184,18 +202,23 @@ static double within_force(double max, const double force[5][3]) {
     return largest <= max ? 1 : max / largest;
 }
 
-/* Towards sharp edges springs fade, and the slope of what they store is a force of its own. `depth`
- * is how far the spring is pressed in. */
+/* Towards sharp edges springs fade, and the slope of what they store is a force of its own.
+ */
 static double fade(const lar_body_contact *contact, const double x[3], const known_face *known,
-                   const lar_face_point *closest, double full, double mass, double depth,
-                   double rate, touching *t) {
+                   const lar_face_point *closest, double full, const spring two[2], double rate,
+                   touching *t) {
     const lar_contact_face *f = &contact->surface->face[known->face];
     double blunt[4], change[5], slope[5][3], stored;
     for (int a = 0; a < 4; a++) blunt[a] = contact->surface->node[f->corner[a]].blunt;
     double part = lar_face_firmness(closest, blunt, change);
-    double all = lar_contact_force(&contact->law, mass, depth, rate);
-    double late = lar_contact_late_force(&contact->law, mass, full, depth, rate, &stored);
-    double more = 0.5 * all * depth - stored;
+    double all = 0, late = 0, more = 0;
+    for (int i = 0; i < 2 && two[i].mass > 0; i++) {
+        double force = lar_contact_force(&contact->law, two[i].mass, two[i].depth, rate);
+        late +=
+            lar_contact_late_force(&contact->law, two[i].mass, full, two[i].depth, rate, &stored);
+        all += force;
+        more += 0.5 * force * two[i].depth - stored;
+    }
     lar_face_slope(x, (const double(*)[3])known->x, closest, change, slope);
     for (int a = 0; a < 5; a++)
         for (int i = 0; i < 3; i++) slope[a][i] *= -more;
@@ -234,13 +257,14 @@ static bool push(lar_body_contact *contact, const lar_state *state, int32_t g, i
     if (!own && !lar_offset_pushes(contact, state, g, face, depth, rate)) return false;
     if (!lar_contact_active(&surface->node[node], f)) return false;
     double moved = lar_contact_pair_mass(surface->node[node].mass, point.mass);
-    double standoff = lar_contact_standoff(surface, &surface->node[node], f);
-    double from = standoff - offset;
-    moved *= softness(contact, node, face, standoff);
-    double force = f->fades && !own && !s->flush
-                       ? fade(contact, x, &known, closest, full_of(contact, node, face), moved,
-                              depth + from, rate, t)
-                       : lar_contact_force(&contact->law, moved, depth + from, rate);
+    spring two[2];
+    springs_of(contact, node, face, moved, depth, offset, two);
+    double force = 0;
+    if (f->fades && !own && !s->flush)
+        force = fade(contact, x, &known, closest, full_of(contact, node, face), two, rate, t);
+    else
+        for (int i = 0; i < 2; i++)
+            force += lar_contact_force(&contact->law, two[i].mass, two[i].depth, rate);
     t->depth = fmax(depth, 0);
     for (int i = 0; i < 3; i++) {
         t->force[i] = together * force * way[i];

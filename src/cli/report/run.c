@@ -234,8 +234,7 @@ static void print_contact(const run_report *report, FILE *out) {
     if (part > MUCH)
         fprintf(out,
                 "%-17s%.2g of the shortest edge: forces are less than those of bodies that only "
-                "touch; --time-step %.1g lets in a quarter of it, but where one body is much "
-                "stiffer: let these touch at the start\n",
+                "touch; --time-step %.1g lets in a quarter of it\n",
                 "", part, 0.5 * lar_simulation_time_step(simulation));
     print_through(report, &info, out);
 }
