@@ -5,7 +5,6 @@
 
 #include "contact/history/body_friction.h"
 #include "contact/history/flush.h"
-#include "contact/survey/survey.h"
 #include "mechanics/face_contact.h"
 
 /* ---- one group ------------------------------------------------------------------------------ */

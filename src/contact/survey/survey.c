@@ -1,4 +1,4 @@
-#include "contact/survey/survey.h"
+#include "contact/body_contact.h"
 
 #include <math.h>
 #include <string.h>
