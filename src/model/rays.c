@@ -194,7 +194,10 @@ static lar_status check(int32_t count, const double (*origin)[3], const double (
 lar_status lar_model_rays(const lar_model *model, const double (*u)[3], int32_t count,
                           const double (*origin)[3], const double (*direction)[3], double longest,
                           lar_ray_hit *hit, lar_error *error) {
-    if (!model || count < 0 || (count > 0 && (!origin || !direction || !hit)))
+    if (count < 0)
+        return lar_fail(error, LAR_ERROR_ARGUMENT,
+                        "lar_model_rays is asked for %ld rays; there are 0 or more", (long)count);
+    if (!model || (count > 0 && (!origin || !direction || !hit)))
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "lar_model_rays needs a model, origins, directions and a place for what "
                         "they meet; none may be NULL");

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "parallel/computer.h"
+#include "step/guard.h"
 #include "step/mass/heavier.h"
 #include "step/viscous_history.h"
 
@@ -35,6 +36,7 @@ static void add_work(const lar_processor *p, int32_t threads, double *external, 
         *damped += p->worker[t].state.damped;
         *contact += p->worker[t].state.contact;
     }
+    lar_guard_half_to_come(&p->domain, &p->worker[0].state, contact, external);
 }
 
 static void gather_here(const lar_computer *computer) {

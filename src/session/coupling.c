@@ -12,6 +12,7 @@ static const double TORQUE_MAX = 0.2;              /* [N m] */
 static const double TURN_MAX = 20;                 /* [rad/s] */
 static const double LEVER_MIN = 0.05;              /* [m] */
 static const double ACCELERATION = 100;            /* of a hand, at most [m/s^2] */
+static const double LIVELY = 4;                    /* times the change of lately */
 static const double SMOOTH = 0.004;                /* of the hand's velocity [s] */
 static const double REMEMBER = 0.1;                /* how far the hand went in a tick [s] */
 static const double JUMP = 2;                      /* no hand goes so fast [m/s] */
@@ -87,13 +88,15 @@ void lar_coupling_reset(lar_coupling *c, const lar_tool_pose *pose) {
 /* The hand goes so far in this tick; the farthest of the last time, to both sides of each axis. */
 static void remember(const lar_coupling *c, lar_coupling_ways *ways, const double step[3],
                      double jump) {
-    double keep = 1 - c->seconds / (REMEMBER + c->seconds);
+    double keep = 1 - c->seconds / (REMEMBER + c->seconds), change[3];
     for (int i = 0; i < 3; i++) {
         double back = fabs(step[i]) > jump ? -step[i] : 0; /* it may jump back */
+        change[i] = step[i] - ways->last[i];
         ways->last[i] = step[i];
         ways->most[i] = fmax(fmax(step[i], back), ways->most[i] * keep);
         ways->least[i] = fmin(fmin(step[i], back), ways->least[i] * keep);
     }
+    ways->change = fmax(length_of(change), ways->change * keep);
 }
 
 /* The hand has moved, with the force that it was given before, and still holds: what it has put in,
@@ -208,6 +211,15 @@ static double refill(const lar_coupling *c, double account, double max) {
     return fmin(account, max);
 }
 
+/* How much farther than in the last tick the hand may go in the next one: `strength` is what its
+ * strength allows. Accounts at rest bear that with any force when it is no more than `rest`. Else
+ * it goes by what the hand did lately, and by `still`, which the credit bears. */
+static double may_change(const lar_coupling_ways *ways, double strength, double rest,
+                         double still) {
+    if (strength <= rest) return strength;
+    return fmin(strength, fmax(still, LIVELY * ways->change));
+}
+
 /* Shortens a force or torque to what an account bears when the hand goes on with it as far as in
  * any tick of the last time, or as in the last one and what a hand's strength may change. Returns
  * the share that is lost: all while the account is overdrawn. */
@@ -226,14 +238,18 @@ static double hold_back(double felt[3], double account, const lar_coupling_ways 
 static void pay(lar_coupling *c) {
     double stored = 0.5 * dot(c->spring, c->spring) / c->stiffness +
                     0.5 * c->mass * dot(c->tool_velocity, c->tool_velocity);
-    double change = ACCELERATION * c->seconds * c->seconds;
+    double strength = ACCELERATION * c->seconds * c->seconds, turned = c->credit / TORQUE_MAX;
+    /* At rest the account has f^2 / 2 k + credit: that pays for f times this way, and more. */
+    double rest = sqrt(0.5 * c->credit / c->stiffness);
+    double step = may_change(&c->steps, strength, rest, c->credit / FEEL_MAX);
+    double turn = may_change(&c->turns, strength / c->lever, turned, turned);
     c->paid = refill(c, c->paid, PAID_MAX);
     c->turn_paid = refill(c, c->turn_paid, PAID_MAX);
     c->energy = refill(c, c->energy, stored + c->credit);
     /* An overdraft is forgiven to a hand that has not got more than it gave all the same. */
     c->energy = fmax(c->energy, fmin(0, c->paid));
-    c->held_back[0] = hold_back(c->felt, c->energy, &c->steps, change);
-    c->held_back[1] = hold_back(c->turned, c->turn_paid, &c->turns, change / c->lever);
+    c->held_back[0] = hold_back(c->felt, c->energy, &c->steps, step);
+    c->held_back[1] = hold_back(c->turned, c->turn_paid, &c->turns, turn);
 }
 
 void lar_coupling_approach(double felt[3], const double wanted[3], double max) {

@@ -30,10 +30,15 @@
  * second or so, jumps back as far as it has jumped, or changes its speed by no more than
  * ACCELERATION (Franken and others 2011). So only a hand that jumps farther than it did before
  * overdraws, by one tick's force times that way, and once: until that is paid there is no force.
- * What a hand has paid for alone, by its own count, is kept besides, since it may have been lost
- * in the tissue: an overdraft is forgiven as long as that lasts. Turns have an account of their
- * own, of what turning has put in. There is a credit of CREDIT in each, which refills by REFILL, so
- * that positions that come a little early and late, as on every network, do not use it up.
+ * The way that ACCELERATION leads to grows with the square of the tick: 0.1 mm in 1 ms, 12 mm in
+ * 11. No account at rest pays for that, and a hand that holds still would feel a part of the force
+ * for ever. So in ticks of more than 2 ms a hand is expected to change its way by some times what
+ * it has changed it by lately, and one that is still to stay so, but for what the credit always
+ * bears. What a hand has paid for alone, by its own count, is kept besides, since it may have been
+ * lost in the tissue: an overdraft is forgiven as long as that lasts. Turns have an account of
+ * their own, of what turning has put in. There is a credit of CREDIT in each, which refills by
+ * REFILL, so that positions that come a little early and late, as on every network, do not use it
+ * up.
  */
 #ifndef LAR_SESSION_COUPLING_H
 #define LAR_SESSION_COUPLING_H
@@ -55,6 +60,7 @@ typedef struct lar_coupling_limits {
 /* What a hand did in single ticks, along each axis. */
 typedef struct lar_coupling_ways {
     double last[3], least[3], most[3]; /* in the last tick; of the last time, both around 0 */
+    double change;                     /* from tick to tick, the largest of the last time */
 } lar_coupling_ways;
 
 typedef struct lar_coupling {

@@ -5,6 +5,7 @@
 #include "base/vector.h"
 #include "simulation/checkpoint.h"
 #include "simulation/simulation.h"
+#include "step/guard.h"
 #include "step/viscous_history.h"
 
 /* ---- the start ------------------------------------------------------------------------------- */
@@ -161,6 +162,14 @@ lar_status lar_simulation_reset(lar_simulation *simulation, lar_error *error) {
     return lar_simulation_take_up(simulation, error);
 }
 
+/* What is kept of a state has no list of what its step leaves to the next one: it is counted there.
+ * (Where several compute, gathering has.) */
+static void count_all(const lar_simulation *simulation, lar_state *copy) {
+    if (simulation->computer) return;
+    lar_guard_half_to_come(&simulation->domain, &simulation->state, &copy->contact,
+                           &copy->external);
+}
+
 lar_status lar_simulation_copy(const lar_simulation *simulation, lar_state *state, lar_tools *tools,
                                lar_error *error) {
     if (simulation->fault.kind)
@@ -171,6 +180,7 @@ lar_status lar_simulation_copy(const lar_simulation *simulation, lar_state *stat
     lar_status status = lar_simulation_gather(simulation, error);
     if (status) return status;
     copy_state(&simulation->state, state);
+    count_all(simulation, state);
     *tools = simulation->tools;
     return LAR_OK;
 }
@@ -205,8 +215,9 @@ lar_status lar_simulation_pack(const lar_simulation *simulation, const char *pat
                         path);
     lar_status status = lar_simulation_gather(simulation, error);
     if (status) return status;
-    return lar_checkpoint_pack(path, &simulation->domain, &simulation->state, &simulation->tools,
-                               bytes, error);
+    lar_state all = simulation->state; /* its arrays are lent */
+    count_all(simulation, &all);
+    return lar_checkpoint_pack(path, &simulation->domain, &all, &simulation->tools, bytes, error);
 }
 
 lar_status lar_simulation_unpack(lar_simulation *simulation, const char *path,

@@ -307,33 +307,70 @@ __attribute__((cold)) static void add_difference(const lar_material *material,
     state->external += after.energy - before.energy;
 }
 
-/* The other half of the work of what damped run r in the step before, now that its nodes have
- * moved. Corners that swing from step to step would be said to lose more than they do by the
- * velocities before it alone. */
+/* Where the nodes of an element are, were before they moved the last time, and how fast. */
+typedef struct step_back {
+    double rest[8][3], now[8][3], then[8][3], v[8][3];
+} step_back;
+
+static void look_back(const lar_domain *domain, const lar_damped *damped, const lar_state *state,
+                      step_back *back) {
+    corners_of(domain, state, damped->element, back->rest, back->now);
+    memcpy(back->then, back->now, sizeof back->then);
+    lar_domain_corners(domain, state->v, damped->element, back->v);
+    for (int a = 0; a < 8; a++)
+        for (int k = 0; k < 3; k++) back->then[a][k] -= (double)damped->step * back->v[a][k];
+}
+
+/* The other half of the work of what damped an element, now that its nodes have moved. Returns
+ * whether its barriers lacked something. */
+static bool finish(const lar_domain *domain, const lar_damped *damped, const step_back *back,
+                   lar_state *state) {
+    const double(*rest)[3] = (const double(*)[3])back->rest,
+          (*then)[3] = (const double(*)[3])back->then;
+    if (!damped->gone) return add_half_work(rest, then, (const double(*)[3])back->v, damped, state);
+    add_difference(lar_domain_material(domain, damped->element), rest, then,
+                   (const double(*)[3])back->now, state);
+    return false;
+}
+
+/* The same of run r. Corners that swing from step to step would be said to lose more than they do
+ * by the velocities before it alone. */
 static void finish_damping(const lar_domain *domain, int32_t r, lar_state *state) {
     lar_strained *strained = state->strained;
     int32_t *lacked = strained->lacked + LAR_BLOCK * (size_t)domain->run_first[r];
     strained->lacked_count[r] = 0;
     const lar_damped *damped = strained->damped + LAR_BLOCK * (size_t)domain->run_first[r];
     for (int32_t i = 0; i < strained->damped_count[r] && state->listed; i++) {
-        double rest[8][3], now[8][3], then[8][3], v[8][3];
-        corners_of(domain, state, damped[i].element, rest, now);
-        memcpy(then, now, sizeof then);
-        lar_domain_corners(domain, state->v, damped[i].element, v);
-        for (int a = 0; a < 8; a++)
-            for (int k = 0; k < 3; k++) then[a][k] -= (double)damped[i].step * v[a][k];
-        if (damped[i].gone)
-            add_difference(lar_domain_material(domain, damped[i].element), (const double(*)[3])rest,
-                           (const double(*)[3])then, (const double(*)[3])now, state);
-        else if (add_half_work((const double(*)[3])rest, (const double(*)[3])then,
-                               (const double(*)[3])v, &damped[i], state)) {
-            add_rise(lar_domain_material(domain, damped[i].element), (const double(*)[3])rest,
-                     (const double(*)[3])then, (const double(*)[3])now, (const double(*)[3])v,
-                     (double[]){2 * (double)damped[i].half_mean, mean_step(domain, state)}, state);
-            lacked[strained->lacked_count[r]++] = damped[i].element;
-        }
+        step_back back;
+        look_back(domain, &damped[i], state, &back);
+        if (!finish(domain, &damped[i], &back, state)) continue;
+        add_rise(lar_domain_material(domain, damped[i].element), (const double(*)[3])back.rest,
+                 (const double(*)[3])back.then, (const double(*)[3])back.now,
+                 (const double(*)[3])back.v,
+                 (double[]){2 * (double)damped[i].half_mean, mean_step(domain, state)}, state);
+        lacked[strained->lacked_count[r]++] = damped[i].element;
     }
     strained->damped_count[r] = 0;
+}
+
+/* (What a barrier that lacks something rises by is left to the step that follows: it takes it for
+ * one that is softer for the first time.) */
+void lar_guard_half_to_come(const lar_domain *domain, const lar_state *state, double *contact,
+                            double *external) {
+    const lar_strained *strained = state->strained;
+    lar_state own = *state;
+    if (!strained || !state->listed) return;
+    own.contact = own.external = 0;
+    for (int32_t r = 0; r < domain->run_count; r++) {
+        const lar_damped *damped = strained->damped + LAR_BLOCK * (size_t)domain->run_first[r];
+        for (int32_t i = 0; i < strained->damped_count[r]; i++) {
+            step_back back;
+            look_back(domain, &damped[i], state, &back);
+            finish(domain, &damped[i], &back, &own);
+        }
+    }
+    *contact += own.contact;
+    *external += own.external;
 }
 
 /* A corner's volume changes by no more than (L + 2 d)^3 - L^3 while its nodes go d, with edges of L

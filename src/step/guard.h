@@ -65,6 +65,12 @@ void lar_guard_apply_all(const lar_domain *domain, lar_state *state);
  * adds forces as well. */
 void lar_guard_half_work(const lar_domain *domain, lar_state *state);
 
+/* The second half of that of the step before, which the next step counts before it looks at the run
+ * of the element: to *contact and *external. For who looks, and for who copies the state: one that
+ * is put back knows nothing of the step before. */
+void lar_guard_half_to_come(const lar_domain *domain, const lar_state *state, double *contact,
+                            double *external);
+
 /* Energy of an element's barriers [J]. */
 double lar_guard_energy(const lar_domain *domain, const lar_state *state, lar_gid e);
 

@@ -274,6 +274,7 @@ void lar_measure_energy(const lar_domain *domain, lar_measure_scratch *scratch,
     add_motion(&l, energy);
     add_contact(&l, energy);
     end_look(&l);
+    lar_guard_half_to_come(domain, state, &energy->contact, &energy->external);
 
     for (lar_gid e = 0; e < domain->model->mesh.element_count; e++) {
         double hourglass;

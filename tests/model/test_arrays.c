@@ -248,6 +248,9 @@ static void mistakes_are_named(void **unused) {
     a = two_cubes();
     a.position = NULL;
     refused(&a, NULL, "positions", "NULL");
+    a = two_cubes();
+    a.sets = -1;
+    refused(&a, NULL, "-1 sets", "0 or more");
     lar_array_set bad = {"wall", NULL, 4, index};
     a = two_cubes();
     a.sets = 1;
@@ -263,6 +266,20 @@ static void mistakes_are_named(void **unused) {
     a.sets = 2;
     a.set = twice;
     refused(&a, NULL, "two node sets", "'wall'");
+}
+
+static void a_negative_number_of_rays_is_named(void **unused) {
+    (void)unused;
+    const double zero[3] = {0}, up[3] = {0, 0, 1};
+    const lar_mesh_arrays a = two_cubes();
+    lar_model *model;
+    lar_ray_hit hit;
+    assert_int_equal(lar_model_from_arrays(&a, NULL, &model, &error), LAR_OK);
+    lar_status status = lar_model_rays(model, NULL, -1, &zero, &up, 1, &hit, &error);
+    assert_int_equal(status, LAR_ERROR_ARGUMENT);
+    assert_non_null(strstr(error.message, "-1 rays"));
+    assert_null(strstr(error.message, "NULL"));
+    lar_model_destroy(model);
 }
 
 static void so_are_those_of_the_scene(void **unused) {
@@ -285,6 +302,7 @@ int main(void) {
         cmocka_unit_test(directions_of_fibres_are_those_of_the_arrays),
         cmocka_unit_test(so_are_those_of_a_second_family),
         cmocka_unit_test(mistakes_are_named),
+        cmocka_unit_test(a_negative_number_of_rays_is_named),
         cmocka_unit_test(so_are_those_of_the_scene)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

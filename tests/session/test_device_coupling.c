@@ -1,7 +1,5 @@
 /* The coupling between a hand and a tool: bounded, passive at 1 kHz, and where it should be. */
-#include "testing.h"
-
-#include "session/coupling.h"
+#include "coupling_test.h"
 
 static const double TICK = 0.001, STEP = 0.0001;
 
@@ -19,60 +17,11 @@ static lar_coupling couple(const lar_tool_info *tool, double tool_speed, double 
     return coupling;
 }
 
-/* ---- tissue: a wall at z = 0, elastic, felt as the mean over a tick's even way --------------- */
-
-typedef struct wall {
-    double stiffness; /* [N/m] */
-    bool held;        /* pulls as well as pushes */
-} wall;
-
-/* The mean of -k min(z, 0) from a to b: the integral is exact, so its work is the energy's change.
- */
-static double wall_force(const wall *w, double a, double b) {
-    double low = w->held ? a : fmin(a, 0), high = w->held ? b : fmin(b, 0);
-    if (a == b) return -w->stiffness * low;
-    return -0.5 * w->stiffness * (high * high - low * low) / (b - a);
-}
-
-typedef struct world {
-    lar_coupling coupling;
-    wall wall;
-    lar_tool_pose hand, tool;
-    lar_tool_force felt;
-    double hand_work; /* put in [J] */
-    double fastest;   /* of the tool [m/s] */
-} world;
-
-static void tick(world *w, double x, double z) {
-    double before[3] = {w->hand.position[0], 0, w->hand.position[2]}, from = w->tool.position[2];
-    double from_x = w->tool.position[0];
-    w->hand.position[0] = x;
-    w->hand.position[2] = z;
-    w->hand_work -= w->felt.force[0] * (x - before[0]) + w->felt.force[2] * (z - before[2]);
-    lar_coupling_follow(&w->coupling, &w->hand, &w->tool);
-    double to = w->tool.position[2];
-    double speed = hypot(to - from, w->tool.position[0] - from_x) / TICK;
-    w->fastest = fmax(w->fastest, speed);
-    lar_tool_force tissue = {.force = {0, 0, wall_force(&w->wall, from, to)}, .held = w->wall.held};
-    lar_coupling_feel(&w->coupling, &tissue, TICK, &w->felt);
-}
-
 static world start(const lar_tool_info *tool, double stiffness, double z) {
-    world w = {.coupling = couple(tool, 1, 5), .wall = {.stiffness = stiffness}};
-    w.hand = w.tool = tool->rest;
-    w.hand.position[2] = w.tool.position[2] = z;
-    lar_coupling_reset(&w.coupling, &w.tool);
-    tick(&w, 0, z);
-    return w;
+    return start_at(tool, stiffness, z, TICK);
 }
 
 /* A hand whose speed changes by at most `acceleration`: towards targets that change. */
-static uint64_t seed;
-static double any(void) {
-    seed = seed * 6364136223846793005u + 1442695040888963407u;
-    return (double)(seed >> 11) * 0x1p-53;
-}
-
 static double move(double at, double *velocity, double target, double acceleration, double max) {
     double wanted = fmax(-max, fmin(max, 30 * (target - at)));
     double change = wanted - *velocity, limit = acceleration * TICK;

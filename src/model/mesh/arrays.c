@@ -14,7 +14,10 @@ static lar_status check_counts(const lar_mesh_arrays *a, lar_error *error) {
                         "a mesh of %ld nodes and %ld elements; it has one element at least, and "
                         "%d at most",
                         (long)a->nodes, (long)a->elements, INT32_MAX / 6);
-    if (!a->position || !a->element || a->sets < 0 || (a->sets > 0 && !a->set))
+    if (a->sets < 0)
+        return lar_fail(error, LAR_ERROR_ARGUMENT, "a mesh of %ld sets; it has 0 or more",
+                        (long)a->sets);
+    if (!a->position || !a->element || (a->sets > 0 && !a->set))
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "a mesh from arrays needs positions, elements and, where it says that "
                         "there are sets, these; none may be NULL");
