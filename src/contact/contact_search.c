@@ -462,10 +462,13 @@ static lar_status keep_shape(const lar_model *model, lar_contact_search *search,
                              lar_contact_surface *s, lar_error *error) {
     const lar_contact_list *list = &search->list;
     if (!lar_contact_search_run(search, (const double(*)[3])s->rest, 0))
-        return lar_fail(error, LAR_ERROR_MODEL,
-                        "more than %d faces in contact are near one node: the surfaces overlap at "
-                        "many places; take a mesh whose bodies lie beside each other",
-                        LAR_PAIRS_PER_NODE);
+        return lar_fail(
+            error, LAR_ERROR_MODEL,
+            "contact: more than %d faces, or %d bodies, are near the nodes that may "
+            "touch them, in the mean: bodies of one or two elements are packed closely, "
+            "or surfaces overlap at many places; take fewer or larger bodies, or wider "
+            "gaps",
+            LAR_PAIRS_PER_NODE, LAR_PAIRS_PER_NODE / 8);
     lar_status status = refuse_overlap(model, search, error);
     if (!status) status = refuse_twice(model, search, error);
     if (status) return status;
