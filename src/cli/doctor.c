@@ -124,10 +124,12 @@ static void print_measured(const findings *f) {
            (int)m->elements);
     if (f->here.usable_cores > 1)
         printf("  %-17smore on several, with --grid: lariat bench scaling measures how many\n", "");
-    if (m->fits > 0)
-        printf("  %-17sabout %.2g million elements, of %.0f bytes while they are computed\n",
-               "in memory", 1e-6 * round_to_two(m->fits), m->bytes);
     printf("  %-17slariat info SCENE says it for a model of yours\n", "");
+    if (m->fits > 0)
+        printf("  %-17sabout %.2g million elements, of %.0f bytes while they are computed, half "
+               "as\n"
+               "  %-17smany again on one processor, and more on several, while they are set up\n",
+               "in memory", 1e-6 * round_to_two(m->fits), m->bytes, "");
 }
 
 static void print_report(const findings *f) {

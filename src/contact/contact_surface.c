@@ -224,7 +224,7 @@ static lar_status list_all(workspace *d, const double *mass, const int32_t *loca
 static void count_possible(lar_contact_surface *s) {
     uint64_t nodes[LAR_CONTACT_PASSES_MAX] = {0}, faces[LAR_CONTACT_PASSES_MAX] = {0};
     for (int pass = 0; pass < LAR_CONTACT_PASSES_MAX; pass++) {
-        for (int32_t n = 0; n < s->node_count; n++) nodes[pass] += s->node[n].passes >> pass & 1;
+        for (int32_t n = 0; n < s->point_count; n++) nodes[pass] += s->node[n].passes >> pass & 1;
         for (int32_t f = 0; f < s->face_count; f++) faces[pass] += s->face[f].active >> pass & 1;
         s->possible += nodes[pass] * faces[pass];
     }
