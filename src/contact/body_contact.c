@@ -150,7 +150,7 @@ static double push_together(const touching *t, double tie, double *depth) {
     return share;
 }
 
-/* What pushes a node is two springs of the same law, one behind the other: */
+/* What pushes a node is two springs of the same law, one behind the other. */
 typedef struct spring {
     double mass;  /* which it counts its node with: its stiffness [kg] */
     double depth; /* how far it is pressed in [m] */
@@ -201,8 +201,7 @@ static double within_force(double max, const double force[5][3]) {
     return largest <= max ? 1 : max / largest;
 }
 
-/* Towards sharp edges springs fade, and the slope of what they store is a force of its own.
- */
+/* Towards sharp edges springs fade, and the slope of what they store is a force of its own. */
 static double fade(const lar_body_contact *contact, const double x[3], const known_face *known,
                    const lar_face_point *closest, double full, const spring two[2], double rate,
                    touching *t) {
