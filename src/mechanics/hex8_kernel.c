@@ -142,10 +142,11 @@ typedef lar_lane (*lane_law)(const lar_lane F[9], lar_lane P[9], lar_lane J, lar
 typedef unsigned (*lane_stiffened)(lar_lane J, lar_lane I1, lar_lane area, const lar_lane *p,
                                    lar_lane share);
 
-/* From where on an element is looked at more closely, besides LAR_STRAINED_AREA: its volume; the
+/* From where on an element is looked at more closely, besides LAR_STRAINED_AREA: its volume (the
+ * slope of K ln J / J is then 1.5 K, and what is held on all sides and flat feels all of it); the
  * part of its modulus at rest by which a law stiffens; and how far the gradient in a corner may be
  * from the mean one, squared. */
-static const double STRAINED_VOLUME = 0.7, STRAINED_SHEAR = 0.4, STRAINED_CORNER = 0.09;
+static const double STRAINED_VOLUME = 0.88, STRAINED_SHEAR = 0.4, STRAINED_CORNER = 0.09;
 
 LAR_INLINE unsigned strained_lanes(const lane_strain *strain) {
     return lar_lane_not_greater(lar_lane_set(LAR_STRAINED_AREA), strain->number[LAR_STRAIN_AREA]) |
