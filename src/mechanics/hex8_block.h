@@ -187,12 +187,16 @@ static inline int32_t lar_lean_node(const lar_lean_block *lean, int a, int lane)
  * larger by a kilobyte. */
 void lar_lean_head(const lar_block_run *run, const lar_lean_block *lean, lar_block_head *head);
 
-/* The local node at corner a of a lane of block b. */
-static inline int32_t lar_run_node(const lar_block_run *run, int32_t b, int a, int lane) {
+/* The local nodes at the corners of a lane of block b. */
+static inline void lar_run_nodes(const lar_block_run *run, int32_t b, int lane, int32_t node[8]) {
     const void *block = lar_run_block(run, b);
-    if (!run->rest) return ((const lar_block_head *)block)->node[a][lane];
-    if (run->rows == LAR_ROWS_NONE) return ((const lar_loose_block *)block)->node[a][lane];
-    return lar_lean_node(block, a, lane);
+    if (run->rest && run->rows != LAR_ROWS_NONE) {
+        for (int a = 0; a < 8; a++) node[a] = lar_lean_node(block, a, lane);
+        return;
+    }
+    const int32_t(*nodes)[LAR_BLOCK] =
+        run->rest ? ((const lar_loose_block *)block)->node : ((const lar_block_head *)block)->node;
+    for (int a = 0; a < 8; a++) node[a] = nodes[a][lane];
 }
 
 /* How much of a run's active stress is there now. */

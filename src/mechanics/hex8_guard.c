@@ -69,10 +69,16 @@ static double gradient(const double edge[3][3], double volume, double grad[4][3]
  * of that, would ask for shorter steps than there are. From r = square / (WIDE of that at rest) = 1
  * on it has the part (2 r - 1) / r^2, whose slope there is none, and is never more than twice as
  * stiff as at 1. The part belongs to the energy, so that what goes in comes out. */
-static void share_corner(const double edge[3][3], double square_at_rest, corner_span *c) {
-    double r = c->square / (WIDE * square_at_rest);
+static void share_corner(const double rest_edge[3][3], const double edge[3][3], corner_span *c) {
+    double rest_grad[4][3], length = 0;
     c->share = 1;
     memset(c->fall, 0, sizeof c->fall);
+    for (int k = 0; k < 3; k++) length += lar_dot(rest_edge[k], rest_edge[k]);
+    /* Edges e_k with gradients g_k have e_k . g_k = 1, so by Cauchy and Schwarz the square at rest
+     * is not below 9 / (sum of |e_k|^2); a tenth is far more than what rounding could change. */
+    if (c->square * length < 8.1 * WIDE) return;
+    double square_at_rest = gradient(rest_edge, c->volume, rest_grad);
+    double r = c->square / (WIDE * square_at_rest);
     if (!(r > 1)) return;
     c->share = (2 * r - 1) / (r * r);
     double slope = 2 * (1 - r) / (r * r * r) / (WIDE * square_at_rest);
@@ -93,13 +99,12 @@ static void share_corner(const double edge[3][3], double square_at_rest, corner_
 }
 
 static void span_corner(const double rest[8][3], const double now[8][3], int a, corner_span *c) {
-    double rest_edge[3][3], edge[3][3], rest_grad[4][3];
+    double rest_edge[3][3], edge[3][3];
     c->volume = span(rest, a, rest_edge);
     c->j = span(now, a, edge) / c->volume;
     if (!(c->j < LAR_GUARD_START)) return;
     c->square = gradient((const double(*)[3])edge, c->volume, c->grad);
-    double at_rest = gradient((const double(*)[3])rest_edge, c->volume, rest_grad);
-    share_corner((const double(*)[3])edge, at_rest, c);
+    share_corner((const double(*)[3])rest_edge, (const double(*)[3])edge, c);
 }
 
 static int node_of(int a, int k) {

@@ -91,12 +91,12 @@ void lar_verification_recover(const lar_verification *verification, const lar_do
             for (int lane = 0; lane < LAR_BLOCK; lane++) {
                 lar_gid e = lanes->element[lane];
                 if (e < 0 || e % passes != pass) continue;
+                lar_lid node[8]; /* that the kernel would use */
+                if (domain->kind == LAR_ELEMENT_HEX8) lar_run_nodes(run, b, lane, node);
                 for (int a = 0; a < 8; a++) {
-                    /* That the kernel would use. */
-                    lar_lid node = domain->kind == LAR_ELEMENT_HEX8
-                                       ? lar_run_node(run, b, a, lane)
-                                       : domain->layout.local[domain->layout.corner[e][a]];
-                    insert(state, node, e / passes);
+                    if (domain->kind != LAR_ELEMENT_HEX8)
+                        node[a] = domain->layout.local[domain->layout.corner[e][a]];
+                    insert(state, node[a], e / passes);
                 }
             }
         }

@@ -68,12 +68,20 @@ void lar_strained_destroy(lar_strained *strained) {
     *strained = (lar_strained){0};
 }
 
+/* Where the corners of an element are at rest and now, and how fast they are (`v` may be NULL). */
 static void corners_of(const lar_domain *domain, const lar_state *state, lar_gid e,
-                       double rest[8][3], double now[8][3]) {
-    lar_mesh_corners(&domain->model->mesh, e, rest);
-    lar_domain_corners(domain, state->u, e, now);
-    for (int a = 0; a < 8; a++)
-        for (int i = 0; i < 3; i++) now[a][i] += rest[a][i];
+                       double rest[8][3], double now[8][3], double v[8][3]) {
+    const lar_mesh *mesh = &domain->model->mesh;
+    for (int a = 0; a < 8; a++) {
+        lar_gid node = mesh->element[e][a];
+        lar_lid local = domain->layout.local[node];
+        for (int i = 0; i < 3; i++) {
+            size_t at = lar_state_at(state, local, i);
+            rest[a][i] = mesh->position[node][i];
+            now[a][i] = state->u[at] + rest[a][i];
+            if (v) v[a][i] = state->v[at];
+        }
+    }
 }
 
 /* Strained elements of a run that are looked at side by side. */
@@ -99,8 +107,9 @@ static void add_lane(const lar_domain *domain, int32_t r, int32_t lane, int32_t 
     const lar_block_run *run = &domain->run[r];
     int32_t block = lane / LAR_BLOCK, at = group->count++;
     size_t first = LAR_BLOCK * (size_t)domain->run_first[r];
-    for (int a = 0; a < 8; a++)
-        group->hex8.node[a][at] = lar_run_node(run, block, a, lane % LAR_BLOCK);
+    int32_t node[8];
+    lar_run_nodes(run, block, lane % LAR_BLOCK, node);
+    for (int a = 0; a < 8; a++) group->hex8.node[a][at] = node[a];
     group->hex8.largest[at] = domain->base[first + (size_t)lane].largest;
     group->lane[at] = lane;
     group->entry[at] = entry;
@@ -146,8 +155,7 @@ static double barriers_ahead(const lar_domain *domain, const lar_state *state, l
                              double ahead, unsigned corners) {
     double rest[8][3], now[8][3], v[8][3];
     lar_guard then;
-    corners_of(domain, state, e, rest, now);
-    lar_domain_corners(domain, state->v, e, v);
+    corners_of(domain, state, e, rest, now, v);
     for (int a = 0; a < 8; a++)
         for (int i = 0; i < 3; i++) now[a][i] += ahead * v[a][i];
     lar_hex8_guard_force((const double(*)[3])rest, (const double(*)[3])now, NULL,
@@ -270,8 +278,7 @@ static bool apply(const lar_domain *domain, lar_gid e, unsigned corners, bool la
     double mean = mean_step(domain, state);
     const lar_guard_lead lead = {.closing = LEAD * step, .opening = LEAD * domain->time_step};
     lar_guard guard;
-    corners_of(domain, state, e, rest, now);
-    lar_domain_corners(domain, state->v, e, v);
+    corners_of(domain, state, e, rest, now, v);
     lar_hex8_guard_force((const double(*)[3])rest, (const double(*)[3])now, (const double(*)[3])v,
                          lar_domain_material(domain, e), lead, corners, force, &guard);
     if (stiffness) *stiffness = guard.stiffness;
@@ -314,11 +321,10 @@ typedef struct step_back {
 
 static void look_back(const lar_domain *domain, const lar_damped *damped, const lar_state *state,
                       step_back *back) {
-    corners_of(domain, state, damped->element, back->rest, back->now);
-    memcpy(back->then, back->now, sizeof back->then);
-    lar_domain_corners(domain, state->v, damped->element, back->v);
+    corners_of(domain, state, damped->element, back->rest, back->now, back->v);
     for (int a = 0; a < 8; a++)
-        for (int k = 0; k < 3; k++) back->then[a][k] -= (double)damped->step * back->v[a][k];
+        for (int k = 0; k < 3; k++)
+            back->then[a][k] = back->now[a][k] - (double)damped->step * back->v[a][k];
 }
 
 /* The other half of the work of what damped an element, now that its nodes have moved. Returns
@@ -583,7 +589,7 @@ void lar_guard_half_work(const lar_domain *domain, lar_state *state) {
 double lar_guard_energy(const lar_domain *domain, const lar_state *state, lar_gid e) {
     double rest[8][3], now[8][3];
     lar_guard guard;
-    corners_of(domain, state, e, rest, now);
+    corners_of(domain, state, e, rest, now, NULL);
     lar_hex8_guard((const double(*)[3])rest, (const double(*)[3])now,
                    lar_domain_material(domain, e), &guard);
     return guard.energy;
