@@ -119,12 +119,15 @@ double lar_comm_now(void);
 
 /* How long somebody who lives has been waited for; zero at first. */
 typedef struct lar_comm_waited {
+    bool began;
     double until, looked;
 } lar_comm_waited;
 
 /* Each time that nothing has come: whether options.patience is over. It begins anew for who was
  * itself held up for half of that, as a whole job is that was suspended (Ctrl-Z, SIGSTOP). */
 bool lar_comm_impatient(const lar_comm *comm, lar_comm_waited *waited);
+/* The same by any clock [s], which may have begun a moment ago: a machine's does when it boots. */
+bool lar_comm_waited_for(lar_comm_waited *waited, double now, double patience);
 
 /* Gives a processor up for everyone; the first verdict stands. Returns LAR_ERROR_PEER with the
  * message of the verdict that stands. `step` is the one that cannot be completed; 0: none. */

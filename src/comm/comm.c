@@ -238,11 +238,15 @@ void lar_comm_abort(lar_comm *comm) {
     lar_comm_give_up(comm, comm->options.self, LAR_LOSS_FAILED, 0, NULL);
 }
 
-bool lar_comm_impatient(const lar_comm *comm, lar_comm_waited *waited) {
-    double now = lar_comm_now(), patience = comm->options.patience;
-    if (now - waited->looked > patience / 2) waited->until = now + patience;
+bool lar_comm_waited_for(lar_comm_waited *waited, double now, double patience) {
+    if (!waited->began || now - waited->looked > patience / 2) waited->until = now + patience;
+    waited->began = true;
     waited->looked = now;
     return now > waited->until;
+}
+
+bool lar_comm_impatient(const lar_comm *comm, lar_comm_waited *waited) {
+    return lar_comm_waited_for(waited, lar_comm_now(), comm->options.patience);
 }
 
 /* ---- put and wait ------------------------------------------------------------------------ */

@@ -1,6 +1,8 @@
 /* Waiting between commands: as long as it takes, without processor time, but not for the dead. */
 #include "fleet.h"
 
+#include "comm/backend.h"
+
 #include <time.h>
 
 static double clock_of(clockid_t id) {
@@ -124,8 +126,24 @@ static void messages_name_steps_not_rounds(void **state) {
     fleet_everywhere("names", (fleet){.count = 2, .bytes = 64, .body = wait_by_another_name});
 }
 
+/* Patience is counted from the first look, wherever the clock stands: that of a machine begins at
+ * zero when it boots. */
+static void patience_does_not_ask_how_long_the_machine_runs(void **state) {
+    (void)state;
+    static const double begins[] = {0, 0.5, 70, 1e6};
+    for (size_t i = 0; i < sizeof begins / sizeof begins[0]; i++) {
+        lar_comm_waited waited = {0};
+        for (int second = 0; second <= 120; second += 40)
+            assert_false(lar_comm_waited_for(&waited, begins[i] + second, 120));
+        assert_true(lar_comm_waited_for(&waited, begins[i] + 121, 120));
+        /* held up itself */
+        assert_false(lar_comm_waited_for(&waited, begins[i] + 1000, 120));
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(patience_does_not_ask_how_long_the_machine_runs),
         cmocka_unit_test(quiet_time_may_be_long), cmocka_unit_test(the_dead_are_not_awaited),
         cmocka_unit_test(nonsense_is_refused), cmocka_unit_test(messages_name_steps_not_rounds)};
     return cmocka_run_group_tests(tests, NULL, NULL);
