@@ -89,6 +89,11 @@ typedef struct lar_error {
 LAR_API const char *lar_version(void);
 LAR_API int32_t lar_version_number(void);
 
+/* Cores that the calling thread may use, second threads of cores included: those that it may run
+ * on, and no more than the time of whole cores that control groups leave it, as those of a container
+ * do (Linux); at least 1. What is chosen by itself, a grid or the workers of a batch, keeps to it. */
+LAR_API int32_t lar_usable_cores(void);
+
 /* Functions for memory, from any thread; NULL says that there is none. `alignment` is a power of 2
  * up to 2 MiB. What is resized, or released, was allocated with that of max_align_t, or any. */
 typedef struct lar_memory_hooks {

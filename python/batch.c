@@ -451,7 +451,7 @@ static PyObject *batch_new(PyTypeObject *type, PyObject *args, PyObject *keyword
     python_batch *self = PyObject_New(python_batch, python_batch_type);
     if (self) {
         *self = (python_batch){.ob_base = self->ob_base, .generation = python_generation};
-        self->workers = workers > 0 ? (int)workers : python_pool_cores();
+        self->workers = workers > 0 ? (int)workers : (int)lar_usable_cores();
         if (!adopt(self, list)) Py_CLEAR(self);
     }
     Py_DECREF(list);

@@ -298,9 +298,6 @@ typedef void python_pool_work(void *context, int item, bool caller);
 /* Called by the caller ten times a second while it only waits for others. */
 typedef void python_pool_wait(void *context);
 
-/* Cores that this process may use, at least 1. */
-int python_pool_cores(void);
-
 /* The caller and threads - 1 more; NULL: no memory. */
 python_pool *python_pool_create(int threads);
 /* Nobody runs anything on it. In a child of a fork its threads are not there: `lost` frees nothing.

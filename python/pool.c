@@ -2,7 +2,6 @@
 
 #include <errno.h>
 #include <pthread.h>
-#include <sched.h>
 #include <signal.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -23,12 +22,6 @@ struct python_pool {
     void *context;
     int next; /* atomic: the first item that nobody has taken */
 };
-
-int python_pool_cores(void) {
-    cpu_set_t set;
-    int count = sched_getaffinity(0, sizeof set, &set) == 0 ? CPU_COUNT(&set) : 1;
-    return count > 0 ? count : 1;
-}
 
 static void do_items(python_pool *pool, bool caller) {
     int item;

@@ -12,11 +12,15 @@
 
 #include <stdint.h>
 
+#include "lariat.h"
+
 /* Does the items first..end - 1. */
 typedef void lar_parallel_for_work(void *context, int32_t first, int32_t end);
 
-/* Cores that the calling thread may use, second threads of cores included; at least 1. */
-int32_t lar_usable_cores(void);
+/* How many cores' time control groups leave a process whose groups `groups` lists
+ * (/proc/self/cgroup), in the file systems below `mount` (/sys/fs/cgroup); INFINITY: no limit. Both
+ * versions of such groups, and of every group above as well. */
+double lar_cores_of_groups(const char *groups, const char *mount);
 
 /* Does `count` items, `portion` of them at a time, and returns when all are done. Portions are
  * taken in ascending order, so that an item may wait for one of lower number. Where the system

@@ -3,8 +3,11 @@
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
+#include <math.h>
 #include <stdint.h>
+#include <stdio.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cmocka.h>
@@ -105,8 +108,47 @@ static void an_item_may_wait_for_lower_ones(void **state) {
     lar_parallel_for_threads(0);
 }
 
+static void put(const char *folder, const char *name, const char *text) {
+    char path[256];
+    for (const char *at = folder; (at = strchr(at + 1, '/'));) { /* and those above it */
+        snprintf(path, sizeof path, "%.*s", (int)(at - folder), folder);
+        mkdir(path, 0777);
+    }
+    mkdir(folder, 0777);
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    fputs(text, file);
+    fclose(file);
+}
+
+/* A container's limits, of both versions of control groups. */
+static void groups_limit_cores(void **state) {
+    (void)state;
+    const char *none = "groups/none", *list = "groups/list";
+    put("groups", "list", "0::/a/b\n");
+    assert_true(isinf(lar_cores_of_groups(none, "groups/two")));
+    assert_true(isinf(lar_cores_of_groups(list, "groups/nothing")));
+    put("groups/two/a/b", "cpu.max", "max 100000\n");
+    assert_true(isinf(lar_cores_of_groups(list, "groups/two")));
+    put("groups/two/a/b", "cpu.max", "250000 100000\n");
+    assert_true(lar_cores_of_groups(list, "groups/two") == 2.5);
+    put("groups/two/a", "cpu.max", "150000 100000\n"); /* above it */
+    assert_true(lar_cores_of_groups(list, "groups/two") == 1.5);
+    put("groups/own", "cpu.max", "50000 100000\n"); /* a container sees its own as the root */
+    assert_true(lar_cores_of_groups(list, "groups/own") == 0.5);
+    put("groups", "list", "7:memory:/c\n4:cpu,cpuacct:/c\n3:cpuset:/\n0::/\n");
+    put("groups/one/cpu/c", "cpu.cfs_quota_us", "-1\n");
+    put("groups/one/cpu/c", "cpu.cfs_period_us", "100000\n");
+    assert_true(isinf(lar_cores_of_groups(list, "groups/one")));
+    put("groups/one/cpu/c", "cpu.cfs_quota_us", "300000\n");
+    assert_true(lar_cores_of_groups(list, "groups/one") == 3);
+    assert_true(lar_usable_cores() >= 1);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(groups_limit_cores),
         cmocka_unit_test(every_item_is_done_once),
         cmocka_unit_test(calls_can_be_nested),
         cmocka_unit_test(two_cores_are_at_work_at_once),
