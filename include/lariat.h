@@ -215,6 +215,8 @@ typedef struct lar_model_info {
     int32_t spring_nodes;    /* that springs hold, counted once for each entry of a scene */
     double spring_stiffness; /* of all these springs together [N/m] */
     double duration;         /* that the model states [s], 0: none; see lar_model_duration */
+    double rounding; /* a strain energy is known no better than to this, for it is the difference of
+                        terms that large moduli make [J] */
 } lar_model_info;
 
 /* Counts, measures and the stable step: goes through all elements. `info` is the caller's. */
@@ -1006,8 +1008,8 @@ typedef struct lar_contact_info {
     uint64_t steps;    /* steps done with contact */
     int32_t touching;  /* nodes in contact in the last step, with bodies and planes */
     double deepest;    /* immersion of these [m] */
-    uint64_t through;  /* times that a node was pressed through a face, deeper than contact reaches or
-                          over to the other side: bodies lie in each other, or behind */
+    uint64_t through;  /* times that a node was pressed through a face, deeper than contact reaches
+                          or  over to the other side: bodies lie in each other, or behind */
     double way;        /* the farthest that a node went in a step along an axis, where bodies may
                           touch; of those on supports what they would go [m] */
 } lar_contact_info;

@@ -188,7 +188,7 @@ static PyObject *get_info(PyObject *me, void *unused) {
     PYTHON_UNLOCKED(status = lar_model_inspect(model, &i, &error));
     if (status) return python_raise_of(python_model_scene((python_model *)me), &error);
     return Py_BuildValue(
-        "{s:s,s:i,s:i,s:i,s:i,s:N,s:N,s:d,s:d,s:d,s:d,s:d,s:i,s:d,s:i,s:d,s:N,s:i,s:i,s:d,s:d}",
+        "{s:s,s:i,s:i,s:i,s:i,s:N,s:N,s:d,s:d,s:d,s:d,s:d,s:i,s:d,s:i,s:d,s:N,s:i,s:i,s:d,s:d,s:d}",
         "title", i.title, "nodes", (int)i.nodes, "elements", (int)i.elements, "materials",
         (int)i.materials, "fixed_nodes", (int)i.fixed_nodes, "lower", python_tuple(i.lower, 3),
         "upper", python_tuple(i.upper, 3), "volume", i.volume, "mass", i.mass, "shortest_edge",
@@ -197,7 +197,7 @@ static PyObject *get_info(PyObject *me, void *unused) {
         "stable_step", i.stable_step, "stable_worst", (int)i.stable_worst, "time_step", i.time_step,
         "mass_scaling", make_mass_scaling(&i.mass_scaling), "thin_elements", (int)i.thin_elements,
         "spring_nodes", (int)i.spring_nodes, "spring_stiffness", i.spring_stiffness, "duration",
-        i.duration);
+        i.duration, "rounding", i.rounding);
 }
 
 /* ---- arrays --------------------------------------------------------------------------------- */

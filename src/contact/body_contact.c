@@ -27,6 +27,7 @@ typedef struct touching {
 typedef struct contact_point {
     double at[3], velocity[3]; /* [m], [m/s] */
     double mass;               /* [kg] */
+    double cover;              /* mass of the surface around it [kg/m^2] */
 } contact_point;
 
 /* A face whose corners have been looked up. */
@@ -38,7 +39,7 @@ typedef struct known_face {
 /* The point of t->count faces with the weights of t; one of them may be known. */
 static void point_of(const lar_body_contact *contact, const lar_state *state, const touching *t,
                      const known_face *known, contact_point *point) {
-    double compliance = 0;
+    double compliance = 0, thin = 0;
     *point = (contact_point){0};
     for (int32_t f = 0; f < t->count; f++) {
         const int32_t *corner = contact->surface->face[t->face[f]].corner;
@@ -55,10 +56,14 @@ static void point_of(const lar_body_contact *contact, const lar_state *state, co
             point->at[i] += at[i];
             point->velocity[i] += velocity[i];
         }
-        for (int a = 0; a < 4; a++)
-            compliance += t->weight[f][a] / contact->surface->node[corner[a]].mass;
+        for (int a = 0; a < 4; a++) {
+            const lar_contact_node *node = &contact->surface->node[corner[a]];
+            compliance += t->weight[f][a] / node->mass;
+            thin += t->weight[f][a] * (node->area / node->mass);
+        }
     }
     point->mass = 1 / compliance;
+    point->cover = 1 / thin;
 }
 
 /* By how much others may be farther away than the closest triangle and still count; 0: it counts
@@ -180,6 +185,13 @@ static void springs_of(const lar_body_contact *contact, int32_t node, int32_t fa
     two[1] = (spring){(1 - part) * mass, depth};
 }
 
+/* The mass that the spring of a node and a point moves. Many nodes may press on one corner, and
+ * heavy ones have springs that are as hard as the point bears each: together they have no more than
+ * their part of the surface leaves them. */
+static double moved_mass(const lar_contact_node *node, const contact_point *point) {
+    return fmin(lar_contact_pair_mass(node->mass, point->mass), node->area * point->cover);
+}
+
 /* How far a spring is pressed in where a sharp edge pushes like any other place [m]. */
 static double full_of(const lar_body_contact *contact, int32_t node, int32_t face) {
     static const double MIN = 0.25; /* of the reach */
@@ -254,7 +266,7 @@ static bool push(lar_body_contact *contact, const lar_state *state, int32_t g, i
     double offset = own ? lar_offset_follow(contact, state, node, face, depth, rate) : 0;
     if (!own && !lar_offset_pushes(contact, state, g, face, depth, rate)) return false;
     if (!lar_contact_active(&surface->node[node], f)) return false;
-    double moved = lar_contact_pair_mass(surface->node[node].mass, point.mass);
+    double moved = moved_mass(&surface->node[node], &point);
     spring two[2];
     springs_of(contact, node, face, moved, depth, offset, two);
     double force = 0;

@@ -24,8 +24,9 @@ static int by_nodes(const void *a, const void *b) {
     return (x->face > y->face) - (x->face < y->face);
 }
 
-/* The unit normal of a face at rest, and its middle. */
-static void stand(const lar_contact_surface *s, int32_t face, double normal[3], double middle[3]) {
+/* The unit normal of a face at rest, and its middle; returns its area. */
+static double stand(const lar_contact_surface *s, int32_t face, double normal[3],
+                    double middle[3]) {
     double corner[4][3], length = 0;
     for (int i = 0; i < 3; i++) middle[i] = 0;
     for (int a = 0; a < 4; a++)
@@ -37,6 +38,7 @@ static void stand(const lar_contact_surface *s, int32_t face, double normal[3], 
     for (int i = 0; i < 3; i++) length += normal[i] * normal[i];
     length = sqrt(length);
     for (int i = 0; i < 3 && length > 0; i++) normal[i] /= length;
+    return 0.5 * length;
 }
 
 /* 1 where two faces make no sharp edge, 0 where they do. */
@@ -148,8 +150,42 @@ static lar_status add_points(lar_contact_surface *s, const side *edge, size_t ed
     return LAR_OK;
 }
 
+static double seen_along(const double tensor[3][3], const double way[3]) {
+    double sum = 0;
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++) sum += way[i] * tensor[i][j] * way[j];
+    return sum;
+}
+
+/* A quarter of each face for each corner, by the squared cosine between the faces there: where a
+ * body has an edge one side of it is in another one's way, and the largest counts. */
+static lar_status find_areas(lar_contact_surface *s, lar_error *error) {
+    size_t bytes = (size_t)s->node_count * 9 * sizeof(double);
+    double(*tensor)[3][3] = lar_calloc(bytes, 1), normal[3], middle[3];
+    if (!tensor) return lar_fail_memory(error, bytes, "the areas of surfaces");
+    for (int32_t f = 0; f < s->face_count; f++) {
+        double area = stand(s, f, normal, middle);
+        for (int a = 0; a < 4; a++)
+            for (int i = 0; i < 9; i++)
+                tensor[s->face[f].corner[a]][i / 3][i % 3] +=
+                    0.25 * area * normal[i / 3] * normal[i % 3];
+    }
+    for (int32_t f = 0; f < s->face_count; f++) {
+        stand(s, f, normal, middle);
+        for (int a = 0; a < 4; a++) {
+            int32_t n = s->face[f].corner[a];
+            s->node[n].area =
+                fmax(s->node[n].area, seen_along((const double(*)[3])tensor[n], normal));
+        }
+    }
+    free(tensor);
+    return LAR_OK;
+}
+
 lar_status lar_contact_surface_edges(lar_contact_surface *s, lar_error *error) {
     size_t count = 4 * (size_t)s->face_count;
+    lar_status failed = find_areas(s, error);
+    if (failed) return failed;
     side *sides = list_sides(s, count);
     s->point_count = s->node_count;
     if (!sides) return lar_fail_memory(error, count * sizeof *sides, "the edges of surfaces");
@@ -162,9 +198,12 @@ lar_status lar_contact_surface_edges(lar_contact_surface *s, lar_error *error) {
 void lar_contact_edges_fit(lar_contact_surface *s) {
     for (int32_t n = s->node_count; n < s->point_count; n++) {
         const lar_contact_point *point = &s->point[n - s->node_count];
-        double compliance = 0;
-        for (int i = 0; i < point->count; i++)
+        double compliance = 0, area = 0;
+        for (int i = 0; i < point->count; i++) {
             compliance += point->weight[i] / s->node[point->node[i]].mass;
+            area += point->weight[i] * s->node[point->node[i]].area;
+        }
         s->node[n].mass = 1 / (POINT_PARTS * compliance);
+        s->node[n].area = 2 * area / POINT_PARTS;
     }
 }

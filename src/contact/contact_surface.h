@@ -51,6 +51,7 @@ typedef struct lar_contact_node {
     int32_t body;
     uint64_t passes; /* in which it is looked at against faces */
     double mass;     /* that a spring of the law counts it with, see lar_contact_surface_fit [kg] */
+    double area;     /* of the surface around it at rest that looks one way [m^2] */
     unsigned held;   /* axes that supports of the scene hold it along */
     double blunt;    /* 1, or less where it is on a sharp edge, down to 0: contact_edges.c */
 } lar_contact_node;

@@ -75,6 +75,12 @@ static void examine_place(const lar_domain *domain, const lar_state *state, lar_
     choose_place(center, rest, fault->place);
 }
 
+/* A shorter step to try [s], with two digits. */
+static double shorter_step(const lar_domain *domain) {
+    double half = 0.5 * domain->time_step, digit = pow(10, floor(log10(half)) - 1);
+    return floor(half / digit * (1 + 1e-9)) * digit;
+}
+
 /* What a tool does to an element. */
 static const char *describe_action(const lar_domain *domain, const lar_fault *fault) {
     if (!isfinite(fault->volume_ratio) || !isfinite(fault->growth)) return "tears apart";
@@ -92,30 +98,33 @@ static lar_status report_element(const lar_domain *domain, const lar_fault *faul
     if (fault->tool != 0)
         return lar_fault_report_tool(domain, fault, describe_action(domain, fault), error);
     if (!isfinite(volume_ratio) || !isfinite(growth))
-        return lar_fail(error, LAR_ERROR_UNSTABLE,
-                        "unstable at step %llu (%.6g s): element %lld near (%.4g, %.4g, %.4g) m is "
-                        "torn beyond the range of numbers; use a smaller time step, or slower or "
-                        "smaller loads and motions%s",
-                        (unsigned long long)fault->step, (double)fault->step * domain->time_step,
-                        (long long)mesh->element_id[fault->element], place[0], place[1], place[2],
-                        hint(fault));
+        return lar_fail(
+            error, LAR_ERROR_UNSTABLE,
+            "unstable at step %llu (%.6g s): element %lld near (%.4g, %.4g, %.4g) m is "
+            "torn beyond the range of numbers; use a smaller time step, such as %.2g s, or "
+            "slower or smaller loads and motions%s",
+            (unsigned long long)fault->step, (double)fault->step * domain->time_step,
+            (long long)mesh->element_id[fault->element], place[0], place[1], place[2],
+            shorter_step(domain), hint(fault));
     if (!(volume_ratio > domain->limits.min_volume)) {
         cause = "is turned inside out or crushed";
-        remedy = "use a smaller time step, slower or smaller loads, or a finer mesh there";
+        remedy = ", slower or smaller loads, or a finer mesh there";
     } else if (growth * domain->time_step > domain->stable_step) {
         cause = "is strained so much that the time step has become too large for it";
-        remedy = "use a smaller time step or a stiffer or finer mesh there";
+        remedy = " or a stiffer or finer mesh there";
     } else {
         cause = "exceeds the force limit";
-        remedy = "use a smaller time step, or slower or smaller loads";
+        remedy = ", or slower or smaller loads";
     }
-    return lar_fail(error, LAR_ERROR_UNSTABLE,
-                    "unstable at step %llu (%.6g s): element %lld near (%.4g, %.4g, %.4g) m %s "
-                    "(volume ratio %.3g, time step %.3g s of %.3g s stable at rest); %s%s",
-                    (unsigned long long)fault->step, (double)fault->step * domain->time_step,
-                    (long long)mesh->element_id[fault->element], place[0], place[1], place[2],
-                    cause, volume_ratio, domain->time_step, domain->stable_step, remedy,
-                    hint(fault));
+    return lar_fail(
+        error, LAR_ERROR_UNSTABLE,
+        "unstable at step %llu (%.6g s): element %lld near (%.4g, %.4g, %.4g) m %s "
+        "(volume ratio %.3g, time step %.3g s of %.3g s stable at rest); use a smaller time "
+        "step, such as %.2g s%s%s",
+        (unsigned long long)fault->step, (double)fault->step * domain->time_step,
+        (long long)mesh->element_id[fault->element], place[0], place[1], place[2], cause,
+        volume_ratio, domain->time_step, domain->stable_step, shorter_step(domain), remedy,
+        hint(fault));
 }
 
 /* The fastest of some nodes, and where it is. */
@@ -147,19 +156,21 @@ static lar_status report_speed(const lar_domain *domain, const lar_fault *fault,
     if (fault->tool != 0)
         return lar_fault_report_tool(domain, fault, "exceeds the speed limit at", error);
     if (!isfinite(highest))
-        return lar_fail(error, LAR_ERROR_UNSTABLE,
-                        "unstable at step %llu (%.6g s): node %lld near (%.4g, %.4g, %.4g) m has "
-                        "left the range of numbers; use a smaller time step, or slower or smaller "
-                        "loads and motions%s",
-                        (unsigned long long)fault->step, (double)fault->step * domain->time_step,
-                        (long long)mesh->node_id[node], place[0], place[1], place[2], hint(fault));
+        return lar_fail(
+            error, LAR_ERROR_UNSTABLE,
+            "unstable at step %llu (%.6g s): node %lld near (%.4g, %.4g, %.4g) m has "
+            "left the range of numbers; use a smaller time step, such as %.2g s, or slower "
+            "or smaller loads and motions%s",
+            (unsigned long long)fault->step, (double)fault->step * domain->time_step,
+            (long long)mesh->node_id[node], place[0], place[1], place[2], shorter_step(domain),
+            hint(fault));
     return lar_fail(error, LAR_ERROR_UNSTABLE,
                     "unstable at step %llu (%.6g s): node %lld near (%.4g, %.4g, %.4g) m moves at "
                     "%.3g m/s, hundreds of elements per time step (the limit is %.3g m/s); use a "
-                    "smaller time step, or slower or smaller loads and motions%s",
+                    "smaller time step, such as %.2g s, or slower or smaller loads and motions%s",
                     (unsigned long long)fault->step, (double)fault->step * domain->time_step,
                     (long long)mesh->node_id[node], place[0], place[1], place[2], highest,
-                    domain->leapfrog.speed, hint(fault));
+                    domain->leapfrog.speed, shorter_step(domain), hint(fault));
 }
 
 static lar_status report_load(const lar_domain *domain, const lar_fault *fault, lar_error *error) {

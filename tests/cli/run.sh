@@ -153,12 +153,32 @@ fix: [{ nodes: { plane: { point: [0, 0, 0], normal: [1, 0, 0] } }, axes: xyz }]
 initial: [{ nodes: { nearest: [1, 0, 0] }, velocity: [0, 0, 10] }]
 END
 expect 0 "$LARIAT" run "$SCRATCH/hit.yaml"
-says '^account  *OPEN by .* --time-step 0.0002'
+says '^account  *OPEN by .* --time-step 0.00018 close it'
 expect 0 "$LARIAT" run "$SCRATCH/hit.yaml" --time-step 2e-5
 ! grep -q '^account' "$SCRATCH/out" || fail "$(grep '^account' "$SCRATCH/out")"
 expect 0 "$LARIAT" run "$SCRATCH/hit.yaml" --json
 has_keys --numbers account.open account.share
 value_of account.share | awk '{ exit !($1 > 0.01 && $1 < 1) }' || fail "share $(value_of account.share)"
+
+# Rounding of a strain energy that large moduli leave next to nothing of is no matter of the step.
+one_cube "$SCRATCH/cube.inp"
+cat >"$SCRATCH/tiny.yaml" <<'END'
+lariat: 1
+mesh: cube.inp
+damping: 3000
+duration: 0.02
+materials: [{ cells: all, law: coupled-neo-hookean, density: 1800, youngs_modulus: 1.86e10, poisson_ratio: 0.3 }]
+fix: [{ nodes: x, axes: xyz }]
+load: [{ nodes: { nearest: [1, 1, 1] }, force: [0, 0, -1.0e-3], over: 0.001 }]
+END
+expect 0 "$LARIAT" run "$SCRATCH/tiny.yaml"
+says '^account  *open by no more than rounding makes of strain energy here'
+! grep -q 'time-step' "$SCRATCH/out" || fail "$(grep 'time-step' "$SCRATCH/out")"
+expect 0 "$LARIAT" run "$SCRATCH/tiny.yaml" --json
+value_of account.rounding | awk '{ exit !($1 > 0 && $1 < 1e-4) }' || fail "$(value_of account.rounding)"
+sed 's/1.0e-3/1.0e3/' "$SCRATCH/tiny.yaml" >"$SCRATCH/large.yaml"
+expect 0 "$LARIAT" run "$SCRATCH/large.yaml"
+! grep -q '^account' "$SCRATCH/out" || fail "$(grep '^account' "$SCRATCH/out")"
 
 # A muscle that shortens has a strain energy below zero, and all that is in the account sums up to
 # about nothing: a share is one of what goes in and out.

@@ -88,6 +88,7 @@ static void write_account(lar_json *json, const run_report *report) {
     lar_json_open(json, "account", '{');
     lar_json_number(json, "open", now.open);
     lar_json_number(json, "share", now.share);
+    lar_json_number(json, "rounding", report->info.rounding);
     lar_json_close(json);
 }
 
@@ -186,6 +187,12 @@ void run_report_json(const run_report *report, FILE *out) {
 
 /* ---- for people ------------------------------------------------------------------------- */
 
+/* What is written with two digits and no more than it is: a step that does what is said of it. */
+static double two_digits_of(double step) {
+    double digit = pow(10, floor(log10(step)) - 1), down = floor(step / digit * (1 + 1e-9));
+    return step > 0 ? down * digit : step;
+}
+
 static void print_division(const lar_parallel *parallel, FILE *out) {
     bool local = strcmp(parallel->scheme, "local") == 0;
     bool several = parallel->threads > 1;
@@ -203,14 +210,14 @@ static void print_through(const run_report *report, const lar_contact_info *info
     if (info->through > 0)
         fprintf(out,
                 "%-17sTHROUGH: %" PRIu64 " times a node was pressed through a face: bodies lie in "
-                "each other, or behind; --time-step %.1g makes contact four times as hard\n",
-                "", info->through, 0.5 * step);
+                "each other, or behind; --time-step %.2g makes contact four times as hard\n",
+                "", info->through, two_digits_of(0.5 * step));
     if (info->way > FAR * report->info.shortest_edge)
         fprintf(out,
                 "%-17sa node went %.3g mm in a step, where the shortest edge is %.3g mm: contact "
-                "may not see it in time; --time-step %.1g would\n",
+                "may not see it in time; --time-step %.2g would\n",
                 "", 1e3 * info->way, 1e3 * report->info.shortest_edge,
-                0.25 * step * report->info.shortest_edge / info->way);
+                two_digits_of(0.25 * step * report->info.shortest_edge / info->way));
 }
 
 /* Nothing where nothing came close. What is let in is missing in the force: contact is as hard as a
@@ -234,8 +241,8 @@ static void print_contact(const run_report *report, FILE *out) {
     if (part > MUCH)
         fprintf(out,
                 "%-17s%.2g of the shortest edge: forces are less than those of bodies that only "
-                "touch; --time-step %.1g lets in a quarter of it\n",
-                "", part, 0.5 * lar_simulation_time_step(simulation));
+                "touch; --time-step %.2g lets in a quarter of it\n",
+                "", part, two_digits_of(0.5 * lar_simulation_time_step(simulation)));
     print_through(report, &info, out);
 }
 
@@ -285,10 +292,14 @@ static void print_open_account(const run_report *report, FILE *out) {
     if (!(now.share > SMALL)) return;
     /* What is missing goes with the square of the step, or slower. */
     double shorter = fmin(0.25, 0.5 * sqrt(SMALL / now.share));
-    fprintf(out,
-            "%-17sOPEN by %.2g J, %.2g %% of what is in it: something was faster than the steps; "
-            "slower loads or --time-step %.1g close it\n",
-            "account", now.open, 100 * now.share, shorter * time_step);
+    if (fabs(now.open) <= report->info.rounding)
+        fprintf(out, "%-17sopen by no more than rounding makes of strain energy here (%.1g J)\n",
+                "account", report->info.rounding);
+    else
+        fprintf(out,
+                "%-17sOPEN by %.2g J, %.2g %% of what is in it: something was faster than the "
+                "steps; slower loads or --time-step %.2g close it\n",
+                "account", now.open, 100 * now.share, two_digits_of(shorter * time_step));
 }
 
 /* Where hourglass modes bear much, the mesh answers and not the tissue. */
