@@ -405,7 +405,8 @@ typedef struct lar_tool_force {
     double limit;       /* beyond it stays behind its hand [N]; 0 for hands: none. It may do so with
                            less, too: half its radius deep, or where elements need shorter steps */
     double depth;       /* the deepest tissue point in it in the last advance [m]; 0: none */
-    double apart;       /* from its tip to where its hand asks the tip to be, now [m] */
+    double apart;       /* from its tip to where its hand asks the tip to be, now [m]; 0 where tissue
+                           keeps it from turning or closing only, of which `limited` tells */
     int32_t limited;    /* 1 while tissue keeps it from following its hand, which includes its way
                            back to it; else 0 */
     double grasp_force; /* what both jaws of a grasper press with on the tissue between them [N],

@@ -32,15 +32,19 @@ double lar_grasp_stiffness_limit(const lar_tool_contact_face *face, double radiu
 /* Where the wall begins, in radii of the tool. */
 static const double WALL = 0.2;
 
-/* Unit normal of the surface where a point of the face is, outwards: that of its triangle, of two
- * corners and the face's middle. 0 where that has no area. */
-static void normal_at(const lar_tool_contact_patch *patch, const double weight[4],
-                      double normal[3]) {
-    static const double MIDDLE[4] = {0.25, 0.25, 0.25, 0.25};
-    double middle[3], from[3], to[3];
+/* The triangle that a point of the face is in: its first corner. */
+static int triangle_at(const double weight[4]) {
     int a = 0;
     for (int b = 1; b < 4; b++)
         if (weight[b] + weight[(b + 1) % 4] > weight[a] + weight[(a + 1) % 4]) a = b;
+    return a;
+}
+
+/* Unit normal of a triangle of the face, of corners a and the next and the face's middle, outwards.
+ * 0 where it has no area. */
+static void normal_of(const lar_tool_contact_patch *patch, int a, double normal[3]) {
+    static const double MIDDLE[4] = {0.25, 0.25, 0.25, 0.25};
+    double middle[3], from[3], to[3];
     lar_face_mean((const double(*)[3])patch->x, MIDDLE, middle);
     lar_minus(patch->x[a], middle, from);
     lar_minus(patch->x[(a + 1) % 4], middle, to);
@@ -53,12 +57,11 @@ static void normal_at(const lar_tool_contact_patch *patch, const double weight[4
  * of the body: its face then looks the same way as the push. It is let go, smoothly where the push
  * goes along the face. A crumpled face looks elsewhere as a whole than where the point is, and
  * would let in what lies before it: of both, what keeps the tool outside counts. */
-static double facing(const lar_tool_contact_patch *patch, const double normal[3],
-                     const double weight[4]) {
+static double facing(const lar_tool_contact_patch *patch, const double normal[3], int triangle) {
     double against = -lar_dot(normal, patch->out);
     if (against < 0.2) {
         double local[3];
-        normal_at(patch, weight, local);
+        normal_of(patch, triangle, local);
         against = fmax(against, -lar_dot(normal, local));
     }
     return against <= 0 ? 0 : against < 0.2 ? 5 * against : 1;
@@ -126,7 +129,7 @@ static void touch_point(lar_tool_contact_patch *patch, const lar_contact_law *la
         if (!(square < within)) continue;
         double depth = lar_segment_depth(segment, patch->radius, x, normal, &along);
         if (!(depth > 0)) continue;
-        double share = facing(patch, normal, weight);
+        double share = facing(patch, normal, triangle_at(weight));
         if (share == 0) continue;
         patch->depth = fmax(patch->depth, share * depth);
         patch->covered += fmin(1, depth / (WALL * patch->radius));
@@ -147,25 +150,54 @@ static double wall_mass(const lar_tool_contact_face *face, const double *mass,
     return max;
 }
 
-/* The wall of one segment. Returns how far the face is from where it begins. */
+/* What a triangle of the face has of the wall. */
+typedef struct wall_part {
+    lar_face_segment at;
+    double share, count; /* facing; against those of the other triangles [m^2] */
+} wall_part;
+
+static wall_part part_of(const lar_tool_contact_patch *patch, int triangle,
+                         const lar_face_segment *at) {
+    double beyond = (1 - WALL) * patch->radius - at->distance;
+    wall_part part = {.at = *at};
+    if (!(beyond > 0)) return part;
+    if (!(at->distance > 0)) { /* the middle line goes through the face: out the way it came */
+        normal_of(patch, triangle, part.at.normal);
+        for (int i = 0; i < 3; i++) part.at.normal[i] = -part.at.normal[i];
+    }
+    part.share = facing(patch, part.at.normal, triangle);
+    part.count = part.share * beyond * beyond;
+    return part;
+}
+
+/* The wall of one segment. Where a face is folded around a tool, two of its triangles are as close
+ * as each other, and the closest point of the face would jump from the one to the other and back
+ * for ever. So each triangle is pushed at its own closest point, and has the more of the wall the
+ * deeper it is there: no force jumps. Returns how far the face is from where the wall begins. */
 static double touch_wall(lar_tool_contact_patch *patch, const lar_contact_law *law,
                          const double *mass, int32_t s, double free_share) {
-    lar_face_segment at;
-    lar_face_segment_closest(&patch->body->now[s], (const double(*)[3])patch->x, &at);
-    double depth = patch->radius - at.distance;
-    if (!(depth > WALL * patch->radius)) return WALL * patch->radius - depth;
-    if (!(at.distance > 0)) { /* the middle line goes through the face: out the way it came */
-        normal_at(patch, at.weight, at.normal);
-        for (int i = 0; i < 3; i++) at.normal[i] = -at.normal[i];
+    lar_face_segment closest[4];
+    wall_part parts[4];
+    double all = 0, min = INFINITY;
+    lar_face_segment_closest(&patch->body->now[s], (const double(*)[3])patch->x, closest);
+    for (int t = 0; t < 4; t++) {
+        parts[t] = part_of(patch, t, &closest[t]);
+        all += parts[t].count;
+        min = fmin(min, closest[t].distance);
     }
-    double share = facing(patch, at.normal, at.weight);
-    if (share == 0) return WALL * patch->radius - depth;
-    patch->depth = fmax(patch->depth, share * depth);
-    double force = push_point(patch, law, s, at.along, at.weight, at.normal,
-                              free_share * share * wall_mass(patch->face, mass, at.weight),
-                              depth - WALL * patch->radius);
-    if (patch->touches) note_point(patch, s, at.weight, at.normal, force, share * depth);
-    return WALL * patch->radius - depth;
+    for (int t = 0; t < 4; t++) {
+        const wall_part *part = &parts[t];
+        const double depth = patch->radius - part->at.distance;
+        if (!(part->count > 0)) continue;
+        patch->depth = fmax(patch->depth, part->share * depth);
+        double share = free_share * part->share * part->count / all;
+        double force = push_point(patch, law, s, part->at.along, part->at.weight, part->at.normal,
+                                  share * wall_mass(patch->face, mass, part->at.weight),
+                                  depth - WALL * patch->radius);
+        if (patch->touches)
+            note_point(patch, s, part->at.weight, part->at.normal, force, part->share * depth);
+    }
+    return min - (1 - WALL) * patch->radius;
 }
 
 /* How far a point of the face can be from the closest point of the grid: half of the diagonal

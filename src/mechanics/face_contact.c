@@ -353,22 +353,16 @@ static void closest_of_segments(const double p[3], const double d1[3], const dou
     }
 }
 
-/* Against the edges of a triangle that begin in corner t: to the next corner, and to the middle. */
-static void offer_edges(const lar_segment *segment, const double corner[4][3],
-                        const double middle[3], int t, lar_face_segment *closest) {
-    int next = (t + 1) % 4;
-    double d1[3], d2[3], s, along;
+/* Against the edge of triangle t from `from` to `to`, points of the face by their weights. */
+static void offer_edge(const lar_segment *segment, const double corner[4][3], const double from[4],
+                       const double to[4], lar_face_segment *closest) {
+    double begin[3], end[3], d1[3], d2[3], weight[4], along, part;
+    lar_face_mean(corner, from, begin);
+    lar_face_mean(corner, to, end);
     between(segment->end[0], segment->end[1], d1);
-    between(corner[t], corner[next], d2);
-    closest_of_segments(segment->end[0], d1, corner[t], d2, &along, &s);
-    double weight[4] = {0};
-    weight[t] = 1 - s;
-    weight[next] = s;
-    offer(segment, corner, along, weight, closest);
-    between(corner[t], middle, d2);
-    closest_of_segments(segment->end[0], d1, corner[t], d2, &along, &s);
-    for (int a = 0; a < 4; a++) weight[a] = 0.25 * s;
-    weight[t] += 1 - s;
+    between(begin, end, d2);
+    closest_of_segments(segment->end[0], d1, begin, d2, &along, &part);
+    for (int a = 0; a < 4; a++) weight[a] = (1 - part) * from[a] + part * to[a];
     offer(segment, corner, along, weight, closest);
 }
 
@@ -391,19 +385,24 @@ static void offer_crossing(const lar_segment *segment, const double corner[4][3]
 }
 
 void lar_face_segment_closest(const lar_segment *segment, const double corner[4][3],
-                              lar_face_segment *closest) {
+                              lar_face_segment closest[4]) {
+    static const double at_corner[4][4] = {{1}, {0, 1}, {0, 0, 1}, {0, 0, 0, 1}},
+                        at_middle[4] = {0.25, 0.25, 0.25, 0.25};
     double middle[3];
     lar_face_parts parts[2];
     bool is_point = memcmp(segment->end[0], segment->end[1], sizeof segment->end[0]) == 0;
     int ends = is_point ? 1 : 2;
-    *closest = (lar_face_segment){.distance = INFINITY};
     middle_of(corner, middle);
     for (int e = 0; e < ends; e++) closest_of_parts(segment->end[e], corner, middle, &parts[e]);
     for (int t = 0; t < 4; t++) {
-        for (int e = 0; e < ends; e++) offer(segment, corner, e, parts[e].weight[t], closest);
+        const double *from = at_corner[t], *to = at_corner[(t + 1) % 4];
+        closest[t] = (lar_face_segment){.distance = INFINITY};
+        for (int e = 0; e < ends; e++) offer(segment, corner, e, parts[e].weight[t], &closest[t]);
         if (is_point) continue;
-        offer_edges(segment, corner, middle, t, closest);
-        offer_crossing(segment, corner, middle, t, closest);
+        offer_edge(segment, corner, from, to, &closest[t]);
+        offer_edge(segment, corner, from, at_middle, &closest[t]);
+        offer_edge(segment, corner, to, at_middle, &closest[t]);
+        offer_crossing(segment, corner, middle, t, &closest[t]);
     }
 }
 

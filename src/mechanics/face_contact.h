@@ -87,8 +87,9 @@ typedef struct lar_face_segment {
     double normal[3]; /* unit, from the segment to that point; 0 where the distance is 0 */
 } lar_face_segment;
 
+/* To each of its triangles. */
 void lar_face_segment_closest(const lar_segment *segment, const double corner[4][3],
-                              lar_face_segment *closest);
+                              lar_face_segment closest[4]);
 
 /* A point of the surface that moves smoothly where the closest one jumps: the mean of the closest
  * points of all triangles that are about as close to x as the closest of all, `min` away. Adds

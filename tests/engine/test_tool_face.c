@@ -82,10 +82,36 @@ static void a_crumpled_face_keeps_out_what_is_before_it(void **unused) {
     assert_true(force > 0.1 * 1e6 * 1e-3 * 0.5 * RADIUS);
 }
 
+/* A face folded around a sphere along a diagonal: as the sphere goes from the one side of the fold
+ * to the other, what pushes it across goes through nothing, without a jump. */
+static void a_folded_face_pushes_evenly(void **unused) {
+    (void)unused;
+    static const double corner[4][3] = {
+        {0, 0, 0}, {0.02, 0, 0.014}, {0.02, 0.02, 0}, {0, 0.02, 0.014}};
+    static const double across[3] = {0.70710678118654752, -0.70710678118654752, 0},
+                        down[3] = {0, 0, -1};
+    lone_face f;
+    make(corner, &f);
+    double before = 0, jump = 0, push = 0;
+    for (int k = -100; k <= 100; k++) {
+        double to = 1e-6 * k; /* [m] */
+        const double at[3] = {0.007 + to * across[0], 0.007 + to * across[1], 0.0059};
+        double now = pushed(&f, at, at, across);
+        if (k > -100) jump = fmax(jump, fabs(now - before));
+        if (k == 0) push = pushed(&f, at, at, down);
+        before = now;
+    }
+    print_message("a folded face: %.3g N down, in a micrometre at most %.2g N across\n", push,
+                  jump);
+    assert_true(push > 0.1);
+    assert_below(jump, 0.01 * push);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_flat_face_is_pushed_from_outside_only),
         cmocka_unit_test(a_crumpled_face_keeps_out_what_is_before_it),
+        cmocka_unit_test(a_folded_face_pushes_evenly),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

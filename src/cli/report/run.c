@@ -220,14 +220,15 @@ static void print_through(const run_report *report, const lar_contact_info *info
                 two_digits_of(0.25 * step * report->info.shortest_edge / info->way));
 }
 
-/* Nothing where nothing came close. What is let in is missing in the force: contact is as hard as a
+/* Nothing where nothing came close, nor where a scene has tools alone, which have lines of their
+ * own. What is let in is missing in the force: contact is as hard as a
  * step bears (docs/theory.md, "Contact"), so a shorter one lets in less. */
 static void print_contact(const run_report *report, FILE *out) {
     static const double MUCH = 0.05; /* of the shortest edge */
     const lar_simulation *simulation = report->simulation;
     lar_contact_info info;
     lar_simulation_contact(simulation, &info);
-    if (info.tested == 0) {
+    if (info.tested == 0 || lar_model_contact_count(report->model) == 0) {
         print_through(report, &info, out);
         return;
     }

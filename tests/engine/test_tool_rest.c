@@ -1,0 +1,103 @@
+/* Thin tools that stand deep in tissue, where faces are folded around them: they do no work, and
+ * the tissue comes to rest. */
+#include "engine/engine_test.h"
+#include "engine/tool_contact_test.h"
+
+static const brick block = {{8, 8, 4}, 0.005, 0, LAR_LAW_neo_hookean, 4e3, 2e5, 1050};
+static const double upright[4] = {1, 0, 0, 0}, height = 0.02;
+
+static lar_simulation *pressed(lar_model *model, double part, double x, double y, double deep) {
+    const double radius = model->tool[0].radius;
+    lar_options options = lar_options_default();
+    options.time_step = part * stable_step_of(model);
+    lar_simulation *simulation = start_with(model, options);
+    const double to[3] = {x, y, height + radius - deep};
+    place(simulation, 0, to, upright, 1, (uint64_t)(0.3 / options.time_step));
+    while (lar_simulation_time(simulation) < 1.7) advance(simulation, 100);
+    return simulation;
+}
+
+/* A shaft, tip down, off the middle of a face. */
+static void stand(double radius, double x, double y, double deep, double part) {
+    lar_model *model = brick_model(&block);
+    fix_nodes(model, brick_side(&block, 2, 0), LAR_AXIS_ALL);
+    touch_tool(model, "shaft",
+               (lar_tool){.shape = LAR_TOOL_CAPSULE, .radius = radius, .length = 0.1},
+               (double[]){x, y, height + radius + 0.001});
+    model->damping = 20;
+    lar_simulation *simulation = pressed(model, part, x, y, deep);
+    lar_tool_force force, later;
+    lar_energy then, now;
+    lar_error error;
+    double most = 0;
+    advance(simulation, 1);
+    lar_simulation_energy(simulation, &then);
+    assert_int_equal(lar_simulation_tool_force(simulation, 0, &force, &error), LAR_OK);
+    for (int i = 0; i < 500; i++) {
+        advance(simulation, 1);
+        assert_int_equal(lar_simulation_tool_force(simulation, 0, &later, &error), LAR_OK);
+        for (int k = 0; k < 3; k++) most = fmax(most, fabs(later.force[k] - force.force[k]));
+    }
+    lar_simulation_energy(simulation, &now);
+    print_message("radius %g mm, %g mm deep, %g of the stable step: (%.3g %.3g %.3g) N, within "
+                  "%.1e N; kinetic %.1e of strain, external grew by %.1e of it\n",
+                  1e3 * radius, 1e3 * deep, part, force.force[0], force.force[1], force.force[2],
+                  most, now.kinetic / now.strain, (now.external - then.external) / now.strain);
+    assert_true(force.force[2] > 0.1 && force.limited == 0);
+    assert_below(now.kinetic, 1e-9 * now.strain);
+    assert_below(fabs(now.external - then.external), 1e-8 * now.strain);
+    assert_below(most, 1e-4 * force.force[2]);
+    finish(simulation, model);
+}
+
+static void tissue_comes_to_rest(void **unused) {
+    (void)unused;
+    stand(0.0007, 0.0213, 0.0221, 0.008, 0.8);
+    stand(0.001, 0.0213, 0.0221, 0.008, 0.8);
+    stand(0.002, 0.0213, 0.0221, 0.008, 0.8);
+    stand(0.001, 0.0213, 0.0221, 0.004, 0.8);
+    stand(0.002, 0.0224, 0.021, 0.008, 0.8);
+    stand(0.002, 0.0213, 0.0221, 0.008, 0.3);
+}
+
+/* Two shafts that pinch a cube from both sides in line with its middle push along their line. */
+static void a_pinch_is_straight(void **unused) {
+    (void)unused;
+    static const brick cube = {{6, 6, 6}, 0.01 / 3, 0, LAR_LAW_neo_hookean, 4e3, 2e5, 1050};
+    static const double radius = 0.002, middle = 0.01;
+    lar_model *model = brick_model(&cube);
+    lar_tool tool = {.shape = LAR_TOOL_CAPSULE, .radius = radius, .length = 0.1};
+    touch_tool(model, "below", tool, (double[]){middle, middle, -0.0025});
+    touch_tool(model, "above", tool, (double[]){middle, middle, 0.0225});
+    memcpy(model->tool[0].rest.orientation, (double[]){0, 1, 0, 0}, sizeof upright);
+    model->damping = 20;
+    lar_simulation *simulation = start(model);
+    uint64_t steps = (uint64_t)(0.3 / lar_simulation_time_step(simulation));
+    place(simulation, 0, (double[]){middle, middle, middle - 0.006}, (double[]){0, 1, 0, 0}, 1,
+          steps);
+    place(simulation, 1, (double[]){middle, middle, middle + 0.006}, upright, 1, steps);
+    while (lar_simulation_time(simulation) < 1.5) advance(simulation, 100);
+    double most = 0, push = 0;
+    for (int i = 0; i < 100; i++) {
+        advance(simulation, 1);
+        for (int t = 0; t < 2; t++) {
+            lar_tool_force force;
+            lar_error error;
+            lar_simulation_tool_force(simulation, t, &force, &error);
+            most = fmax(most, hypot(force.force[0], force.force[1]));
+            push = fabs(force.force[2]);
+        }
+    }
+    print_message("a pinch of %.3g N, across it %.1e N\n", push, most);
+    assert_true(push > 0.1);
+    assert_below(most, 1e-6 * push);
+    finish(simulation, model);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(tissue_comes_to_rest),
+        cmocka_unit_test(a_pinch_is_straight),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
