@@ -1334,7 +1334,7 @@ typedef struct lar_device_status {
     int port;          /* where it listens */
     int connected;     /* not 0: a client is connected now */
     uint64_t received; /* positions taken */
-    uint64_t answered; /* forces sent */
+    uint64_t answered; /* of these, with a force; what is sent besides while it fades is not counted */
     uint64_t refused;  /* malformed packets, or packets from another sender */
     uint64_t late;     /* packets that came after a newer one, or twice */
     uint64_t lost;     /* sequence numbers that never came */

@@ -1,19 +1,12 @@
 /* lariat device: a force-feedback device for people who have none. */
 #include <inttypes.h>
-#include <signal.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "cli/commands.h"
+#include "cli/stop.h"
 #include "base/json/write.h"
 #include "study/device_client.h"
-
-static volatile sig_atomic_t stopped;
-
-static void stop(int signal) {
-    (void)signal;
-    stopped = 1;
-}
 
 static void write_json(const lar_device_client_options *o, const lar_device_client_report *r) {
     lar_json json = lar_json_to(stdout);
@@ -55,7 +48,8 @@ static void print_report(const lar_device_client_report *r) {
 }
 
 static int device_main(int argc, char **argv) {
-    lar_device_client_options o = {.period = 2, .rate = 1000, .seconds = 10, .stop = &stopped};
+    lar_device_client_options o = {
+        .period = 2, .rate = 1000, .seconds = 10, .stop = &cli_stop_asked};
     bool json = false;
     const cli_option options[] = {
         CLI_TEXT("--script", "FILE", "move along a file of positions at times", &o.script),
@@ -75,8 +69,7 @@ static int device_main(int argc, char **argv) {
                             "--script, --circle and --push exclude each other; use one");
     if (o.token && strlen(o.token) > 16)
         return cli_complain(&cli_device, CLI_USAGE, "a token has at most 16 characters");
-    struct sigaction action = {.sa_handler = stop, .sa_flags = (int)SA_RESETHAND};
-    sigaction(SIGINT, &action, NULL);
+    cli_catch_stop();
     lar_device_client_report report;
     lar_error error;
     if (lar_device_client(&o, &report, &error)) return cli_refuse(&cli_device, &error);
@@ -95,7 +88,7 @@ const cli_command cli_device = {
         "Sends positions to a session's tool as a device's driver would, a thousand times a\n"
         "second, takes the forces and says how long they took. Without --script, --circle or\n"
         "--push the hand rests. Positions are the device's own, its origin where the tool is at\n"
-        "rest. Ctrl-C ends it early, with a report.",
+        "rest. Ctrl-C or SIGTERM ends it early, with a report.",
     .examples = "  lariat device udp:127.0.0.1:9000 --push 0.02\n"
                 "  lariat device udp:127.0.0.1:9000 --circle 0.03 --seconds 60 --json\n",
     .main = device_main};

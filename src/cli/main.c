@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "cli/commands.h"
+#include "cli/stop.h"
 
 const cli_command *const cli_commands[] = {
     &cli_mesh,      &cli_info,         &cli_run,     &cli_view, &cli_replay,     &cli_verify,
@@ -66,6 +67,7 @@ static int dispatch(int argc, char **argv) {
     }
     for (int i = 0; i < COUNT; i++)
         if (strcmp(cli_commands[i]->name, name) == 0) {
+            cli_leave_at_stop(name);
             int status = check_environment(cli_commands[i]);
             return status ? status : cli_commands[i]->main(argc - 2, argv + 2);
         }

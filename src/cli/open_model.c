@@ -3,11 +3,15 @@
 #include <strings.h>
 
 #include "cli/commands.h"
+#include "cli/stop.h"
+#include "study/processes.h"
 
 const char *const cli_element_names[] = {"hex8", "hex8-full", "hex8-matrix", NULL};
 const char *const cli_isa_names[] = {"auto", "c", "neon", "avx2", "avx512", NULL};
 
 int cli_refuse(const cli_command *command, const lar_error *error) {
+    if (cli_stop_asked && lar_processes_interrupted(error))
+        return cli_complain(command, CLI_INTERRUPTED, "interrupted");
     int status = error->status == LAR_ERROR_ARGUMENT   ? CLI_USAGE
                  : error->status == LAR_ERROR_UNSTABLE ? CLI_UNSTABLE
                                                        : CLI_FAILED;

@@ -142,6 +142,8 @@ int cli_processes_end(const cli_command *command, lar_processes *processes, lar_
 
 int cli_complain_as_other(const cli_command *command, const lar_processes *processes,
                           const lar_error *error) {
+    if (lar_processes_interrupted(error) && lar_processes_has_parent(processes))
+        return CLI_FAILED; /* processor zero says so */
     if (error->status != LAR_ERROR_PEER) lar_processes_hesitate(processes);
     return cli_refuse(command, error);
 }

@@ -115,6 +115,7 @@ static int check_all(verify *v) {
     for (size_t i = 0; i < sizeof stages / sizeof stages[0]; i++) {
         lar_error error;
         v->failure = stages[i].check(&v->setting, &v->report, &error);
+        if (v->failure && lar_processes_interrupted(&error)) return cli_refuse(&cli_verify, &error);
         if (v->failure)
             return cli_complain(&cli_verify,
                                 v->failure == LAR_ERROR_UNSTABLE ? CLI_UNSTABLE : CLI_FAILED, "%s",

@@ -343,6 +343,7 @@ static void look_last(view *v) {
         lar_session_status_get(v->session, status);
     }
     if (status->state == LAR_SESSION_PAUSED) status->state = state;
+    announce(v, status, now());
 }
 
 static void look_after(view *v) {
@@ -393,7 +394,8 @@ static int report(view *v, int status) {
         view_report_json(r, stdout);
     else
         view_report_table(r, stdout);
-    return !status && r->status.state == LAR_SESSION_STOPPED ? CLI_UNSTABLE : status;
+    if (status || r->status.state != LAR_SESSION_STOPPED) return status;
+    return r->status.error == LAR_ERROR_UNSTABLE ? CLI_UNSTABLE : CLI_FAILED;
 }
 
 static int present(view *v) {

@@ -88,6 +88,23 @@ static lar_status check_options(const lar_comm_options *o, const lar_comm_backen
     return LAR_OK;
 }
 
+/* ---- an interrupted start ------------------------------------------------------------------- */
+
+const char lar_comm_interrupted[] =
+    "the start was interrupted: a processor was told to end before all were ready";
+
+static int interrupted, opening; /* atomic; lar_comm_open waits so many times */
+
+bool lar_comm_interrupt(void) {
+    __atomic_store_n(&interrupted, 1, __ATOMIC_SEQ_CST);
+    return __atomic_load_n(&opening, __ATOMIC_SEQ_CST) > 0;
+}
+
+lar_status lar_comm_check_interrupt(lar_error *error) {
+    if (!__atomic_load_n(&interrupted, __ATOMIC_SEQ_CST)) return LAR_OK;
+    return lar_fail(error, LAR_ERROR_PEER, "%s", lar_comm_interrupted);
+}
+
 /* Connects to the peers between two parts of the rendezvous: before, all addresses are known;
  * after, everyone can reach everyone. */
 static lar_status come_together(lar_comm *comm, lar_error *error) {
@@ -111,10 +128,14 @@ static lar_status open_parts(lar_comm *comm, lar_error *error) {
         return lar_fail_memory(error, count * sizeof *comm->addresses, "addresses of processors");
     for (size_t p = 0; p < count; p++) comm->links[p] = -1;
     comm->addresses[comm->options.self].receive_bytes = comm->options.receive_bytes;
+    bool waits = !comm->backend->meets && count > 1;
+    __atomic_fetch_add(&opening, waits, __ATOMIC_SEQ_CST);
     lar_status status = comm->backend->open(comm, error);
     if (!status) status = come_together(comm, error);
+    if (!status && comm->backend->begin) comm->backend->begin(comm);
+    __atomic_fetch_sub(&opening, waits, __ATOMIC_SEQ_CST);
+    if (!status && waits) status = lar_comm_check_interrupt(error);
     if (status) return status;
-    if (comm->backend->begin) comm->backend->begin(comm);
     /* What a processor sends to itself needs no network. */
     comm->peers[comm->options.self] = (lar_comm_peer){comm->receive, comm->options.receive_bytes};
     return comm->backend->meets ? LAR_OK : lar_heartbeat_start(comm, error);

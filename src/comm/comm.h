@@ -54,6 +54,7 @@ typedef struct lar_comm_options {
     int32_t self, count;  /* this processor, 0..count-1 */
     size_t receive_bytes; /* of one half of the own receive buffer, tails included */
     uint64_t identity;    /* hash of model, schedule and whatever else must agree */
+    double time_step;     /* [s] part of that, for a refusal with the reason; 0: not told */
     lar_comm_team *team;  /* backend threads only */
     const char *master;   /* otherwise: "host:port" where processor zero listens (job.h: by MPI) */
     int listener;         /* processor zero: from lar_comm_listen, or -1 to listen at `master`.
@@ -83,6 +84,12 @@ lar_status lar_comm_listen(const char *address, int *listener, char bound[LAR_CO
 /* What lar_comm_open says at processor zero when the listener was shut down (shutdown) by whoever
  * else has it, and knows more: that a processor will not come. */
 extern const char lar_comm_called_off[];
+
+/* Ends every wait for others to come, now and later, with the sentence below; who is refused by one
+ * that was interrupted gets it too. For signal handlers: safe in them. True while lar_comm_open
+ * waits in this process: then it returns within about a second, and has cleaned up. */
+bool lar_comm_interrupt(void);
+extern const char lar_comm_interrupted[];
 
 /* Meets the others and returns when all can write to all. Fails, with the same sentence for
  * everyone, when one does not come in time, or comes with another version, backend, number of

@@ -10,10 +10,11 @@
 #include "base/socket.h"
 
 /* Changes with every change of what travels. Its bytes in another order are another number. */
-static const uint64_t MAGIC = 0x4c61726961740001u;
+static const uint64_t MAGIC = 0x4c61726961740002u;
 
 typedef struct hello {
     uint64_t magic, identity;
+    double time_step;
     int32_t self, count;
     char version[16], backend[16];
     lar_comm_address address;
@@ -43,6 +44,7 @@ static const double LOOK = 0.05;
 static const double LATE = 1; /* for guests after a refusal [s] */
 
 lar_status lar_rendezvous_check(const lar_comm *comm, lar_error *error) {
+    if (lar_comm_check_interrupt(error)) return LAR_ERROR_PEER;
     for (int32_t p = 0; p < comm->options.count; p++)
         if (comm->links[p] >= 0 && lar_socket_ended(comm->links[p])) return lost(p, error);
     struct pollfd zero = {.fd = comm->links[0], .events = POLLIN};
@@ -112,6 +114,11 @@ static lar_status judge(const lar_comm *comm, const hello *h, const hello *own, 
                         "a processor says that it is number %d of %d, processor 0 expects 1 to %d "
                         "of %d; give all the same number of processors",
                         p, (int)h->count, (int)own->count - 1, (int)own->count);
+    if (h->time_step != own->time_step)
+        return lar_fail(error, LAR_ERROR_PEER,
+                        "processor %d has a time step of %.9g s, processor 0 one of %.9g s; give "
+                        "all the same --time-step and the same files",
+                        p, h->time_step, own->time_step);
     if (h->identity != own->identity)
         return lar_fail(error, LAR_ERROR_PEER,
                         "processor %d has another model or schedule than processor 0; give all "
@@ -240,6 +247,11 @@ static lar_status host_rendezvous(lar_comm *comm, const hello *own, lar_error *e
 /* ---- the others --------------------------------------------------------------------------- */
 
 static lar_status hear_zero(lar_comm *comm, note *n, double deadline, lar_error *error) {
+    struct pollfd link = {.fd = comm->links[0], .events = POLLIN};
+    while (poll(&link, 1, 0) != 1 && lar_comm_now() < deadline) {
+        if (lar_comm_check_interrupt(error)) return LAR_ERROR_PEER;
+        lar_socket_poll(link.fd, POLLIN, next_look(deadline));
+    }
     lar_socket_end end = lar_socket_receive(comm->links[0], n, sizeof *n, deadline);
     if (end == LAR_SOCKET_LATE)
         return lar_fail(error, LAR_ERROR_PEER,
@@ -273,7 +285,14 @@ static lar_status join_rendezvous(lar_comm *comm, const hello *own, lar_error *e
 lar_status lar_rendezvous_call(int32_t p, const char *address, double deadline, int *socket,
                                lar_error *error) {
     lar_error why;
-    lar_status status = lar_socket_connect(address, deadline, socket, &why);
+    lar_status status = LAR_ERROR_PEER;
+    /* Again and again, ever longer: an answer may be far away. */
+    for (double wait = LOOK; status == LAR_ERROR_PEER; wait = wait < 0.5 ? 2 * wait : 1) {
+        if (lar_comm_check_interrupt(error)) return LAR_ERROR_PEER;
+        double until = lar_comm_now() + wait;
+        status = lar_socket_connect(address, until < deadline ? until : deadline, socket, &why);
+        if (lar_comm_now() > deadline) break;
+    }
     if (!status) return LAR_OK;
     return lar_fail(error, status, "processor %d is not reached: %s", (int)p, why.message);
 }
@@ -282,6 +301,7 @@ lar_status lar_rendezvous_gather(lar_comm *comm, lar_error *error) {
     if (comm->options.count == 1) return LAR_OK;
     hello own = {.magic = MAGIC,
                  .identity = comm->options.identity,
+                 .time_step = comm->options.time_step,
                  .self = comm->options.self,
                  .count = comm->options.count,
                  .address = comm->addresses[comm->options.self]};

@@ -74,6 +74,7 @@ static lar_status open_comm(lar_computer *computer, lar_processor *p, lar_error 
                          (size_t)p->layers * (size_t)schedule->receive_bytes +
                          lar_contact_bytes(&computer->contact.map);
     comm.identity = computer->identity;
+    comm.time_step = computer->whole->time_step;
     comm.team = computer->team;
     comm.master = options->master;
     comm.listener = p->self == 0 ? options->listener : -1;

@@ -1,7 +1,9 @@
 /* The commands of viewers are executed. */
 #include <errno.h>
+#include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "server/state.h"
@@ -16,8 +18,8 @@ lar_viewer *lar_server_find(const lar_server *server, uint64_t number) {
 
 static const char CHECKPOINT[] = "checkpoint", RECORDING[] = "recording";
 
-/* The next free name of a kind: uterus-3.checkpoint. A number is given out once, also while its
- * file is not there yet. False when the folder is full of them. */
+/* The next free name of a kind: uterus-3.checkpoint. An empty file takes it at once, so that no
+ * other session of this folder gets it too. False when the folder is full of them. */
 static bool choose_name(lar_server *server, const char *extension, lar_job *job) {
     while (server->saved_number < LAR_SAVE_NUMBERS) {
         int length = snprintf(job->name, sizeof job->name, "%s-%d.%s", server->stem,
@@ -26,9 +28,19 @@ static bool choose_name(lar_server *server, const char *extension, lar_job *job)
         if (length < 0 || (size_t)length >= sizeof job->name || whole < 0 ||
             (size_t)whole >= sizeof job->path)
             return false;
-        if (access(job->path, F_OK) != 0 && errno == ENOENT) return true;
+        int file = open(job->path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        if (file >= 0) return close(file) == 0;
+        if (errno != EEXIST) return false;
     }
     return false;
+}
+
+/* A name under which nothing was written is free again. */
+static void give_back_name(const lar_job *job) {
+    struct stat about;
+    bool named = job->kind == LAR_COMMAND_SAVE || (job->kind == LAR_COMMAND_RECORD && job->on);
+    if (named && lstat(job->path, &about) == 0 && S_ISREG(about.st_mode) && about.st_size == 0)
+        unlink(job->path);
 }
 
 /* Twice a second is often enough for people; whoever wants to fill the disk has to wait. */
@@ -87,8 +99,8 @@ static bool prepare_job(lar_server *server, lar_viewer *viewer, const lar_comman
     if (names &&
         !choose_name(server, command->kind == LAR_COMMAND_SAVE ? CHECKPOINT : RECORDING, job)) {
         lar_viewer_note(server, viewer,
-                        "no name is left in the folder for saved states, or it cannot be read; "
-                        "move some files away");
+                        "no name is left in the folder for saved states, or nothing can be written "
+                        "there; move some files away, or check its permissions and the free space");
         return false;
     }
     return true;
@@ -96,8 +108,9 @@ static bool prepare_job(lar_server *server, lar_viewer *viewer, const lar_comman
 
 static void ask_job(lar_server *server, lar_viewer *viewer, const lar_command *command) {
     lar_job job = {.kind = command->kind, .viewer = viewer->number, .on = command->on};
-    if (prepare_job(server, viewer, command, &job) && !lar_work_ask(&server->work, &job))
-        lar_viewer_note(server, viewer, "too much is asked for at once; try again in a moment");
+    if (!prepare_job(server, viewer, command, &job) || lar_work_ask(&server->work, &job)) return;
+    give_back_name(&job);
+    lar_viewer_note(server, viewer, "too much is asked for at once; try again in a moment");
 }
 
 void lar_server_watch_recording(lar_server *server) {
@@ -153,6 +166,7 @@ void lar_server_job_ended(lar_server *server, const lar_job_end *end) {
     if (end->job.kind == LAR_COMMAND_INSPECT) return lar_server_tell_reading(server, end);
     lar_viewer *viewer = lar_server_find(server, end->job.viewer);
     bool done = end->error.status == LAR_OK;
+    if (!done) give_back_name(&end->job);
     if (!done && viewer) lar_viewer_note(server, viewer, end->error.message);
     bool over = end->job.kind == LAR_COMMAND_RECORD && !end->job.on;
     if (!done && over) server->recording[0] = '\0'; /* it is lost, and the status says so */

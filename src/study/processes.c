@@ -58,21 +58,27 @@ static bool by_hand(const lar_processes *p) {
 
 /* ---- the parent ----------------------------------------------------------------------------- */
 
-#ifdef __linux__
+/* Processor zero's word that it is over. */
+enum { OVER = SIGUSR1 };
+
 static void end_soon(int signal_number) {
     (void)signal_number;
+    lar_comm_interrupt();
     alarm(2);
 }
-#endif
 
 /* When processor zero ends, this process has two seconds to find out and to say so. The signal may
  * come more than once: for each thread of the dying process that was the parent for a moment. */
 static void follow_parent(void) {
-#ifdef __linux__
     struct sigaction action = {.sa_handler = end_soon, .sa_flags = SA_RESTART};
+    sigset_t over;
     sigemptyset(&action.sa_mask);
-    sigaction(SIGUSR1, &action, NULL);
-    prctl(PR_SET_PDEATHSIG, SIGUSR1);
+    sigaction(OVER, &action, NULL);
+    sigemptyset(&over);
+    sigaddset(&over, OVER);
+    sigprocmask(SIG_UNBLOCK, &over, NULL);
+#ifdef __linux__
+    prctl(PR_SET_PDEATHSIG, OVER);
 #endif
 }
 
@@ -140,6 +146,10 @@ int32_t lar_processes_self(const lar_processes *p) {
     return p->self;
 }
 
+bool lar_processes_has_parent(const lar_processes *p) {
+    return p->has_parent;
+}
+
 bool lar_processes_by_hand(const lar_processes *p) {
     return by_hand(p) && !p->has_parent;
 }
@@ -164,16 +174,35 @@ static char **make_command(const lar_processes *p, char *words, char number[16])
     return command;
 }
 
+/* What it leaves to processor zero; and OVER, until it can hear it. */
+static void block_signals(posix_spawnattr_t *attributes) {
+    static const int left[] = {SIGINT, SIGTERM, SIGHUP, OVER};
+    sigset_t blocked;
+    pthread_sigmask(SIG_BLOCK, NULL, &blocked);
+    for (size_t i = 0; i < sizeof left / sizeof left[0]; i++) sigaddset(&blocked, left[i]);
+    posix_spawnattr_setsigmask(attributes, &blocked);
+    posix_spawnattr_setflags(attributes, POSIX_SPAWN_SETSIGMASK);
+}
+
 /* It reads nothing, and writes messages only. */
 static int spawn(char **command, char **environment, pid_t *child) {
     posix_spawn_file_actions_t files;
-    int reason = posix_spawn_file_actions_init(&files);
+    posix_spawnattr_t attributes;
+    int reason = posix_spawnattr_init(&attributes);
     if (reason) return reason;
+    block_signals(&attributes);
+    reason = posix_spawn_file_actions_init(&files);
+    if (reason) {
+        posix_spawnattr_destroy(&attributes);
+        return reason;
+    }
     reason = posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
     if (!reason)
         reason = posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-    if (!reason) reason = posix_spawn(child, "/proc/self/exe", &files, NULL, command, environment);
+    if (!reason)
+        reason = posix_spawn(child, "/proc/self/exe", &files, &attributes, command, environment);
     posix_spawn_file_actions_destroy(&files);
+    posix_spawnattr_destroy(&attributes);
     return reason;
 }
 
@@ -295,6 +324,14 @@ lar_status lar_processes_create(lar_processes *p, const lar_model *model,
     return name_missing(p, &arrival, status, error);
 }
 
+bool lar_processes_interrupt(void) {
+    return lar_comm_interrupt();
+}
+
+bool lar_processes_interrupted(const lar_error *error) {
+    return strcmp(error->message, lar_comm_interrupted) == 0;
+}
+
 void lar_processes_hesitate(const lar_processes *p) {
     for (double until = lar_clock_seconds() + HESITATION;
          p->has_parent && lar_clock_seconds() < until;)
@@ -358,6 +395,9 @@ static void reap_all(lar_processes *p, lar_status failure, lar_error *worst) {
     double until = lar_clock_seconds() + patience;
     lar_error ignored = {.status = LAR_OK};
     bool killed = false;
+    /* Who still waits for others leaves nothing behind. */
+    for (int32_t k = 1; failure && k < p->count; k++)
+        if (p->pid[k] > 0) kill(p->pid[k], OVER);
     while (reap(p, failure, killed ? &ignored : worst) > 0) {
         if (!killed && lar_clock_seconds() > until) {
             end_all(p, failure, worst);

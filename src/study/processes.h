@@ -12,7 +12,9 @@
  *     lar_processes_create   for lar_simulation_create, in all of them as often
  *     lar_processes_end
  *
- * Processes that were started here read and write nothing but messages. When processor zero ends
+ * Processes that were started here read and write nothing but messages, and never get SIGINT,
+ * SIGTERM and SIGHUP: these often go to all of a group, and processor zero ends the run for all.
+ * When processor zero ends
  * without a word, they learn it from their connection and can say so; should one of them not get
  * there within two seconds, the system ends it.
  */
@@ -39,12 +41,20 @@ struct lar_comm_job;
 lar_status lar_processes_meet_in_job(struct lar_comm_job *job, lar_options *options,
                                      lar_error *error);
 
+/* For handlers of signals that ask a command to end: true while processors wait for each other in
+ * this process. Then lar_processes_create ends soon, with nothing left behind, and an error of
+ * which lar_processes_interrupted is true. It is also where another processor was asked. */
+bool lar_processes_interrupt(void);
+bool lar_processes_interrupted(const lar_error *error);
+
 /* LAR_ERROR_ARGUMENT when launcher and options do not belong together. */
 lar_status lar_processes_begin(const lar_processes_setting *setting, lar_processes **processes,
                                lar_error *error);
 
 /* The number of this process's first processor. */
 int32_t lar_processes_self(const lar_processes *processes);
+/* Whether processor zero has started this one. */
+bool lar_processes_has_parent(const lar_processes *processes);
 /* Whether somebody started this one by itself, and not processor zero or a launcher. */
 bool lar_processes_by_hand(const lar_processes *processes);
 

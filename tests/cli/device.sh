@@ -71,10 +71,21 @@ value_of largest_force | awk '{ exit !($1 > 0.01 && $1 <= 8.001) }' ||
     fail "the largest force is $(value_of largest_force) N"
 value_of touching | awk '{ exit !($1 > 0) }' || fail "the tool never touched"
 value_of strange | awk '{ exit !($1 == 0) }' || fail "answers that are none"
+# SIGTERM ends it as Ctrl-C does.
+"$LARIAT" device "udp:127.0.0.1:$port" --seconds 60 --json >"$SCRATCH/out" 2>"$SCRATCH/err" &
+device=$!
+sleep 1.5
+kill -TERM $device
+wait $device || fail "SIGTERM ended the device with $?"
+has_keys --numbers sent answered
 end_session
 for key in devices answer_us received refused timeouts; do
     grep -q "\"$key\":" view.json || fail "the session's report lacks $key"
 done
+# Two devices have fallen silent, and what faded then is no answer.
+awk '/"received":/ { received = $2 + 0 } /"answered":/ { answered = $2 + 0 }
+    END { exit !(answered > 0 && answered <= received) }' view.json ||
+    fail "more answers than positions: $(grep '"received"\|"answered"' view.json)"
 
 # Every key is in docs/cli.md.
 for key in address seconds sent answered lost strange steps round_trip_us largest_force mean_force \

@@ -11,7 +11,8 @@ children() {
 }
 
 # interrupt SIGNAL OPTIONS...: one run, on one processor or on several, threads or processes. The
-# first signal ends it, with all that belongs to it.
+# first signal ends it, with all that belongs to it. All of them get it, as from a terminal or
+# a supervisor, and twice, as from GNU timeout.
 interrupt() {
     signal=$1
     shift
@@ -29,7 +30,10 @@ interrupt() {
     others=$(children $pid)
     case "$*" in *shm* | *tcp*) [ -n "$others" ] || fail "no other process with $*" ;; esac
     began=$(date +%s)
-    kill -$signal $pid
+    # shellcheck disable=SC2086
+    kill -$signal $others $pid
+    # shellcheck disable=SC2086
+    kill -$signal $others $pid 2>/dev/null
     wait $pid
     status=$?
     [ $status -eq 130 ] || fail "exit status $status instead of 130 after SIG$signal $*"
@@ -44,12 +48,35 @@ interrupt() {
     [ -e "$results/beam_000000.vtu" ] || fail "the last state was not written"
     cmp -s "$SCRATCH/out" "$results/run.json" || fail "run.json differs from --json"
 }
-for signal in INT TERM; do
+for signal in INT TERM HUP; do
     interrupt $signal
     interrupt $signal --grid 2x2x1
     interrupt $signal --grid 2x1x1 --comm shm
     interrupt $signal --grid 3x1x1 --comm tcp
 done
+
+# A session that all of its group is told to end, twice: no processor is lost.
+if "$LARIAT" view "$SOURCE/examples/beam.yaml" --port 0 --seconds 0.1 --json >/dev/null 2>&1; then
+    "$LARIAT" view "$SOURCE/examples/beam.yaml" --port 0 --grid 2x1x1 --comm shm --json \
+        >"$SCRATCH/out" 2>"$SCRATCH/err" &
+    pid=$!
+    for _ in $(seq 300); do
+        grep -q '^http' "$SCRATCH/err" && break
+        sleep 0.1
+    done
+    sleep 0.3
+    others=$(children $pid)
+    [ -n "$others" ] || fail "no other process of the session"
+    # shellcheck disable=SC2086
+    kill -TERM $others $pid
+    # shellcheck disable=SC2086
+    kill -TERM $others $pid 2>/dev/null
+    wait $pid
+    status=$?
+    [ $status -eq 0 ] || fail "a session that is told to end: status $status"
+    grep -q 'is lost' "$SCRATCH/err" && fail "a processor is lost at the end of a session"
+    has_keys url state
+fi
 
 # As early as it is heard at all, perhaps before the first step: every number is a number.
 for wait in 0 0.001 0.003 0.01; do
@@ -69,4 +96,66 @@ for wait in 0 0.001 0.003 0.01; do
     [ ! -s "$SCRATCH/err" ] || fail "messages after an early SIGINT: $(cat "$SCRATCH/err")"
     has_keys state_hash --numbers steps frames ns_per_element real_time_factor
 done
-finish "interrupted after $(value_of steps) steps"
+steps=$(value_of steps)
+
+# Before there is anything to end with: one sentence, and nothing is left.
+listens() { # until it catches SIGTERM
+    for _ in $(seq 300); do
+        case $(sed -n 's/^SigCgt:.*\(.\)...$/\1/p' "/proc/$1/status") in [4567cdef]) return ;; esac
+        sleep 0.02
+    done
+    fail "process $1 listens for no signal"
+}
+leave() {
+    kill -TERM $pid
+    wait $pid
+    status=$?
+    [ $status -eq 130 ] || fail "exit status $status instead of 130: $*"
+    [ ! -s "$SCRATCH/out" ] || fail "output of $*"
+    [ "$(cat "$SCRATCH/err")" = "lariat $1: interrupted" ] ||
+        fail "instead of one sentence: $(cat "$SCRATCH/err")"
+}
+early() {
+    "$LARIAT" "$@" >"$SCRATCH/out" 2>"$SCRATCH/err" &
+    pid=$!
+    listens $pid
+    leave "$@"
+}
+early verify "$SOURCE/examples/beam.yaml" --steps 1000000000 --json
+early bench jitter --seconds 60 --json
+port=$((20000 + $$ % 12000))
+for who in 0 1; do
+    set -- run "$SOURCE/examples/beam.yaml" --grid 2x1x1 --comm shm --processor $who \
+        --master 127.0.0.1:$port
+    "$LARIAT" "$@" >"$SCRATCH/out" 2>"$SCRATCH/err" &
+    pid=$!
+    memory=
+    for _ in $(seq 300); do
+        memory=$(sed -n 's,.* \(/dev/shm/lariat-comm[^ ]*\)$,\1,p' /proc/$pid/maps | head -n 1)
+        [ -n "$memory" ] && break
+        sleep 0.02
+    done
+    [ -e "$memory" ] || fail "processor $who waits without memory"
+    if [ $who = 0 ]; then
+        leave "$@"
+    else # it has a number of its own in messages
+        kill -TERM $pid
+        wait $pid
+        [ $? -eq 130 ] || fail "processor 1 does not leave: $(cat "$SCRATCH/err")"
+    fi
+    [ ! -e "$memory" ] || fail "$memory is left by processor $who"
+done
+
+# Too few open files: who cannot begin takes with it whom it has started.
+for files in 5 6; do
+    ls /dev/shm >"$SCRATCH/before"
+    (
+        ulimit -n $files
+        exec "$LARIAT" run "$SOURCE/examples/beam.yaml" --grid 2x1x1 --comm shm --steps 10
+    ) >"$SCRATCH/out" 2>"$SCRATCH/err"
+    [ $? -eq 1 ] || fail "a run with $files files"
+    for left in $(ls /dev/shm | grep '^lariat-comm' | grep -vxFf "$SCRATCH/before"); do
+        flock -n "/dev/shm/$left" true && fail "$left is left with $files files"
+    done
+done
+finish "interrupted after $steps steps"

@@ -136,6 +136,7 @@ static void test_silent_device_is_told_zero(void **state) {
     }
     assert_true(before == 0);
     assert_true(answers > 45 && answers < 60);
+    assert_true(r.report.answered == 350 && r.report.received == 350);
     assert_int_equal(r.report.timeouts, 1);
     assert_false(r.report.connected);
     close(s);

@@ -128,6 +128,35 @@ static void viewers_come_and_go(void **unused) {
     end_serving(&s);
 }
 
+/* Two sessions with one folder: each state has a name of its own. */
+static void two_save_into_one_folder(void **unused) {
+    (void)unused;
+    enum { TIMES = 3 };
+    char folder[256], name[2][64];
+    snprintf(folder, sizeof folder, "%s/server-both-%d", LAR_TEST_BUILD, (int)getpid());
+    served s[2];
+    client c[2];
+    for (int i = 0; i < 2; i++) {
+        s[i] = serve_with(NULL, &(lar_server_options){.save_folder = folder});
+        c[i] = open_client(s[i].port);
+        await_text(&c[i], "hello");
+    }
+    for (int k = 0; k < TIMES; k++) {
+        for (int i = 0; i < 2; i++) say(&c[i], "{\"do\":\"save\"}");
+        for (int i = 0; i < 2; i++) {
+            const char *found = strstr(await_text(&c[i], "saved"), "\"name\":");
+            assert_non_null(found);
+            snprintf(name[i], sizeof name[i], "%.40s", found);
+        }
+        assert_string_not_equal(name[0], name[1]);
+        nap(0.6);
+    }
+    for (int i = 0; i < 2; i++) {
+        close_client(&c[i]);
+        end_serving(&s[i]);
+    }
+}
+
 /* For tools/bench_viewers.sh: fifty viewers of a server that runs already. */
 static int look_from_outside(int port, double seconds) {
     crowd *all = calloc(1, sizeof *all);
@@ -147,6 +176,7 @@ int main(int argc, char **argv) {
     if (argc == 4 && strcmp(argv[1], "look") == 0)
         return look_from_outside(atoi(argv[2]), atof(argv[3]));
     const struct CMUnitTest tests[] = {cmocka_unit_test(fifty_at_once),
-                                       cmocka_unit_test(viewers_come_and_go)};
+                                       cmocka_unit_test(viewers_come_and_go),
+                                       cmocka_unit_test(two_save_into_one_folder)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -288,7 +288,7 @@ static void udp_feel(void *data, const lar_device_tick *tick, const lar_tool_for
         int64_t took = now - state->answer[i].came;
         if (took >= 0) lar_histogram_add(&state->answer_time, (uint64_t)took);
     }
-    if (sent > 0) state->answered += (uint64_t)sent;
+    if (sent > 0 && !fading) state->answered += (uint64_t)sent;
     state->due = 0;
 }
 
