@@ -126,6 +126,7 @@ static void put(const char *folder, const char *name, const char *text) {
 static void groups_limit_cores(void **state) {
     (void)state;
     const char *none = "groups/none", *list = "groups/list";
+    unlink("groups/two/a/cpu.max"); /* of an earlier run */
     put("groups", "list", "0::/a/b\n");
     assert_true(isinf(lar_cores_of_groups(none, "groups/two")));
     assert_true(isinf(lar_cores_of_groups(list, "groups/nothing")));
