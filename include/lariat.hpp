@@ -136,6 +136,10 @@ inline const char *version() {
 inline std::int32_t version_number() {
     return lar_version_number();
 }
+/* That the calling thread may use. */
+inline std::int32_t usable_cores() {
+    return lar_usable_cores();
+}
 inline void memory_set(const lar_memory_hooks &hooks) {
     detail::call(lar_memory_set, &hooks);
 }
