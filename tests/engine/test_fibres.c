@@ -61,11 +61,11 @@ static lar_model *straight_tool_model(const brick *b) {
 
 /* ---- the same bits -------------------------------------------------------------------------- */
 
-static same_bits body = {fibrous_tool_model, PATH, {0xce03b8b724ddfd6e, 0x19fb3e32e3d436d7}};
+static same_bits body = {fibrous_tool_model, PATH, {0xc6ef6d3f224f49a1, 0xb5c14abc322d6f94}};
 
 static same_bits straight = {straight_tool_model,
                              LAR_TEST_BUILD "/straight.checkpoint",
-                             {0x083cc58c0c320324, 0xb665a392e662e0a8}};
+                             {0x242c68fcbdad3f75, 0x7f63781777190227}};
 
 /* Parameters of each law beside tissue of some kilopascal. */
 static const double LAWS[LAR_FIBRE_LAWS][LAR_FIBRE_PARAMETERS] = {
