@@ -5,7 +5,7 @@
  *     cli_catch_stop     ends it with what there is: the command looks at cli_stop_asked
  *
  * A second signal then ends the program at once. One that comes within half a second of the first
- * is no second wish: GNU timeout sends its own twice, to its child and to the group of it. */
+ * does not count again: GNU timeout sends its own twice, to its child and to the group of it. */
 #ifndef LAR_CLI_STOP_H
 #define LAR_CLI_STOP_H
 

@@ -207,7 +207,7 @@ wait $zero
 status=$?
 [ $status -eq 130 ] || fail "processor 0 ended with $status: $(cat zero)"
 wait $pid || fail "processor 1 did not go on to the end: $(cat complaint)"
-# A second signal at once is no second wish; one half a second later is.
+# A second signal at once does not count again; one half a second later does.
 port=$((port + 1))
 by_hand run $scene --time 60 --realtime
 "$LARIAT" run $scene --time 60 --realtime --grid 2x1x1 --comm tcp --processor 0 \
