@@ -16,33 +16,45 @@ static lar_status wait_for_threads(const lar_processor *p, uint64_t round, lar_e
 
 /* ---- the exchange buffer --------------------------------------------------------------------- */
 
+/* Where the node with this number here is, how fast, and its step. */
+static void write_place(const lar_state *state, const double rest[3], int32_t local,
+                        double to[LAR_PLACE_VALUES]) {
+    const double *u = state->u + local, *v = state->v + local;
+    const size_t y = state->stride, z = 2 * y;
+    to[0] = rest[0] + u[0];
+    to[1] = rest[1] + u[y];
+    to[2] = rest[2] + u[z];
+    to[3] = v[0];
+    to[4] = v[y];
+    to[5] = v[z];
+    to[6] = state->level[local];
+}
+
 static double fastest_of(const double place[LAR_PLACE_VALUES], double max) {
-    for (int i = 3; i < 6; i++) max = lar_larger(max, fabs(place[i]));
+    double x = fabs(place[3]), y = fabs(place[4]), z = fabs(place[5]);
+    /* Seldom; numbers that are none come here as well. */
+    if (!(x <= max && y <= max && z <= max)) max = lar_larger(lar_larger(lar_larger(max, x), y), z);
     return max;
 }
 
 void lar_contact_publish(lar_worker *worker, uint64_t round) {
     const lar_processor *p = worker->processor;
     lar_contact_exchange *exchange = p->exchange;
-    const lar_publish_list *publish = &exchange->publish[worker->thread];
+    const lar_contact_surface *surface = exchange->map->surface;
+    const lar_publish_list publish = exchange->publish[worker->thread];
     lar_contact_sequence *sequence = &exchange->sequence[worker->thread];
-    const lar_state *state = &worker->state;
+    const lar_state state = worker->state;
+    const int32_t *local = exchange->local;
     double(*place)[LAR_PLACE_VALUES] = exchange->place[round & 1], max = 0;
-    for (int32_t i = 0; i < publish->count; i++) {
-        const double *rest = exchange->map->surface->rest[publish->node[i]];
-        double *to = place[publish->slot[i]];
-        int32_t local = exchange->local[publish->node[i]];
-        for (int k = 0; k < 3; k++) {
-            to[k] = rest[k] + state->u[lar_state_at(state, local, k)];
-            to[3 + k] = state->v[lar_state_at(state, local, k)];
-        }
-        to[6] = state->level[local];
-        if (exchange->stick[0])
-            memcpy(exchange->stick[round & 1][publish->slot[i]],
-                   lar_stick_of(exchange->map->surface, state, publish->node[i]),
-                   sizeof *exchange->stick[0]);
+    for (int32_t i = 0; i < publish.count; i++) {
+        int32_t node = publish.node[i];
+        double *to = place[publish.slot[i]];
+        write_place(&state, surface->rest[node], local[node], to);
         max = fastest_of(to, max);
     }
+    for (int32_t i = 0; i < publish.count && exchange->stick[0]; i++)
+        memcpy(exchange->stick[round & 1][publish.slot[i]],
+               lar_stick_of(surface, &worker->state, publish.node[i]), sizeof *exchange->stick[0]);
     sequence->speed[round & 1] = max;
     __atomic_store_n(&sequence->round, round, __ATOMIC_RELEASE);
 }
