@@ -1117,11 +1117,12 @@ typedef struct lar_rest {
     uint64_t limit; /* the step at which to give up: 1000 times the period of a slow shear wave
                        after `since` */
     int reached;    /* 1: the body is at rest */
-    int looked;     /* 1: `left` is known */
-    double since;   /* no load or prescribed value changes after that time [s] */
+    int looked;     /* not 0: `left` is known; 2: most of it is what viscous terms still relax */
+    double since;   /* no load or prescribed value changes after that time [s]; infinite where waves
+                       come again and again: then there is no rest, and `limit` is 0 */
     double kinetic, strain; /* when last looked, strain with the hourglass energy [J] */
-    double left;            /* largest kinetic energy lately and what damping will still take, as a
-                               share of the strain energy; where that is next to nothing, of one
+    double left;            /* largest kinetic energy lately, what damping will still take and what
+                               viscous terms store that will have relaxed, as a share of the strain energy; where that is next to nothing, of one
                                at which this share is rounding */
     double share;           /* at rest `left` is at most that */
     /* The rest is its own. */

@@ -52,11 +52,18 @@ static PyObject *restless(const lar_rest *rest, double time) {
         snprintf(left, sizeof left, "it moves, and next to nothing strains it");
     else if (rest->looked)
         snprintf(left, sizeof left, "its motion is still %.1e of the strain energy", rest->left);
+    const char *remedy =
+        "give the scene more `damping` where it swings, less where it creeps, or a "
+        "time to end after (seconds=)";
+    if (rest->looked == 2)
+        remedy = "viscous terms still relax, which takes a dozen of their times and, where they "
+                 "creep, more; "
+                 "at rest the body is where the scene without `viscous` takes it sooner (moduli "
+                 "times g0)";
     lar_error error = {.status = LAR_ERROR_MODEL};
     snprintf(error.message, sizeof error.message,
-             "rest: not at rest after %.4g s: %s, and at rest that is %.0e; give the scene more "
-             "`damping` where it swings, less where it creeps, or a time to end after (seconds=)",
-             time, left, rest->share);
+             "rest: not at rest after %.4g s: %s, and at rest that is %.0e; %s", time, left,
+             rest->share, remedy);
     return python_raise(&error);
 }
 
@@ -77,6 +84,12 @@ static PyObject *simulation_rest(PyObject *me, PyObject *args, PyObject *keyword
     if (!simulation) return NULL;
     lar_rest rest;
     lar_rest_begin(&rest, simulation);
+    if (isinf(rest.since)) {
+        lar_error error = {.status = LAR_ERROR_MODEL,
+                           .message = "rest: active stress comes in waves again and again, so the "
+                                      "body never rests; advance() goes on for a time"};
+        return python_raise(&error);
+    }
     const unsigned long long first = lar_simulation_steps(simulation);
     unsigned long long last = rest.limit;
     if (seconds != Py_None && steps < last - first) last = first + steps;
@@ -112,5 +125,6 @@ PyMethodDef python_rest_methods[] = {
      "looked [J], since (no load changes after that time [s]).\n\n"
      "seconds   of simulated time at most; not reached then is no error\n"
      "callback  called with the simulation some times in a period of a slow wave; False ends it\n\n"
-     "ModelError where the library gives up: a body without damping swings for good."},
+     "ModelError where the library gives up: a body without damping swings for good, and one "
+     "whose\nviscous terms are slow relaxes for long."},
     {NULL, NULL, 0, NULL}};

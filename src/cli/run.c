@@ -310,12 +310,20 @@ static const char *remedy(const run *r) {
     static const double CREEPS = 10;
     if (!(lar_simulation_damping(r->simulation) > 0))
         return "without damping nothing takes the motion away, give the scene a damping";
-    if (!r->rest.looked) return "give more time with --time";
+    if (!r->rest.looked) return "give more time with --until-rest --time";
+    if (r->rest.looked == 2)
+        return "viscous terms still relax, which takes a dozen times the longest of their times; "
+               "at "
+               "rest the body is where the scene without `viscous` takes it sooner (moduli times "
+               "g0)";
     if (!(r->rest.left < 1))
-        return "look whether something still falls or turns freely, or give more time with --time";
+        return "look whether something still falls or turns freely, or give more time with "
+               "--until-rest --time";
     if (r->rest.left * fabs(r->rest.strain) > CREEPS * r->rest.mean_before)
-        return "it creeps: less damping lets it come to rest sooner, or give more time with --time";
-    return "it swings: more damping lets it come to rest sooner, or give more time with --time";
+        return "it creeps: less damping lets it come to rest sooner, or give more time with "
+               "--until-rest --time";
+    return "it swings: more damping lets it come to rest sooner, or give more time with "
+           "--until-rest --time";
 }
 
 /* A run that was to end at rest and did not has no answer, only a last state. */
@@ -372,6 +380,11 @@ static int choose_length(run *r) {
     r->follows =
         settings->until_rest || (open && !settings->verify && lar_model_until_rest(r->model));
     if (r->follows) lar_rest_begin(&r->rest, r->simulation);
+    if (r->follows && isinf(r->rest.since))
+        return cli_complain(&cli_run, CLI_FAILED,
+                            "%s: active stress comes in waves again and again, so the body never "
+                            "rests; leave out --until-rest",
+                            settings->scene);
     if (r->follows && open) r->last_step = r->rest.limit;
     int status = r->last_step > r->first_step ? CLI_DONE : choose_time(r);
     r->rest.limit = r->last_step; /* --time and --steps are the most */

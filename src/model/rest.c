@@ -63,6 +63,15 @@ lar_rest_words lar_model_follow_static(lar_model *model, const char *what) {
     return words;
 }
 
+bool lar_model_waves_for_ever(const lar_model *model) {
+    bool any = false;
+    for (int i = 0; i < model->material_count; i++) {
+        const lar_wave *wave = &model->material[i].activation.wave;
+        any = any || (wave->speed > 0 && wave->every > 0);
+    }
+    return any;
+}
+
 double lar_model_loads_end(const lar_model *model) {
     double end = 0.0;
     for (int i = 0; i < model->curve_count; i++) end = fmax(end, lar_curve_end(&model->curve[i]));

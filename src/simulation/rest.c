@@ -40,6 +40,11 @@ void lar_rest_begin(lar_rest *rest, const lar_simulation *simulation) {
     const lar_model *model = simulation->domain.model;
     uint64_t now = lar_simulation_steps(simulation);
     *rest = (lar_rest){.since = lar_model_loads_end(model), .share = REST_SHARE};
+    if (lar_model_waves_for_ever(model)) { /* loads never end, and the limit is now */
+        rest->since = INFINITY;
+        rest->next = UINT64_MAX;
+        return;
+    }
     uint64_t since = step_at(simulation, rest->since);
     rest->since_step = since > now ? since : now;
     rest->every = steps_of(simulation, 1.0 / LOOKS_PER_PERIOD);
@@ -72,6 +77,14 @@ static double energy_ahead(const lar_rest *rest, const lar_simulation *simulatio
     return 2.0 * damping * mean * seconds * ratio / (1.0 - ratio);
 }
 
+/* M of rest.h. */
+static double memory_of(const lar_domain *domain, const lar_state *state) {
+    double sum = 0;
+    for (lar_gid e = 0; e < domain->model->mesh.element_count; e++)
+        sum += lar_measure_remembered(domain, state, e);
+    return sum;
+}
+
 int lar_rest_look(lar_rest *rest, const lar_simulation *simulation) {
     uint64_t now = lar_simulation_steps(simulation);
     if (!rest || !simulation) return 0;
@@ -87,8 +100,9 @@ int lar_rest_look(lar_rest *rest, const lar_simulation *simulation) {
     double mean = window->sum / window->looks;
     double left = window->largest;
     if (mean > 0.0) left += energy_ahead(rest, simulation, mean);
-    rest->left = share_of(rest, &simulation->domain, left);
-    rest->looked = 1;
+    double memory = memory_of(&simulation->domain, lar_simulation_state(simulation));
+    rest->left = share_of(rest, &simulation->domain, left + memory);
+    rest->looked = memory > left ? 2 : 1;
     rest->mean_before = mean;
     rest->reached = rest->left <= REST_SHARE;
     open_window(rest, now);

@@ -13,7 +13,7 @@
  *
  *     R = 2 c M T (q + q^2 + ...) = 2 c M T q / (1 - q)
  *
- * before it. The body rests when largest K + R is below 1e-10 of the strain energy: the
+ * before it. The body rests when largest K + R (and M) is below 1e-10 of the strain energy: the
  * displacements are then within about the root of that, 1e-5, of those at rest.
  *
  * A body that comes back to its own shape has no strain energy at rest: that fades as the motion
@@ -26,6 +26,12 @@
  * orders above what trembles with a hundredth of the critical damping, and displacements within
  * about 1e-11 of the size of its elements. A body that swings through its own shape has its energy
  * in K.
+ *
+ * What viscous terms remember lets a body go on for as long as their times, however slowly: g_i H_i
+ * of law/viscosity.h is stress that will be gone. What it stores, in springs as stiff as the law's
+ * shear modulus G, goes with its square, as K does, and counts beside it:
+ *
+ *     M = sum of V g_i |H_i|^2 / (4 G) over the elements and their terms
  *
  * Energies are summed in the order of the mesh from the whole state, whose bits do not depend on
  * the division, with functions of our own: every grid and instruction set ends in the same step.

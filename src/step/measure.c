@@ -59,6 +59,23 @@ static double viscous_work(const lar_domain *domain, const lar_state *state, lar
     return factor * hex8.volume * history[LAR_HISTORY_WORK];
 }
 
+double lar_measure_remembered(const lar_domain *domain, const lar_state *state, lar_gid e) {
+    if (!lar_viscous_here(domain, e)) return 0;
+    static const double twice[6] = {1, 2, 2, 1, 2, 1}; /* of a product of tensors */
+    const lar_material *material = lar_domain_material(domain, e);
+    const lar_viscosity *viscosity = &material->viscosity;
+    double corner[8][3], history[LAR_HISTORY_MAX], sum = 0;
+    double factor = domain->factor[lar_factor_of(domain->model->element_material[e])];
+    lar_viscous_read(domain, state, e, history);
+    for (int i = 0; i < viscosity->terms; i++)
+        for (int k = 0; k < 6; k++) {
+            double H = factor * history[LAR_HISTORY_TERMS + 6 * i + k];
+            sum += viscosity->share[i] * twice[k] * H * H;
+        }
+    lar_mesh_corners(&domain->model->mesh, e, corner);
+    return 0.25 * sum / lar_material_shear(material) * lar_hexahedron_volume(corner);
+}
+
 /* ---- scratch ------------------------------------------------------------------------------- */
 
 lar_status lar_measure_scratch_create(const lar_domain *domain, const lar_tools *tools,

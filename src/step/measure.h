@@ -37,6 +37,9 @@ lar_status lar_measure_nodal_forces(const lar_domain *domain, lar_measure_scratc
 /* What element e stores, hourglass and guard included [J]: the same bits on every grid. */
 double lar_measure_element_energy(const lar_domain *domain, const lar_state *state, lar_gid e);
 
+/* What its viscous terms store that will have relaxed (simulation/rest.h) [J]. */
+double lar_measure_remembered(const lar_domain *domain, const lar_state *state, lar_gid e);
+
 /* Mean Cauchy stress of global element e [Pa]: xx yy zz xy yz zx, of viscous elements state->past
  * after the forces before. Returns the strain energy per reference volume [J/m^3]. */
 double lar_measure_stress(const lar_domain *domain, const lar_state *state, lar_gid e,

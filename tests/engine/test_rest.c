@@ -87,6 +87,44 @@ static void nothing_rests_before_its_loads_are_complete(void **state) {
     finish(simulation, model);
 }
 
+static void creep_in(lar_model *model, double time) {
+    model->material[0].viscosity =
+        (lar_viscosity){.terms = 1, .isochoric = true, .rest = 1, .share[0] = 4, .time[0] = time};
+}
+
+/* A body whose terms are slow has next to no kinetic energy, and most of its way to go. */
+static void creeping_material_is_no_rest(void **state) {
+    (void)state;
+    lar_model *model = hanging(1);
+    lar_simulation *simulation = start(model);
+    assert_int_equal(follow(simulation, UINT64_MAX / 2).reached, 1);
+    const lar_gid end = model->mesh.node_count - 1;
+    const double elastic = node_u(simulation, end)[2];
+    finish(simulation, model);
+
+    model = hanging(1);
+    creep_in(model, 0.05);
+    simulation = start(model);
+    assert_int_equal(follow(simulation, UINT64_MAX / 2).reached, 1);
+    assert_below(fabs(node_u(simulation, end)[2] / elastic - 1), 1e-4);
+    finish(simulation, model);
+
+    model = hanging(1);
+    creep_in(model, 1e5);
+    for (int i = 0; i < 2; i++) {
+        lar_options options = lar_options_default();
+        options.grid = i ? "2x1x1" : "1x1x1";
+        simulation = start_with(model, options);
+        lar_rest rest = follow(simulation, 20000);
+        assert_true(rest.kinetic < 1e-12 * rest.strain); /* its motion alone would be rest */
+        assert_int_equal(rest.reached, 0);
+        assert_int_equal(rest.looked, 2);
+        assert_true(rest.left > 0.1 && rest.left < 10);
+        lar_simulation_destroy(simulation);
+    }
+    lar_model_destroy(model);
+}
+
 /* A free body falls for ever; one that nothing pulls is at rest. */
 static void free_bodies(void **state) {
     (void)state;
@@ -260,6 +298,7 @@ int main(void) {
         cmocka_unit_test(rest_is_rest_at_any_damping),
         cmocka_unit_test(a_turning_point_is_no_rest),
         cmocka_unit_test(nothing_rests_before_its_loads_are_complete),
+        cmocka_unit_test(creeping_material_is_no_rest),
         cmocka_unit_test(free_bodies),
         cmocka_unit_test(back_in_its_own_shape),
         cmocka_unit_test(swinging_through_its_own_shape),

@@ -215,6 +215,16 @@ class Rest(unittest.TestCase):
                 sim.rest(**wrong)
         with self.assertRaises(TypeError):
             sim.rest(callback=3)
+        # What creeps is not at rest, however slowly, and what comes in waves never is.
+        slow = dict(SCENE["materials"][0], viscous={"part": "isochoric",
+                                                    "terms": [{"g": 4, "time": 1e5}]})
+        with self.assertRaisesRegex(lariat.ModelError, "viscous terms still relax"):
+            lariat.Simulation(block(materials=[slow], damping=100)).rest()
+        wave = {"direction": [1, 0, 0], "speed": 1, "length": 0.02, "every": 0.2}
+        waves = dict(SCENE["materials"][0], fibres={"direction": {"axis": [1, 0, 0]},
+                                                    "active": {"along": 100, "wave": wave}})
+        with self.assertRaisesRegex(lariat.ModelError, "again and again"):
+            lariat.Simulation(block(materials=[waves])).rest(0.01)
         with self.assertRaisesRegex(lariat.StateError, "closed"):
             sim.rest(callback=lambda sim: sim.close())
         # What nothing damps swings on.

@@ -112,10 +112,12 @@ static lar_status follow_to_rest(forward *f) {
     while (!lar_rest_look(&rest, f->simulation)) {
         uint64_t now = lar_simulation_steps(f->simulation);
         if (now >= rest.limit)
-            return lar_fail(f->error, LAR_ERROR_UNSTABLE,
-                            "%s: not at rest after %.4g s; look whether the body is held by "
-                            "supports, and whether anything can turn or fall freely",
-                            f->e->scene, lar_simulation_time(f->simulation));
+            return lar_fail(f->error, LAR_ERROR_UNSTABLE, "%s: not at rest after %.4g s; %s",
+                            f->e->scene, lar_simulation_time(f->simulation),
+                            rest.looked == 2
+                                ? "viscous terms still relax: leave `viscous` out, or fit in time"
+                                : "look whether the body is held by supports, and whether anything "
+                                  "can turn or fall freely");
         lar_status status = advance(f, rest.next > now ? rest.next - now : 1);
         if (status) return status;
     }
