@@ -1118,8 +1118,8 @@ typedef struct lar_rest {
                        after `since` */
     int reached;    /* 1: the body is at rest */
     int looked;     /* not 0: `left` is known; 2: most of it is what viscous terms still relax */
-    double since;   /* no load or prescribed value changes after that time [s]; infinite where waves
-                       come again and again: then there is no rest, and `limit` is 0 */
+    double since;   /* no load or prescribed value changes after that time [s]; infinite where a wave or
+                       a curve comes again and again: then there is no rest, and `limit` is 0 */
     double kinetic, strain; /* when last looked, strain with the hourglass energy [J] */
     double left;            /* largest kinetic energy lately, what damping will still take and what
                                viscous terms store that will have relaxed, as a share of the strain energy; where that is next to nothing, of one

@@ -86,7 +86,7 @@ static PyObject *simulation_rest(PyObject *me, PyObject *args, PyObject *keyword
     lar_rest_begin(&rest, simulation);
     if (isinf(rest.since)) {
         lar_error error = {.status = LAR_ERROR_MODEL,
-                           .message = "rest: active stress comes in waves again and again, so the "
+                           .message = "rest: a wave or a curve comes again and again, so the "
                                       "body never rests; advance() goes on for a time"};
         return python_raise(&error);
     }

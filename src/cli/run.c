@@ -382,7 +382,7 @@ static int choose_length(run *r) {
     if (r->follows) lar_rest_begin(&r->rest, r->simulation);
     if (r->follows && isinf(r->rest.since))
         return cli_complain(&cli_run, CLI_FAILED,
-                            "%s: active stress comes in waves again and again, so the body never "
+                            "%s: a wave or a curve comes again and again, so the body never "
                             "rests; leave out --until-rest",
                             settings->scene);
     if (r->follows && open) r->last_step = r->rest.limit;

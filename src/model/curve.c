@@ -1,5 +1,7 @@
 #include "model/curve.h"
 
+#include <math.h>
+
 static double smoothstep(double s) {
     return s * s * (3.0 - 2.0 * s);
 }
@@ -26,8 +28,10 @@ static int point_before(const lar_curve *curve, double time) {
 static double table_value(const lar_curve *curve, double time) {
     int last = curve->count - 1;
     if (last < 0) return 1.0;
-    if (!(time >= curve->point[0][0])) return curve->point[0][1];
-    if (time >= curve->point[last][0]) return curve->point[last][1];
+    double first = curve->point[0][0], end = curve->point[last][0];
+    if (!(time >= first)) return curve->point[0][1];
+    if (curve->repeats && time >= end) time = first + fmod(time - first, end - first);
+    if (time >= end) return curve->point[last][1];
     int i = point_before(curve, time);
     const double *from = curve->point[i], *to = curve->point[i + 1];
     switch (curve->shape) {

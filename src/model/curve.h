@@ -1,9 +1,12 @@
 /* How something changes in time: a factor, 1 by default.
  *
- * Values are evaluated with + - * / only, so that they have the same bits everywhere.
+ * Values are evaluated with + - * / and fmod, which is exact, so that they have the same bits
+ * everywhere.
  */
 #ifndef LAR_MODEL_CURVE_H
 #define LAR_MODEL_CURVE_H
+
+#include <stdbool.h>
 
 typedef enum lar_curve_kind {
     LAR_CURVE_RAMP, /* 0 to 1 over `over` seconds, smooth (third-order smoothstep), then held;
@@ -22,6 +25,7 @@ typedef struct lar_curve {
     lar_curve_kind kind;
     double over;
     lar_curve_shape shape;
+    bool repeats; /* a table's last point is its first again, for ever */
     int count;
     double (*point)[2]; /* (time [s], value), ascending; equal times are a jump; owned */
 } lar_curve;
@@ -29,7 +33,7 @@ typedef struct lar_curve {
 /* Value at `time` (seconds). A table without points is 1. */
 double lar_curve_value(const lar_curve *curve, double time);
 
-/* Time after which the value no longer changes [s], at least 0. */
+/* Time after which the value no longer changes, or begins to repeat [s], at least 0. */
 double lar_curve_end(const lar_curve *curve);
 
 /* Keeps the value that a table has at `time` for ever after. */

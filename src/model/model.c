@@ -216,12 +216,19 @@ static lar_status check_curves(const lar_model *model, lar_error *error) {
         for (int p = 0; good && curve->kind == LAR_CURVE_TABLE && p < curve->count; p++)
             good = isfinite(curve->point[p][0]) && isfinite(curve->point[p][1]) &&
                    (p == 0 || curve->point[p][0] >= curve->point[p - 1][0]);
+        if (good && curve->repeats) good = curve->point[curve->count - 1][0] > curve->point[0][0];
         if (!good)
             return lar_fail(error, LAR_ERROR_MODEL,
                             "%s: curve %d is no function of time; its times must be finite and "
                             "ascending and its values finite",
                             lar_model_source(model), i + 1);
     }
+    for (int i = 0; model->until_rest && i < model->curve_count; i++)
+        if (model->curve[i].repeats)
+            return lar_fail(error, LAR_ERROR_MODEL,
+                            "%s: a curve repeats, so the body never rests; leave out repeat, or "
+                            "give the duration in seconds",
+                            lar_model_source(model));
     return LAR_OK;
 }
 

@@ -63,8 +63,9 @@ lar_rest_words lar_model_follow_static(lar_model *model, const char *what) {
     return words;
 }
 
-bool lar_model_waves_for_ever(const lar_model *model) {
+bool lar_model_repeats(const lar_model *model) {
     bool any = false;
+    for (int i = 0; i < model->curve_count; i++) any = any || model->curve[i].repeats;
     for (int i = 0; i < model->material_count; i++) {
         const lar_wave *wave = &model->material[i].activation.wave;
         any = any || (wave->speed > 0 && wave->every > 0);

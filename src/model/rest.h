@@ -40,9 +40,9 @@ typedef struct lar_rest_words {
 } lar_rest_words;
 lar_rest_words lar_model_follow_static(lar_model *model, const char *what);
 
-/* Time after which no load, no prescribed value and no activation changes [s], at least 0; of waves
- * that come again and again it knows nothing. */
+/* Time after which no load, no prescribed value and no activation changes [s], at least 0; of what
+ * comes again and again, by curves that repeat or waves, the end of the first round or nothing. */
 double lar_model_loads_end(const lar_model *model);
-bool lar_model_waves_for_ever(const lar_model *model);
+bool lar_model_repeats(const lar_model *model);
 
 #endif

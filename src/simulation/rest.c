@@ -40,7 +40,7 @@ void lar_rest_begin(lar_rest *rest, const lar_simulation *simulation) {
     const lar_model *model = simulation->domain.model;
     uint64_t now = lar_simulation_steps(simulation);
     *rest = (lar_rest){.since = lar_model_loads_end(model), .share = REST_SHARE};
-    if (lar_model_waves_for_ever(model)) { /* loads never end, and the limit is now */
+    if (lar_model_repeats(model)) { /* loads never end, and the limit is now */
         rest->since = INFINITY;
         rest->next = UINT64_MAX;
         return;

@@ -8,7 +8,8 @@ static uint64_t hash_doubles(uint64_t hash, const double *value, size_t count) {
 }
 
 static uint64_t hash_curve(uint64_t hash, const lar_curve *curve) {
-    hash = lar_hash_word(hash, (uint64_t)curve->kind << 32 | (uint32_t)curve->shape);
+    hash = lar_hash_word(hash, (uint64_t)curve->kind << 32 | (uint32_t)curve->shape |
+                                   (uint32_t)curve->repeats << 8);
     hash = lar_hash_double(hash, curve->over);
     return hash_doubles(hash, curve->count ? curve->point[0] : NULL, 2 * (size_t)curve->count);
 }

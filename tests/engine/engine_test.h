@@ -115,8 +115,10 @@ TEST_UNUSED static int add_ramp(lar_model *model, double over) {
 TEST_UNUSED static int add_table(lar_model *model, lar_curve_shape shape, int count,
                                  const double (*point)[2]) {
     lar_curve *curve = LAR_MODEL_APPEND(model, curve);
-    *curve =
-        (lar_curve){LAR_CURVE_TABLE, 0, shape, count, lar_calloc((size_t)count, sizeof *point)};
+    *curve = (lar_curve){.kind = LAR_CURVE_TABLE,
+                         .shape = shape,
+                         .count = count,
+                         .point = lar_calloc((size_t)count, sizeof *point)};
     memcpy(curve->point, point, (size_t)count * sizeof *point);
     return model->curve_count - 1;
 }

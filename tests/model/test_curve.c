@@ -46,6 +46,27 @@ static void test_table_is_held_outside(void **state) {
     }
 }
 
+static void test_a_table_repeats(void **state) {
+    (void)state;
+    lar_curve curve = table(LAR_CURVE_LINEAR), breath;
+    curve.repeats = true;
+    expect(&curve, 0.0, 2.0);
+    expect(&curve, 1.5, 4.0);
+    expect(&curve, 4.0, 2.0); /* the first point again */
+    expect(&curve, 4.5, 4.0);
+    expect(&curve, 1.5 + 3e6, 4.0);
+    assert_true(lar_curve_end(&curve) == 4.0);
+    static double round[3][2] = {{0, 0}, {0.25, 1}, {1, 0}};
+    breath = (lar_curve){.kind = LAR_CURVE_TABLE,
+                         .shape = LAR_CURVE_HOLD,
+                         .repeats = true,
+                         .count = 3,
+                         .point = round};
+    expect(&breath, 7.25, 1.0);
+    expect(&breath, 7.125, 0.0);
+    expect(&breath, 8.0, 0.0);
+}
+
 static void test_shapes(void **state) {
     (void)state;
     lar_curve linear = table(LAR_CURVE_LINEAR), next = table(LAR_CURVE_STEP);
@@ -104,9 +125,13 @@ static void test_hold_from(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_ramp),      cmocka_unit_test(test_table_is_held_outside),
-        cmocka_unit_test(test_shapes),    cmocka_unit_test(test_odd_tables),
-        cmocka_unit_test(test_hold_from), cmocka_unit_test(test_values_have_fixed_bits),
+        cmocka_unit_test(test_ramp),
+        cmocka_unit_test(test_table_is_held_outside),
+        cmocka_unit_test(test_a_table_repeats),
+        cmocka_unit_test(test_shapes),
+        cmocka_unit_test(test_odd_tables),
+        cmocka_unit_test(test_hold_from),
+        cmocka_unit_test(test_values_have_fixed_bits),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

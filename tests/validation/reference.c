@@ -190,7 +190,10 @@ void move_nodes_by(lar_model *model, lar_node_list nodes, unsigned axes, double 
 int add_ramp(lar_model *model, double time, double over, double from, double to) {
     lar_curve *curve = LAR_MODEL_APPEND(model, curve);
     assert_non_null(curve);
-    *curve = (lar_curve){LAR_CURVE_TABLE, 0, LAR_CURVE_SMOOTH, 2, lar_calloc(2, sizeof(double[2]))};
+    *curve = (lar_curve){.kind = LAR_CURVE_TABLE,
+                         .shape = LAR_CURVE_SMOOTH,
+                         .count = 2,
+                         .point = lar_calloc(2, sizeof(double[2]))};
     assert_non_null(curve->point);
     set_ramp(model, model->curve_count - 1, time, over, from, to);
     return model->curve_count - 1;

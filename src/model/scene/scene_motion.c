@@ -53,8 +53,20 @@ static lar_status read_points(const lar_scene *scene, const lar_yaml *node, lar_
     return LAR_OK;
 }
 
+static lar_status read_repeat(const lar_scene *scene, const lar_yaml *node, lar_curve *curve) {
+    const double *last = curve->point[curve->count - 1];
+    curve->repeats = lar_scene_is_word(node, "true");
+    if (!curve->repeats && !lar_scene_is_word(node, "false"))
+        return lar_scene_fail(scene, node, LAR_ERROR_FORMAT, "repeat: expected true or false");
+    if (curve->repeats && !(last[0] > curve->point[0][0]))
+        return lar_scene_fail(scene, node, LAR_ERROR_MODEL,
+                              "repeat: a curve that repeats needs points at two times: the last "
+                              "is the first of the next round");
+    return LAR_OK;
+}
+
 static lar_status read_table(const lar_scene *scene, const lar_yaml *node, lar_curve *curve) {
-    static const char *const keys[] = {"points", "shape", NULL};
+    static const char *const keys[] = {"points", "shape", "repeat", NULL};
     const lar_yaml *points = NULL;
     curve->kind = LAR_CURVE_TABLE;
     curve->shape = LAR_CURVE_LINEAR;
@@ -64,7 +76,9 @@ static lar_status read_table(const lar_scene *scene, const lar_yaml *node, lar_c
             lar_scene_need(scene, node, "a curve", "points", "points: [[0, 0], [0.1, 1]]", &points);
     const lar_yaml *shape = lar_yaml_get(node, "shape");
     if (!status && shape) status = read_shape(scene, shape, &curve->shape);
-    return status ? status : read_points(scene, points, curve);
+    if (!status) status = read_points(scene, points, curve);
+    const lar_yaml *repeat = lar_yaml_get(node, "repeat");
+    return status || !repeat ? status : read_repeat(scene, repeat, curve);
 }
 
 /* A displacement that jumps would need infinite forces. */
@@ -82,6 +96,9 @@ static lar_status check_no_jump(const lar_scene *scene, const lar_yaml *node,
         if (curve->shape == LAR_CURVE_HOLD && curve->count > 1)
             why = "the curve of a motion cannot have the shape step: a sudden displacement is not "
                   "physical, write shape: linear or shape: smooth";
+        if (curve->repeats && curve->point[curve->count - 1][1] != 0.0)
+            why = "the curve of a motion that repeats must end with 0, as it begins: a sudden "
+                  "displacement is not physical";
         for (int i = 1; i < curve->count; i++)
             if (curve->point[i][0] == curve->point[i - 1][0] &&
                 curve->point[i][1] != curve->point[i - 1][1])
