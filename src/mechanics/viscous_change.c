@@ -23,13 +23,12 @@ static void take_law(const lar_material *material, const double *fibre, law_of *
     *law =
         (law_of){*material, fibre, row->shear(material->parameter), row->bulk(material->parameter)};
     law->material.fibre.along = law->material.fibre.across = 0;
-    law->material.viscosity.terms = 1;
 }
 
 /* Se where F^T F = C, of which nothing else counts: F is Cholesky's factor. False: there is none.
  */
 static bool stress_at(const law_of *law, const double C[6], double S[6]) {
-    double F[3][3] = {{0}}, P[3][3], history[LAR_HISTORY_MAX] = {0};
+    double F[3][3] = {{0}};
     for (int i = 0; i < 3; i++)
         for (int j = i; j < 3; j++) {
             double rest = C[place[i][j]];
@@ -37,8 +36,7 @@ static bool stress_at(const law_of *law, const double C[6], double S[6]) {
             if (i == j && !(rest > 0)) return false;
             F[i][j] = i == j ? sqrt(rest) : rest / F[i][i];
         }
-    lar_viscous_stress_at(&law->material, 1, 0, law->fibre, (const double(*)[3])F, history, P);
-    memcpy(S, history + LAR_HISTORY_STRESS, 6 * sizeof *S);
+    lar_relaxing_stress(&law->material, law->fibre, (const double(*)[3])F, S);
     return isfinite(product(S, S));
 }
 
@@ -55,61 +53,71 @@ static void look(const law_of *law, const double S[6], const double H[6], damper
     const double *C = at->C, *r = at->left;
     double soft = 0.5 / law->shear, wide = law->material.viscosity.isochoric ? 0 : 1 / law->bulk;
     for (int k = 0; k < 6; k++) at->left[k] = H[k] - (S[k] - at->stress[k]);
-    double trace = product(r, C) / 3;
+    double trace = product(r, C) / 3, half[3][3], more = (wide / 3 - soft) * trace;
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            half[i][j] = r[place[i][0]] * C[place[0][j]] + r[place[i][1]] * C[place[1][j]] +
+                         r[place[i][2]] * C[place[2][j]];
     for (int i = 0; i < 3; i++)
         for (int j = i; j < 3; j++) {
-            double both = 0;
-            for (int k = 0; k < 3; k++)
-                for (int l = 0; l < 3; l++)
-                    both += C[place[i][k]] * r[place[k][l]] * C[place[l][j]];
-            double volume = trace * C[place[i][j]];
-            at->strain[place[i][j]] = soft * (both - volume) + wide / 3 * volume;
+            double both = C[place[i][0]] * half[0][j] + C[place[i][1]] * half[1][j] +
+                          C[place[i][2]] * half[2][j];
+            at->strain[place[i][j]] = soft * both + more * C[place[i][j]];
         }
     at->square = product(r, at->strain);
 }
 
-/* `length` times the strain, but no long way. False: the law does not say what is there. */
-static bool go(const law_of *law, const dampers *from, double length, dampers *to) {
+static double determinant(const double a[6]) {
+    return a[0] * (a[3] * a[5] - a[4] * a[4]) - a[1] * (a[1] * a[5] - a[4] * a[2]) +
+           a[2] * (a[1] * a[4] - a[3] * a[2]);
+}
+
+/* By `length` times the strain. Where the isochoric part relaxes dampers have the element's volume,
+ * of which `square` is the square: nearly, and the better the shorter the way is. False: the law
+ * does not say what is there. */
+static bool go(const law_of *law, const dampers *from, double length, double square, dampers *to) {
     for (int k = 0; k < 6; k++) to->C[k] = from->C[k] - 2 * length * from->strain[k];
+    double more = law->material.viscosity.isochoric ? square / determinant(to->C) - 1 : 0;
+    for (int k = 0; k < 6; k++) to->C[k] += more / 3 * to->C[k];
     return stress_at(law, to->C, to->stress);
 }
 
 /* The best of what is found. The law has the stress S at the strain C. */
 static void find(const law_of *law, const double C[6], const double S[6], const double H[6],
                  dampers *best) {
-    enum { TRIES = 40 };
-    static const double LONG = 0.1, SMALL = 1e-26, NOTHING = 1e-32;
+    enum { TRIES = 30, IN_VAIN = 6 };
+    static const double LONG = 0.1, SMALL = 1e-21; /* a strain, the square of one */
     memcpy(best->C, C, sizeof best->C);
     memcpy(best->stress, S, sizeof best->stress);
     look(law, S, H, best);
     dampers at = *best;
-    double length = 1, enough = fmax(SMALL * at.square, NOTHING * law->shear);
-    double far = LONG * (C[0] + C[3] + C[5]) / 3;
-    for (int i = 0; i < TRIES && best->square > enough; i++) {
+    double enough = SMALL * (law->shear + at.square), length = 1;
+    double volume = determinant(C), far = LONG * (C[0] + C[3] + C[5]) / 3;
+    for (int i = 0, last = 0; i < TRIES && i - last < IN_VAIN && best->square > enough; i++) {
         dampers next;
-        double way = sqrt(product(at.strain, at.strain));
-        length = fmin(length, far / way);
-        if (!go(law, &at, length, &next)) return;
+        length = fmin(length, far / sqrt(product(at.strain, at.strain)));
+        if (!go(law, &at, length, volume, &next)) return;
         look(law, S, H, &next);
         double less = at.square - product(next.left, at.strain);
         if (less > 0) length *= at.square / less;
         at = next;
-        if (at.square < best->square) *best = at;
+        if (!(at.square < best->square)) continue;
+        *best = at;
+        last = i;
     }
 }
 
 /* What the spring of a term holds, by Simpson's rule. */
 static double held(const law_of *law, const double C[6], const double S[6], const dampers *at,
                    const double stress[6]) {
-    double middle[6], there[6], sum = 0;
+    double middle[6], there[6];
     for (int k = 0; k < 6; k++) middle[k] = 0.5 * (C[k] + at->C[k]);
     if (!stress_at(law, middle, there)) return 0;
     for (int k = 0; k < 6; k++) {
         there[k] = (S[k] - stress[k] + 4 * (there[k] - stress[k])) / 6;
         middle[k] = 0.5 * (C[k] - at->C[k]);
     }
-    sum = product(there, middle);
-    return sum;
+    return product(there, middle);
 }
 
 void lar_viscous_change(const lar_material *before, const lar_material *after, const double *fibre,
