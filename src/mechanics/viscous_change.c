@@ -11,7 +11,6 @@ static double product(const double a[6], const double b[6]) {
     return a[0] * b[0] + a[3] * b[3] + a[5] * b[5] + 2 * twice;
 }
 
-/* One law, without what is active. */
 typedef struct law_of {
     lar_material material;
     const double *fibre;
@@ -22,7 +21,6 @@ static void take_law(const lar_material *material, const double *fibre, law_of *
     const lar_law_row *row = &lar_law_table[material->law];
     *law =
         (law_of){*material, fibre, row->shear(material->parameter), row->bulk(material->parameter)};
-    law->material.fibre.along = law->material.fibre.across = 0;
 }
 
 /* Se where F^T F = C, of which nothing else counts: F is Cholesky's factor. False: there is none.

@@ -20,8 +20,8 @@
 #include "mechanics/stress.h"
 
 /* What an element remembers (law/viscosity.h, of the material as both of these are) becomes that of
- * the other material, of which only parameters differ; its work changes by what springs hold. What
- * is active stays as it is. `fibre` as in lar_viscous_stress_at. */
+ * the other material, of which only parameters differ; its work changes by what springs hold.
+ * (Active stress does not relax.) `fibre` as in lar_viscous_stress_at. */
 void lar_viscous_change(const lar_material *before, const lar_material *after, const double *fibre,
                         double *history);
 

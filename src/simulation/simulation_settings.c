@@ -239,14 +239,6 @@ static bool change_memories(lar_simulation *simulation, const lar_parameters *be
     return any;
 }
 
-/* To all processors; what they have counted of contact goes on. */
-static lar_status scatter(lar_computer *computer, lar_error *error) {
-    const lar_contact_info info = computer->contact.info;
-    lar_status status = lar_computer_scatter(computer, error);
-    computer->contact.info = info;
-    return status;
-}
-
 lar_status lar_simulation_change_materials(lar_simulation *simulation, const lar_settings *wanted,
                                            const lar_parameters *parameters, lar_error *error) {
     lar_tools *tools = &simulation->tools;
@@ -269,7 +261,8 @@ lar_status lar_simulation_change_materials(lar_simulation *simulation, const lar
     lar_simulation_settle(simulation);
     lar_simulation_add_external(simulation, work + materials_account(simulation, after));
     lar_simulation_set(simulation);
-    return remembered && simulation->computer ? scatter(simulation->computer, error) : LAR_OK;
+    if (!remembered || !simulation->computer) return LAR_OK;
+    return lar_computer_remember(simulation->computer, error);
 }
 
 lar_status lar_simulation_set_stiffness(lar_simulation *simulation, int32_t material, double factor,
