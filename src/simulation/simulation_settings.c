@@ -19,7 +19,7 @@
 #include "simulation/simulation.h"
 #include "mechanics/hex8_full.h"
 #include "mechanics/hex8_matrix.h"
-#include "mechanics/viscous_change.h"
+#include "mechanics/viscous/change.h"
 
 /* Of the step that follows. */
 static double length_of_step(const lar_simulation *simulation) {

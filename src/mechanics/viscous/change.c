@@ -1,4 +1,4 @@
-#include "mechanics/viscous_change.h"
+#include "mechanics/viscous/change.h"
 
 #include <math.h>
 #include <string.h>
