@@ -6,7 +6,7 @@
  *     strain   gather nodes, transform, deformation gradient, hourglass forces    by shape, rows
  *     stress   the material law                                                   by law
  *   ( fibres   what they add (hex8_fibre.h)                                       by fibre law )
- *   ( relax    what a viscous material remembers (hex8_viscous.h)                 by viscosity )
+ *   ( relax    what a viscous material remembers (viscous/hex8_viscous.h)         by viscosity )
  *     force    modal forces, rounding, transform back, scatter to nodes           by shape, rows
  *
  * The order of the statements follows the life of the values: 21 modal displacements and 9
@@ -23,7 +23,7 @@
 #ifndef LAR_KERNEL_ELASTIC
 #include "mechanics/hex8_fibre.h"
 #include "mechanics/hex8_group.h"
-#include "mechanics/hex8_viscous.h"
+#include "mechanics/viscous/hex8_viscous.h"
 #endif
 
 /* ---- phases -------------------------------------------------------------------------------- */

@@ -58,6 +58,13 @@ void lar_viscous_stress_at(const lar_material *material, double factor, double p
     relax(material, material->viscosity.terms, factor, past, fibre, F, history, P);
 }
 
+void lar_relaxing_stress(const lar_material *material, const double *fibre, const double F[3][3],
+                         double S[6]) {
+    double history[LAR_HISTORY_MAX] = {0}, P[3][3];
+    relax(material, 0, 1, 0, fibre, F, history, P);
+    memcpy(S, history + LAR_HISTORY_STRESS, 6 * sizeof *S);
+}
+
 /* Of a law with an isochoric part: that of a ball as large. */
 static double volume_energy(const lar_material *material, double J) {
     double side = 1 / lar_lane_rcbrt(J);

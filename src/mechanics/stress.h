@@ -21,6 +21,10 @@ void lar_viscous_stress_at(const lar_material *material, double factor, double p
                            const double *fibre, const double F[3][3], double *history,
                            double P[3][3]);
 
+/* Of its law's stress at F what relaxes, with its fibres: Se of law/viscosity.h [Pa]. */
+void lar_relaxing_stress(const lar_material *material, const double *fibre, const double F[3][3],
+                         double S[6]);
+
 /* Energy per reference volume [J/m^3], that of lar_law_stress. */
 double lar_law_energy(const lar_material *material, const double F[3][3]);
 /* That of lar_material_stress, of what is active too, at the activation that it has. */

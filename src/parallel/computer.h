@@ -109,6 +109,8 @@ lar_status lar_computer_advance(lar_computer *computer, uint64_t steps, bool fir
  * processors: they go on from there, whatever faults there were before. Processor zero only. */
 lar_status lar_computer_gather(lar_computer *computer, lar_error *error);
 lar_status lar_computer_scatter(lar_computer *computer, lar_error *error);
+/* Of a state that was gathered, and in which nothing else has changed, what elements remember. */
+lar_status lar_computer_remember(lar_computer *computer, lar_error *error);
 
 /* Between advances: LAR_ERROR_PEER when a processor of another process has been lost meanwhile. */
 lar_status lar_computer_look(lar_computer *computer, lar_error *error);

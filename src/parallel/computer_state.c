@@ -203,16 +203,23 @@ static void scatter_here(lar_computer *computer) {
     }
 }
 
+static void remember_here(lar_computer *computer) {
+    for (int32_t i = 0; i < computer->hosted; i++)
+        lar_viscous_copy(computer->whole, computer->state, &computer->processor[i].domain,
+                         &computer->processor[i].worker[0].state);
+}
+
 /* Which elements are heavier belongs to a state, where it can be. */
 static size_t heavier_bytes(const lar_computer *computer) {
     return computer->whole->burden ? sizeof(lar_heavy_now) : 0;
 }
 
-/* All nodes to everyone, and behind them what is remembered: each keeps what it has. */
-static lar_status scatter_others(lar_computer *computer, lar_error *error) {
+/* All nodes to everyone, and behind them what is remembered, or this alone: each keeps what it has.
+ */
+static lar_status scatter_others(lar_computer *computer, bool all, lar_error *error) {
     const lar_domain *whole = computer->whole;
-    size_t nodes = (size_t)whole->model->mesh.node_count;
-    size_t values = lar_viscous_total(whole), heavier = heavier_bytes(computer);
+    size_t nodes = all ? (size_t)whole->model->mesh.node_count : 0;
+    size_t values = lar_viscous_total(whole), heavier = all ? heavier_bytes(computer) : 0;
     size_t bytes = nodes * sizeof(node_values) + values * sizeof(double) + heavier;
     node_values *value = lar_calloc(bytes, 1);
     if (!value) return lar_fail_memory(error, bytes, "the state");
@@ -233,9 +240,10 @@ static lar_status scatter_others(lar_computer *computer, lar_error *error) {
 lar_status lar_computer_take_state(lar_computer *computer, uint64_t step, const void *payload,
                                    size_t bytes, lar_error *error) {
     const node_values *value = payload;
-    const lar_model *model = computer->whole->model;
-    lar_gid nodes = model->mesh.node_count;
-    size_t values = lar_viscous_total(computer->whole), heavier = heavier_bytes(computer);
+    size_t values = lar_viscous_total(computer->whole);
+    bool all = bytes != values * sizeof(double);
+    lar_gid nodes = all ? computer->whole->model->mesh.node_count : 0;
+    size_t heavier = all ? heavier_bytes(computer) : 0;
     if (bytes != (size_t)nodes * sizeof *value + values * sizeof(double) + heavier)
         return lar_fail(error, LAR_ERROR_PEER,
                         "processor 0 sends a state of %zu bytes for %d nodes; start all processors "
@@ -244,6 +252,10 @@ lar_status lar_computer_take_state(lar_computer *computer, uint64_t step, const 
     for (lar_gid node = 0; node < nodes; node++)
         lar_state_write(computer->state, computer->whole->layout.local[node], value[node]);
     lar_viscous_scatter(computer->whole, computer->state, (const double *)(value + nodes));
+    if (!all) {
+        remember_here(computer);
+        return LAR_OK;
+    }
     memcpy(&computer->tools->heavier, (const double *)(value + nodes) + values, heavier);
     if (!lar_heavier_now_good(computer->whole, &computer->tools->heavier))
         return lar_fail(error, LAR_ERROR_PEER,
@@ -268,7 +280,16 @@ lar_status lar_computer_scatter(lar_computer *computer, lar_error *error) {
     computer->tools_sent = false;
     computer->contact.valid = false;
     computer->contact.info = (lar_contact_info){0};
-    if (computer->control) status = scatter_others(computer, error);
+    if (computer->control) status = scatter_others(computer, true, error);
+    if (status) computer->broken = true;
+    return status;
+}
+
+lar_status lar_computer_remember(lar_computer *computer, lar_error *error) {
+    lar_status status = lar_computer_check(computer, error);
+    if (status) return status;
+    remember_here(computer);
+    if (computer->control) status = scatter_others(computer, false, error);
     if (status) computer->broken = true;
     return status;
 }

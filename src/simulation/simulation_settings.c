@@ -19,6 +19,7 @@
 #include "simulation/simulation.h"
 #include "mechanics/hex8_full.h"
 #include "mechanics/hex8_matrix.h"
+#include "mechanics/viscous/change.h"
 
 /* Of the step that follows. */
 static double length_of_step(const lar_simulation *simulation) {
@@ -212,6 +213,32 @@ static double materials_account(const lar_simulation *simulation,
     return sum;
 }
 
+/* Viscous elements of a material whose parameters change go on remembering as if the new law had
+ * been there. Whether there are any. */
+static bool change_memories(lar_simulation *simulation, const lar_parameters *before,
+                            const lar_parameters *after) {
+    const lar_domain *domain = &simulation->domain;
+    const lar_model *model = domain->model;
+    bool any = false;
+    for (int32_t m = 0; m < model->material_count && domain->element_history; m++) {
+        const lar_parameter_entry then = lar_parameters_at(before, model, m),
+                                  now = lar_parameters_at(after, model, m);
+        const lar_material from = lar_parameters_give(model, &then),
+                           to = lar_parameters_give(model, &now);
+        if (memcmp(then.value, now.value, sizeof now.value) == 0) continue;
+        for (lar_gid e = 0; e < model->mesh.element_count; e++) {
+            double history[LAR_HISTORY_MAX], fibre[6];
+            if (model->element_material[e] != m || !lar_viscous_here(domain, e)) continue;
+            lar_model_fibres(model, e, fibre);
+            lar_viscous_read(domain, &simulation->state, e, history);
+            lar_viscous_change(&from, &to, fibre, history);
+            lar_viscous_write(domain, &simulation->state, e, history);
+            any = true;
+        }
+    }
+    return any;
+}
+
 lar_status lar_simulation_change_materials(lar_simulation *simulation, const lar_settings *wanted,
                                            const lar_parameters *parameters, lar_error *error) {
     lar_tools *tools = &simulation->tools;
@@ -227,13 +254,15 @@ lar_status lar_simulation_change_materials(lar_simulation *simulation, const lar
     if (status) return status;
     weigh_changes(tools, wanted, parameters, before, after);
     work = -materials_account(simulation, before);
+    bool remembered = change_memories(simulation, &tools->parameters, parameters);
     tools->settings = *wanted;
     tools->parameters = *parameters;
     tools->division.due = 1;
     lar_simulation_settle(simulation);
     lar_simulation_add_external(simulation, work + materials_account(simulation, after));
     lar_simulation_set(simulation);
-    return LAR_OK;
+    if (!remembered || !simulation->computer) return LAR_OK;
+    return lar_computer_remember(simulation->computer, error);
 }
 
 lar_status lar_simulation_set_stiffness(lar_simulation *simulation, int32_t material, double factor,

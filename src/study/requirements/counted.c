@@ -140,6 +140,7 @@ LAR_INLINE lar_lane lar_lane_from_upper(lar_lane a) {
 #define lar_law_stress               counted_law_stress
 #define lar_law_energy               counted_law_energy
 #define lar_viscous_stress_at        counted_viscous_stress_at
+#define lar_relaxing_stress          counted_relaxing_stress
 #define lar_material_stress          counted_material_stress
 #define lar_material_energy          counted_material_energy
 #define lar_active_energy            counted_active_energy

@@ -5,8 +5,8 @@
  *     beside it          | coefficients        | coefficients        | ...   lar_viscous_block
  *     in the state       | values [13 + 6 n][8]| values [13 + 6 n][8]| ...   law/viscosity.h
  */
-#ifndef LAR_MECHANICS_HEX8_VISCOUS_H
-#define LAR_MECHANICS_HEX8_VISCOUS_H
+#ifndef LAR_MECHANICS_VISCOUS_HEX8_VISCOUS_H
+#define LAR_MECHANICS_VISCOUS_HEX8_VISCOUS_H
 
 #include "law/viscous_stress.h"
 #include "mechanics/hex8_gather.h"
