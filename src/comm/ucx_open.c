@@ -267,6 +267,7 @@ lar_status lar_ucx_connect(lar_comm *comm, lar_error *error) {
     ucx_state *state = comm->state;
     int32_t count = comm->options.count;
     lar_status status = LAR_OK;
+    state->connecting = true;
     lock(state);
     for (int32_t p = 0; p < count && !status; p++)
         if (p != comm->options.self) status = reach(comm, p, error);
@@ -288,7 +289,6 @@ lar_status lar_ucx_connect(lar_comm *comm, lar_error *error) {
                             (int)comm->options.self, (int)p, comm->options.start_timeout);
         if (p != comm->options.self && goes_through_ucx(link)) state->remote = true;
     }
-    state->connected = true;
     return LAR_OK;
 }
 

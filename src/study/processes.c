@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/time.h>
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
@@ -23,7 +24,7 @@
 
 /* How long a process may take to end, and to say why [s]; the short one is for a failure that all
  * have alike, which is told once. */
-static const double GRACE = 1.5, SHORT_GRACE = 0.3, HESITATION = 1.0;
+static const double GRACE = 1.5, SHORT_GRACE = 0.3, HESITATION = 1.0, LAST_GRACE = 0.5;
 
 /* Whoever wants more on one machine has mistyped the grid. */
 enum { STARTED_MAX = 64 };
@@ -61,14 +62,18 @@ static bool by_hand(const lar_processes *p) {
 /* Processor zero's word that it is over. */
 enum { OVER = SIGUSR1 };
 
+static bool created; /* once the others have been met here */
+
 static void end_soon(int signal_number) {
     (void)signal_number;
-    lar_comm_interrupt();
-    alarm(2);
+    const bool leaves_something = lar_comm_interrupt() || created;
+    const struct itimerval end = {.it_value = {leaves_something ? 2 : 0, 1}};
+    setitimer(ITIMER_REAL, &end, NULL);
 }
 
-/* When processor zero ends, this process has two seconds to find out and to say so. The signal may
- * come more than once: for each thread of the dying process that was the parent for a moment. */
+/* When processor zero ends, this process has two seconds to find out and to say so; one that has
+ * not come to the others yet ends at once, both by SIGALRM. The signal may come more than once: for
+ * each thread of the dying process that was the parent for a moment. */
 static void follow_parent(void) {
     struct sigaction action = {.sa_handler = end_soon, .sa_flags = SA_RESTART};
     sigset_t over;
@@ -222,6 +227,8 @@ static lar_status start_one(lar_processes *p, int32_t k, char **environment, lar
                     (int)k, strerror(reason));
 }
 
+static const lar_processes *parent_of_all; /* for a signal: this process has started others */
+
 static lar_status start_all(lar_processes *p, lar_error *error) {
     char parent[40];
     size_t variables = 0;
@@ -231,6 +238,7 @@ static lar_status start_all(lar_processes *p, lar_error *error) {
     snprintf(parent, sizeof parent, "%s=%ld", PARENT, (long)getpid());
     environment[0] = parent;
     memcpy(environment + 1, environ, variables * sizeof *environment);
+    parent_of_all = p;
     lar_status status = LAR_OK;
     for (int32_t k = 1; k < p->count && !status; k++) status = start_one(p, k, environment, error);
     free(environment);
@@ -321,11 +329,28 @@ lar_status lar_processes_create(lar_processes *p, const lar_model *model,
         lar_arrival_begin(&arrival);
     }
     status = lar_simulation_create(model, &mine, simulation, error);
+    created = true;
     return name_missing(p, &arrival, status, error);
 }
 
+/* In a handler: whom this process has started ends before it. Where all have met nothing is left of
+ * who is killed. */
+static void end_started(const lar_processes *p) {
+    double until = created ? 0 : lar_clock_seconds() + LAST_GRACE;
+    for (int32_t k = 1; k < p->count && !created; k++)
+        if (p->pid[k] > 0) kill(p->pid[k], OVER);
+    for (int32_t k = 1; k < p->count; k++) {
+        while (p->pid[k] > 0 && waitpid(p->pid[k], NULL, WNOHANG) == 0) {
+            if (lar_clock_seconds() > until) kill(p->pid[k], SIGKILL);
+            nap();
+        }
+    }
+}
+
 bool lar_processes_interrupt(void) {
-    return lar_comm_interrupt();
+    if (lar_comm_interrupt()) return true;
+    if (parent_of_all) end_started(parent_of_all);
+    return false;
 }
 
 bool lar_processes_interrupted(const lar_error *error) {
@@ -370,7 +395,8 @@ static int32_t reap(lar_processes *p, lar_status failure, lar_error *worst) {
         if (found == p->pid[k] && WIFSTOPPED(status)) {
             if (failure) end_stopped(p, k, status, worst);
         } else if (found != 0) {
-            bool told = k == p->named || (failure && found > 0 && WIFEXITED(status));
+            bool ended = WIFEXITED(status) || (WIFSIGNALED(status) && WTERMSIG(status) == SIGALRM);
+            bool told = k == p->named || (failure && found > 0 && ended);
             p->pid[k] = 0;
             if (found > 0 && status != 0 && !told && !worst->status) describe_end(k, status, worst);
             continue;
@@ -418,6 +444,7 @@ lar_status lar_processes_end(lar_processes *p, lar_status failure, lar_error *er
         status = worst.status;
         if (error) *error = worst;
     }
+    parent_of_all = NULL;
     free(p->pid);
     free(p);
     return status;
