@@ -227,7 +227,7 @@ static lar_status start_one(lar_processes *p, int32_t k, char **environment, lar
                     (int)k, strerror(reason));
 }
 
-static const lar_processes *parent_of_all; /* for a signal: this process has started others */
+static lar_processes *parent_of_all; /* for a signal: this process has started others */
 
 static lar_status start_all(lar_processes *p, lar_error *error) {
     char parent[40];
@@ -280,6 +280,21 @@ lar_status lar_processes_start(lar_processes *p, int32_t count, lar_error *error
     return status ? status : start_all(p, error);
 }
 
+/* In a handler: whom this process has started ends before it. Where all have met nothing is left of
+ * who is killed. */
+static void end_started(lar_processes *p) {
+    double until = created ? 0 : lar_clock_seconds() + LAST_GRACE;
+    for (int32_t k = 1; k < p->count && !created; k++)
+        if (p->pid[k] > 0) kill(p->pid[k], OVER);
+    for (int32_t k = 1; k < p->count; k++) {
+        while (p->pid[k] > 0 && waitpid(p->pid[k], NULL, WNOHANG) == 0) {
+            if (lar_clock_seconds() > until) kill(p->pid[k], SIGKILL);
+            nap();
+        }
+        p->pid[k] = 0;
+    }
+}
+
 /* ---- rendezvous ----------------------------------------------------------------------------- */
 
 lar_status lar_processes_meet_in_job(lar_comm_job *job, lar_options *options, lar_error *error) {
@@ -330,21 +345,14 @@ lar_status lar_processes_create(lar_processes *p, const lar_model *model,
     }
     status = lar_simulation_create(model, &mine, simulation, error);
     created = true;
-    return name_missing(p, &arrival, status, error);
-}
-
-/* In a handler: whom this process has started ends before it. Where all have met nothing is left of
- * who is killed. */
-static void end_started(const lar_processes *p) {
-    double until = created ? 0 : lar_clock_seconds() + LAST_GRACE;
-    for (int32_t k = 1; k < p->count && !created; k++)
-        if (p->pid[k] > 0) kill(p->pid[k], OVER);
-    for (int32_t k = 1; k < p->count; k++) {
-        while (p->pid[k] > 0 && waitpid(p->pid[k], NULL, WNOHANG) == 0) {
-            if (lar_clock_seconds() > until) kill(p->pid[k], SIGKILL);
-            nap();
-        }
+    /* Asked when all had just come: the others are ended before they find this one gone. */
+    if (!status && p && p->several && lar_comm_check_interrupt(error)) {
+        if (p->pid) end_started(p);
+        lar_simulation_destroy(*simulation);
+        *simulation = NULL;
+        status = LAR_ERROR_PEER;
     }
+    return name_missing(p, &arrival, status, error);
 }
 
 bool lar_processes_interrupt(void) {

@@ -146,6 +146,27 @@ for who in 0 1; do
     [ ! -e "$memory" ] || fail "$memory is left by processor $who"
 done
 
+# At any moment of the start of several processes: the status, no process and no other words.
+for comm in shm tcp $("$LARIAT" doctor --no-speed | grep -q 'yes *--comm ucx' && echo ucx); do
+    for wait in 0 0.01 0.02 0.03 0.04 0.05 0.06 0.08 0.1 0.15 0.2; do
+        "$LARIAT" run "$SOURCE/examples/beam.yaml" --time 3600 --grid 2x1x1 --comm "$comm" --json \
+            >"$SCRATCH/out" 2>"$SCRATCH/err" &
+        pid=$!
+        listens $pid
+        sleep $wait
+        others=$(children $pid)
+        kill -TERM $pid
+        wait $pid
+        status=$?
+        [ $status -eq 130 ] || fail "status $status, SIGTERM $wait s into --comm $comm"
+        for other in $others; do
+            [ ! -e "/proc/$other" ] || fail "process $other is left by --comm $comm"
+        done
+        [ ! -s "$SCRATCH/err" ] || [ "$(cat "$SCRATCH/err")" = "lariat run: interrupted" ] ||
+            fail "SIGTERM $wait s into --comm $comm: $(cat "$SCRATCH/err")"
+    done
+done
+
 # Too few open files: who cannot begin takes with it whom it has started.
 for files in 5 6; do
     ls /dev/shm >"$SCRATCH/before"
