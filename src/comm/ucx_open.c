@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/statvfs.h>
 
 #include "base/memory.h"
 #include "comm/rendezvous.h"
@@ -18,11 +19,15 @@ typedef struct ucx_address {
 
 /* ---- the library in this process ----------------------------------------------------------- */
 
+enum { ROOM = 8 << 20 /* of shared memory, for each processor [bytes] */ };
+
 static lar_status refuse(const char *what, ucs_status_t why, lar_error *error) {
-    return lar_fail(error, LAR_ERROR_IO,
-                    "UCX cannot %s: %s; see what ucx_info -d finds and what the variables UCX_... "
-                    "say, or use the backend tcp",
-                    what, lar_ucx.ucs_status_string(why));
+    struct statvfs room;
+    const bool little = statvfs("/dev/shm", &room) == 0 && room.f_bavail < ROOM / room.f_frsize;
+    return lar_fail(error, LAR_ERROR_IO, "UCX cannot %s: %s; %s, or use the backend tcp", what,
+                    lar_ucx.ucs_status_string(why),
+                    little ? "/dev/shm has less than 8 MiB: make room there"
+                           : "see what ucx_info -d finds and what the variables UCX_... say");
 }
 
 /* ---- what comes ---------------------------------------------------------------------------- */

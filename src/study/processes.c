@@ -32,6 +32,8 @@ enum { STARTED_MAX = 64 };
 /* By this variable of the environment a process knows which one has started it. */
 static const char PARENT[] = "LARIAT_PARENT";
 
+static const char PROGRAM[] = "/proc/self/exe"; /* that this process runs */
+
 extern char **environ;
 
 struct lar_processes {
@@ -204,8 +206,7 @@ static int spawn(char **command, char **environment, pid_t *child) {
     reason = posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
     if (!reason)
         reason = posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-    if (!reason)
-        reason = posix_spawn(child, "/proc/self/exe", &files, &attributes, command, environment);
+    if (!reason) reason = posix_spawn(child, PROGRAM, &files, &attributes, command, environment);
     posix_spawn_file_actions_destroy(&files);
     posix_spawnattr_destroy(&attributes);
     return reason;
@@ -221,10 +222,18 @@ static lar_status start_one(lar_processes *p, int32_t k, char **environment, lar
     free(command);
     if (!reason) return LAR_OK;
     p->pid[k] = 0;
+    const char *lacks = access("/dev/null", F_OK) != 0 ? "/dev/null"
+                        : access(PROGRAM, F_OK) != 0   ? PROGRAM
+                                                       : NULL;
+    if (lacks)
+        return lar_fail(error, LAR_ERROR_IO,
+                        "the system starts no process for processor %d: there is no %s; mount "
+                        "/dev and /proc, or use --comm threads",
+                        (int)k, lacks);
     return lar_fail(error, LAR_ERROR_MEMORY,
                     "the system starts no process for processor %d: %s; use fewer processors, or "
-                    "raise the limit (ulimit -u)",
-                    (int)k, strerror(reason));
+                    "%s",
+                    (int)k, strerror(reason), lar_remedy(reason, "raise the limit (ulimit -u)"));
 }
 
 static lar_processes *parent_of_all; /* for a signal: this process has started others */
