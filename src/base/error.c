@@ -34,6 +34,6 @@ lar_status lar_fail_thread(lar_error *error, int cause, const char *what) {
 const char *lar_remedy(int cause, const char *usual) {
     if (cause == EMFILE) return "raise the limit on open files (ulimit -n)";
     if (cause == EFBIG) return "raise the limit on the size of files (ulimit -f)";
-    if (cause == EROFS) return "choose a place that is not mounted read-only";
+    if (cause == EROFS) return "mount it for writing or take another place";
     return usual;
 }
