@@ -61,8 +61,8 @@ static bool by_hand(const lar_processes *p) {
 
 /* ---- the parent ----------------------------------------------------------------------------- */
 
-/* Processor zero's word that it is over. */
-enum { OVER = SIGUSR1 };
+/* Processor zero's word that it is over: a signal that nobody else sends. */
+enum { OVER = SIGVTALRM };
 
 static bool created; /* once the others have been met here */
 
@@ -183,7 +183,7 @@ static char **make_command(const lar_processes *p, char *words, char number[16])
 
 /* What it leaves to processor zero; and OVER, until it can hear it. */
 static void block_signals(posix_spawnattr_t *attributes) {
-    static const int left[] = {SIGINT, SIGTERM, SIGHUP, OVER};
+    static const int left[] = {SIGINT, SIGTERM, SIGHUP, SIGUSR1, SIGUSR2, SIGXCPU, OVER};
     sigset_t blocked;
     pthread_sigmask(SIG_BLOCK, NULL, &blocked);
     for (size_t i = 0; i < sizeof left / sizeof left[0]; i++) sigaddset(&blocked, left[i]);

@@ -54,6 +54,18 @@ for signal in INT TERM HUP; do
     interrupt $signal --grid 2x1x1 --comm shm
     interrupt $signal --grid 3x1x1 --comm tcp
 done
+# What batch systems send before the end, and the system at a limit of processor time.
+interrupt USR1 --grid 2x1x1 --comm shm
+interrupt USR2
+interrupt XCPU --grid 2x1x1 --comm tcp
+(
+    ulimit -S -t 1
+    exec "$LARIAT" run "$SOURCE/examples/beam.yaml" --time 3600 --grid 1x1x1 --json \
+        --save "$SCRATCH/cpu.checkpoint"
+) >"$SCRATCH/out" 2>"$SCRATCH/err"
+[ $? -eq 130 ] || fail "no interruption at the limit of processor time: $(cat "$SCRATCH/err")"
+[ "$(value_of interrupted)" = true ] || fail "a run without processor time is not interrupted"
+[ -s "$SCRATCH/cpu.checkpoint" ] || fail "no state when the processor time is used up"
 
 # A session that all of its group is told to end, twice: no processor is lost.
 if "$LARIAT" view "$SOURCE/examples/beam.yaml" --port 0 --seconds 0.1 --json >/dev/null 2>&1; then
