@@ -1,5 +1,6 @@
 #include "base/error.h"
 
+#include <errno.h>
 #include <stdarg.h>
 #include <string.h>
 
@@ -28,4 +29,11 @@ lar_status lar_fail_thread(lar_error *error, int cause, const char *what) {
                     "the system gives no thread for %s: %s; free memory, or raise the limit "
                     "(ulimit -u)",
                     what, strerror(cause));
+}
+
+const char *lar_remedy(int cause, const char *usual) {
+    if (cause == EMFILE) return "raise the limit on open files (ulimit -n)";
+    if (cause == EFBIG) return "raise the limit on the size of files (ulimit -f)";
+    if (cause == EROFS) return "mount it for writing or take another place";
+    return usual;
 }

@@ -26,4 +26,8 @@ lar_status lar_fail_memory(lar_error *error, size_t bytes, const char *what);
 /* The same for a thread: `cause` is what starting it returned. */
 lar_status lar_fail_thread(lar_error *error, int cause, const char *what);
 
+/* What helps against the errno `cause` of a file: its own remedy where it has one, else `usual`. */
+const char *lar_remedy(int cause, const char *usual);
+#define LAR_FILE_REMEDY "check the folder, its permissions and the free space"
+
 #endif

@@ -4,6 +4,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "base/error.h"
 #include "cli/commands.h"
 
 /* The form in which the next command that is asked for help tells it. */
@@ -88,9 +89,8 @@ static const cli_command *find(const char *first, const char *second) {
 /* ---- files ----------------------------------------------------------------------------------- */
 
 static int cannot_write(const char *path) {
-    return cli_complain(&cli_help, CLI_FAILED,
-                        "%s cannot be written: %s; name another folder, or make room", path,
-                        strerror(errno));
+    return cli_complain(&cli_help, CLI_FAILED, "%s cannot be written: %s; %s", path,
+                        strerror(errno), lar_remedy(errno, "name another folder, or make room"));
 }
 
 /* Opens DIR/FOLDER/NAME, folders made. NULL: told. */

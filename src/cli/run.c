@@ -181,25 +181,37 @@ static int forget_earlier(run *r) {
     return CLI_DONE;
 }
 
-/* A long run must not end without its state for a reason that was there from the start. --save may
- * name a file in the folder of --out, which is made here. */
-static int check_save(const run *r) {
-    const char *path = r->settings.save;
+/* Whether a state can be saved there: its file has a longer name first, as long as this. */
+static int try_place(const char *path) {
     char trial[PATH_SIZE];
-    lar_error error;
-    if (lar_file_replaceable(path, &error) ||
-        (r->settings.out && lar_folder_make(r->settings.out, &error)) ||
-        lar_file_spare(path, MAGIC, "not a checkpoint", &error))
-        return cli_complain(&cli_run, CLI_FAILED, "%s", error.message);
-    int length = snprintf(trial, sizeof trial, "%s.XXXXXX", path);
+    int length = snprintf(trial, sizeof trial, "%s.%ld-XXXXXX", path, (long)getpid());
     int file = length < PATH_SIZE ? mkstemp(trial) : -1;
-    if (file < 0)
-        return cli_complain(&cli_run, CLI_FAILED,
-                            "%s: cannot be written: %s; check the folder and its permissions", path,
-                            strerror(length < PATH_SIZE ? errno : ENAMETOOLONG));
+    if (file < 0) {
+        const int cause = length < PATH_SIZE ? errno : ENAMETOOLONG;
+        const char *usual = cause == ENAMETOOLONG ? "choose a shorter name"
+                                                  : "check the folder and its permissions";
+        return cli_complain(&cli_run, CLI_FAILED, "%s: cannot be written: %s; %s", path,
+                            strerror(cause), lar_remedy(cause, usual));
+    }
     close(file);
     unlink(trial);
     return CLI_DONE;
+}
+
+/* A long run must not end without its states for a reason that was there from the start. --save may
+ * name a file in the folder of --out, which is made here. */
+static int check_save(run *r) {
+    const char *path = r->settings.save;
+    char beside[PATH_SIZE];
+    lar_error error;
+    if ((path && lar_file_replaceable(path, &error)) ||
+        (r->settings.out && lar_folder_make(r->settings.out, &error)) ||
+        (path && lar_file_spare(path, MAGIC, "not a checkpoint", &error)))
+        return cli_complain(&cli_run, CLI_FAILED, "%s", error.message);
+    int status = path ? try_place(path) : CLI_DONE;
+    if (status || !r->settings.out) return status;
+    status = state_path(r, beside);
+    return status ? status : try_place(beside);
 }
 
 static run_report report_of(const run *r) {
@@ -467,7 +479,7 @@ static int compute(run *r) {
     if (r->settings.resume && lar_simulation_load(r->simulation, r->settings.resume, &error))
         return fail_by(r, &error);
     lar_simulation_energy(r->simulation, &r->began);
-    if (r->settings.save && check_save(r)) return CLI_FAILED;
+    if (check_save(r)) return CLI_FAILED;
     int status = damp(r);
     if (!status) status = choose_length(r);
     cli_catch_stop(); /* from here on there are results to end with */

@@ -20,7 +20,8 @@ static void say(const char *text) {
 
 enum { HALF_A_SECOND = 500000000 /* [ns] */ };
 
-/* True for the first signal. A second one, half a second later or more, ends the program. */
+/* True for the first signal. A second one, half a second later or more, ends the program; but the
+ * system says in every second again that the processor time is used up. */
 static bool is_first(int signal_number) {
     static int64_t asked_at; /* [ns]; atomic */
     const int64_t now = lar_clock_ns();
@@ -30,7 +31,7 @@ static bool is_first(int signal_number) {
         cli_stop_asked = signal_number;
         return true;
     }
-    if (now - never > HALF_A_SECOND) {
+    if (now - never > HALF_A_SECOND && signal_number != SIGXCPU) {
         signal(signal_number, SIG_DFL);
         raise(signal_number);
     }
@@ -60,11 +61,13 @@ static void point_to_zero(int signal_number) {
 
 static void catch_signals(void (*terminate)(int), void (*handler)(int)) {
     struct sigaction action = {.sa_handler = handler, .sa_flags = SA_RESTART};
-    struct sigaction hangup;
+    static const int unless_ignored[] = {SIGHUP, SIGUSR1, SIGUSR2, SIGXCPU};
+    struct sigaction before;
     sigemptyset(&action.sa_mask);
     sigaction(SIGINT, &action, NULL);
-    if (sigaction(SIGHUP, NULL, &hangup) == 0 && hangup.sa_handler != SIG_IGN)
-        sigaction(SIGHUP, &action, NULL);
+    for (size_t i = 0; i < sizeof unless_ignored / sizeof unless_ignored[0]; i++)
+        if (sigaction(unless_ignored[i], NULL, &before) == 0 && before.sa_handler != SIG_IGN)
+            sigaction(unless_ignored[i], &action, NULL);
     action.sa_handler = terminate;
     sigaction(SIGTERM, &action, NULL);
 }

@@ -1,5 +1,6 @@
-/* How a command that takes time is asked to stop: Ctrl-C, SIGTERM, or SIGHUP where it is not
- * ignored (as it is under nohup).
+/* How a command that takes time is asked to stop: Ctrl-C, SIGTERM, or, where they are not ignored,
+ * SIGHUP (nohup ignores it), SIGUSR1, SIGUSR2 (batch systems, before the end) and SIGXCPU (the
+ * processor time of `ulimit -S -t` is used up).
  *
  *     from the start     ends the command at once: one sentence, status 130
  *     cli_catch_stop     ends it with what there is: the command looks at cli_stop_asked

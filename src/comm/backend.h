@@ -101,8 +101,6 @@ static inline bool lar_comm_fits(size_t half, size_t offset, size_t bytes) {
            lar_comm_packet_bytes(bytes) <= half - offset;
 }
 
-/* LAR_ERROR_PEER after lar_comm_interrupt. */
-lar_status lar_comm_check_interrupt(lar_error *error);
 
 /* Whether all processors are on this machine because processor zero can be reached from nowhere
  * else. */

@@ -134,7 +134,6 @@ static lar_status open_parts(lar_comm *comm, lar_error *error) {
     if (!status) status = come_together(comm, error);
     if (!status && comm->backend->begin) comm->backend->begin(comm);
     __atomic_fetch_sub(&opening, waits, __ATOMIC_SEQ_CST);
-    if (!status && waits) status = lar_comm_check_interrupt(error);
     if (status) return status;
     /* What a processor sends to itself needs no network. */
     comm->peers[comm->options.self] = (lar_comm_peer){comm->receive, comm->options.receive_bytes};

@@ -90,6 +90,8 @@ extern const char lar_comm_called_off[];
  * waits in this process: then it returns within about a second, and has cleaned up. */
 bool lar_comm_interrupt(void);
 extern const char lar_comm_interrupted[];
+/* LAR_ERROR_PEER after lar_comm_interrupt. */
+lar_status lar_comm_check_interrupt(lar_error *error);
 
 /* Meets the others and returns when all can write to all. Fails, with the same sentence for
  * everyone, when one does not come in time, or comes with another version, backend, number of

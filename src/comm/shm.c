@@ -93,9 +93,10 @@ static lar_status shm_start(lar_comm *comm, lar_error *error) {
     }
     if (refused)
         return lar_fail(error, LAR_ERROR_IO,
-                        "%zu bytes of shared memory for processor %d could not be had: %s; make "
-                        "room in /dev/shm or use the backend tcp",
-                        bytes, (int)comm->options.self, strerror(refused));
+                        "%zu bytes of shared memory for processor %d could not be had: %s; %s or "
+                        "use the backend tcp",
+                        bytes, (int)comm->options.self, strerror(refused),
+                        lar_remedy(refused, "make room in /dev/shm"));
     comm->receive = state->maps[comm->options.self] = map;
     state->mapped[comm->options.self] = bytes;
     lar_comm_address *own = &comm->addresses[comm->options.self];
@@ -119,9 +120,10 @@ static lar_status map_peer(lar_comm *comm, int32_t p, lar_error *error) {
     if (object >= 0) close(object);
     if (map == MAP_FAILED)
         return lar_fail(error, LAR_ERROR_IO,
-                        "processor %d cannot map the shared memory of processor %d: %s; start all "
-                        "on one machine, or use the backend tcp",
-                        (int)comm->options.self, (int)p, strerror(reason));
+                        "processor %d cannot map the shared memory of processor %d: %s; %s, or use "
+                        "the backend tcp",
+                        (int)comm->options.self, (int)p, strerror(reason),
+                        lar_remedy(reason, "start all on one machine"));
     comm->peers[p].direct = state->maps[p] = map;
     state->mapped[p] = bytes;
     return LAR_OK;

@@ -99,6 +99,7 @@ static bool nothing_pending(const lar_comm *comm) {
 /* Between two that write each other's memory no network is needed any more. */
 static void ucx_begin(lar_comm *comm) {
     ucx_state *state = comm->state;
+    state->connecting = false;
     lock(state);
     for (int32_t p = 0; p < comm->options.count; p++)
         if (!goes_through_ucx(&state->links[p]) && state->links[p].severable)
@@ -256,7 +257,7 @@ static bool all_is_put(const lar_comm *comm) {
 
 static void ucx_leave(lar_comm *comm) {
     ucx_state *state = comm->state;
-    if (!state || !state->connected || !state->remote) return;
+    if (!state || state->connecting || !state->remote) return;
     double deadline = lar_comm_now() + comm->options.timeout;
     lock(state);
     for (int32_t p = 0; p < comm->options.count; p++) {
@@ -276,9 +277,21 @@ static void ucx_leave(lar_comm *comm) {
     lar_ucx_work_until(comm, all_have_left, deadline);
 }
 
+/* UCX 1.13 ends the process (assertions in ucp_request.c, wireup_ep.c) when endpoints are closed or
+ * a worker destroyed while two are still connecting. After such a start all of it stays, untouched
+ * until the process ends: memory without names, nothing in the file system. */
+static void leave_as_it_is(ucx_state *state) {
+    static ucx_state *stay; /* for who looks for lost memory */
+    state->earlier = __atomic_exchange_n(&stay, state, __ATOMIC_ACQ_REL);
+}
+
 static void ucx_close(lar_comm *comm) {
     ucx_state *state = comm->state;
     if (!state || comm->forked) return; /* UCX does not outlive a fork: its memory stays */
+    if (state->connecting) {
+        leave_as_it_is(state);
+        return;
+    }
     bool lost = __atomic_load_n(comm->verdict, __ATOMIC_ACQUIRE) != 0;
     if (state->worker) {
         lock(state);

@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/statvfs.h>
 
 #include "base/memory.h"
 #include "comm/rendezvous.h"
@@ -18,11 +19,15 @@ typedef struct ucx_address {
 
 /* ---- the library in this process ----------------------------------------------------------- */
 
+enum { ROOM = 8 << 20 /* of shared memory, for each processor [bytes] */ };
+
 static lar_status refuse(const char *what, ucs_status_t why, lar_error *error) {
-    return lar_fail(error, LAR_ERROR_IO,
-                    "UCX cannot %s: %s; see what ucx_info -d finds and what the variables UCX_... "
-                    "say, or use the backend tcp",
-                    what, lar_ucx.ucs_status_string(why));
+    struct statvfs room;
+    const bool little = statvfs("/dev/shm", &room) == 0 && room.f_bavail < ROOM / room.f_frsize;
+    return lar_fail(error, LAR_ERROR_IO, "UCX cannot %s: %s; %s, or use the backend tcp", what,
+                    lar_ucx.ucs_status_string(why),
+                    little ? "/dev/shm has less than 8 MiB: make room there"
+                           : "see what ucx_info -d finds and what the variables UCX_... say");
 }
 
 /* ---- what comes ---------------------------------------------------------------------------- */
@@ -267,6 +272,7 @@ lar_status lar_ucx_connect(lar_comm *comm, lar_error *error) {
     ucx_state *state = comm->state;
     int32_t count = comm->options.count;
     lar_status status = LAR_OK;
+    state->connecting = true;
     lock(state);
     for (int32_t p = 0; p < count && !status; p++)
         if (p != comm->options.self) status = reach(comm, p, error);
@@ -288,7 +294,6 @@ lar_status lar_ucx_connect(lar_comm *comm, lar_error *error) {
                             (int)comm->options.self, (int)p, comm->options.start_timeout);
         if (p != comm->options.self && goes_through_ucx(link)) state->remote = true;
     }
-    state->connected = true;
     return LAR_OK;
 }
 

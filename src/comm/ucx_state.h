@@ -42,11 +42,12 @@ typedef struct ucx_state {
     ucp_context_h context;
     ucp_worker_h worker;
     ucp_mem_h memory;
-    ucx_link *links; /* [count] */
-    ucx_way first;   /* that may be chosen */
-    bool remote;     /* packets to or from somebody go through UCX */
-    bool connected;
-    int pending; /* notes, flushes and closings under way */
+    ucx_link *links;           /* [count] */
+    ucx_way first;             /* that may be chosen */
+    bool remote;               /* packets to or from somebody go through UCX */
+    bool connecting;           /* not everyone has heard everyone yet */
+    struct ucx_state *earlier; /* that stays */
+    int pending;               /* notes, flushes and closings under way */
     atomic_int putters;
     atomic_flag lock; /* over all above that changes, and all of UCX */
 } ucx_state;

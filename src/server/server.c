@@ -195,9 +195,10 @@ static lar_status make_context(lar_server *server, lar_error *error) {
     lws_set_log_level(0, NULL); /* a library does not print */
     server->context = lws_create_context(&info);
     if (!server->context)
-        return lar_fail(error, LAR_ERROR_MEMORY,
-                        "libwebsockets cannot start: memory or open files are short; raise the "
-                        "limits (ulimit -n)");
+        return lar_fail(error, LAR_ERROR_MEMORY, "libwebsockets cannot start: %s",
+                        access("/dev/urandom", R_OK) == 0
+                            ? "memory or open files are short; raise the limits (ulimit -n)"
+                            : "it needs /dev/urandom; mount /dev");
     server->vhost = lws_get_vhost_by_name(server->context, "default");
     lws_sock_file_fd_type fd = {.filefd = server->listener};
     if (!lws_adopt_descriptor_vhost(server->vhost, LWS_ADOPT_RAW_FILE_DESC, fd,

@@ -103,10 +103,9 @@ static lar_status write_file(const char *path, const unsigned char *data, size_t
     if (file >= 0 && !good) remove(part);
     free(part);
     if (good) return LAR_OK;
-    return lar_fail(error, LAR_ERROR_IO,
-                    "%s: cannot be written: %s; check the folder, its permissions and the free "
-                    "space",
-                    path, strerror(cause ? cause : EIO));
+    if (!cause) cause = EIO;
+    return lar_fail(error, LAR_ERROR_IO, "%s: cannot be written: %s; %s", path, strerror(cause),
+                    lar_remedy(cause, LAR_FILE_REMEDY));
 }
 
 lar_status lar_checkpoint_store(const char *path, const lar_bytes *bytes, lar_error *error) {

@@ -302,7 +302,8 @@ lar_status lar_grid_choose(const lar_model *model, const lar_options *options,
     const char *asked = getenv("LARIAT_GRID"), *why;
     lar_status status = check(&c.options, error);
     if (status) return status;
-    if (asked && *asked) return take_as_it_is(asked, model, choice, error);
+    if (asked && *asked && strcmp(asked, "auto") != 0)
+        return take_as_it_is(asked, model, choice, error);
     if ((why = why_not(model, &c.options, choice->cores))) {
         snprintf(choice->reason, sizeof choice->reason, "%s", why);
         return LAR_OK;

@@ -12,9 +12,8 @@
 
 static lar_status fail_to(const lar_probe_file *file, const char *verb, int cause,
                           lar_error *error) {
-    return lar_fail(error, LAR_ERROR_IO,
-                    "%s: cannot be %s: %s; check the folder, its permissions and the free space",
-                    file->path, verb, strerror(cause));
+    return lar_fail(error, LAR_ERROR_IO, "%s: cannot be %s: %s; %s", file->path, verb,
+                    strerror(cause), lar_remedy(cause, LAR_FILE_REMEDY));
 }
 
 /* ---- lines ------------------------------------------------------------------------------ */

@@ -85,3 +85,12 @@ lar_status lar_parallel_find(const lar_model *model, const lar_options *options,
     *out = found;
     return status;
 }
+
+lar_status lar_parallel_check_environment(lar_error *error) {
+    const char *asked = getenv("LARIAT_GRID");
+    lar_grid grid;
+    lar_error why;
+    if (!asked || !*asked || strcmp(asked, "auto") == 0) return LAR_OK;
+    if (!lar_grid_parse(asked, &grid, &why)) return LAR_OK;
+    return lar_fail(error, LAR_ERROR_ARGUMENT, "LARIAT_GRID: %s", why.message);
+}

@@ -25,4 +25,7 @@ typedef struct lar_parallel {
 lar_status lar_parallel_find(const lar_model *model, const lar_options *options, lar_parallel *out,
                              lar_error *error);
 
+/* Fails where LARIAT_GRID in the environment is no grid, nor auto, nor empty. */
+lar_status lar_parallel_check_environment(lar_error *error);
+
 #endif

@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/time.h>
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
@@ -23,13 +24,15 @@
 
 /* How long a process may take to end, and to say why [s]; the short one is for a failure that all
  * have alike, which is told once. */
-static const double GRACE = 1.5, SHORT_GRACE = 0.3, HESITATION = 1.0;
+static const double GRACE = 1.5, SHORT_GRACE = 0.3, HESITATION = 1.0, LAST_GRACE = 0.5;
 
 /* Whoever wants more on one machine has mistyped the grid. */
 enum { STARTED_MAX = 64 };
 
 /* By this variable of the environment a process knows which one has started it. */
 static const char PARENT[] = "LARIAT_PARENT";
+
+static const char PROGRAM[] = "/proc/self/exe"; /* that this process runs */
 
 extern char **environ;
 
@@ -58,17 +61,21 @@ static bool by_hand(const lar_processes *p) {
 
 /* ---- the parent ----------------------------------------------------------------------------- */
 
-/* Processor zero's word that it is over. */
-enum { OVER = SIGUSR1 };
+/* Processor zero's word that it is over: a signal that nobody else sends. */
+enum { OVER = SIGVTALRM };
+
+static bool created; /* once the others have been met here */
 
 static void end_soon(int signal_number) {
     (void)signal_number;
-    lar_comm_interrupt();
-    alarm(2);
+    const bool leaves_something = lar_comm_interrupt() || created;
+    const struct itimerval end = {.it_value = {leaves_something ? 2 : 0, 1}};
+    setitimer(ITIMER_REAL, &end, NULL);
 }
 
-/* When processor zero ends, this process has two seconds to find out and to say so. The signal may
- * come more than once: for each thread of the dying process that was the parent for a moment. */
+/* When processor zero ends, this process has two seconds to find out and to say so; one that has
+ * not come to the others yet ends at once, both by SIGALRM. The signal may come more than once: for
+ * each thread of the dying process that was the parent for a moment. */
 static void follow_parent(void) {
     struct sigaction action = {.sa_handler = end_soon, .sa_flags = SA_RESTART};
     sigset_t over;
@@ -176,7 +183,7 @@ static char **make_command(const lar_processes *p, char *words, char number[16])
 
 /* What it leaves to processor zero; and OVER, until it can hear it. */
 static void block_signals(posix_spawnattr_t *attributes) {
-    static const int left[] = {SIGINT, SIGTERM, SIGHUP, OVER};
+    static const int left[] = {SIGINT, SIGTERM, SIGHUP, SIGUSR1, SIGUSR2, SIGXCPU, OVER};
     sigset_t blocked;
     pthread_sigmask(SIG_BLOCK, NULL, &blocked);
     for (size_t i = 0; i < sizeof left / sizeof left[0]; i++) sigaddset(&blocked, left[i]);
@@ -199,8 +206,7 @@ static int spawn(char **command, char **environment, pid_t *child) {
     reason = posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
     if (!reason)
         reason = posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-    if (!reason)
-        reason = posix_spawn(child, "/proc/self/exe", &files, &attributes, command, environment);
+    if (!reason) reason = posix_spawn(child, PROGRAM, &files, &attributes, command, environment);
     posix_spawn_file_actions_destroy(&files);
     posix_spawnattr_destroy(&attributes);
     return reason;
@@ -216,11 +222,21 @@ static lar_status start_one(lar_processes *p, int32_t k, char **environment, lar
     free(command);
     if (!reason) return LAR_OK;
     p->pid[k] = 0;
+    const char *lacks = access("/dev/null", F_OK) != 0 ? "/dev/null"
+                        : access(PROGRAM, F_OK) != 0   ? PROGRAM
+                                                       : NULL;
+    if (lacks)
+        return lar_fail(error, LAR_ERROR_IO,
+                        "the system starts no process for processor %d: there is no %s; mount "
+                        "/dev and /proc, or use --comm threads",
+                        (int)k, lacks);
     return lar_fail(error, LAR_ERROR_MEMORY,
                     "the system starts no process for processor %d: %s; use fewer processors, or "
-                    "raise the limit (ulimit -u)",
-                    (int)k, strerror(reason));
+                    "%s",
+                    (int)k, strerror(reason), lar_remedy(reason, "raise the limit (ulimit -u)"));
 }
+
+static lar_processes *parent_of_all; /* for a signal: this process has started others */
 
 static lar_status start_all(lar_processes *p, lar_error *error) {
     char parent[40];
@@ -231,6 +247,7 @@ static lar_status start_all(lar_processes *p, lar_error *error) {
     snprintf(parent, sizeof parent, "%s=%ld", PARENT, (long)getpid());
     environment[0] = parent;
     memcpy(environment + 1, environ, variables * sizeof *environment);
+    parent_of_all = p;
     lar_status status = LAR_OK;
     for (int32_t k = 1; k < p->count && !status; k++) status = start_one(p, k, environment, error);
     free(environment);
@@ -270,6 +287,21 @@ lar_status lar_processes_start(lar_processes *p, int32_t count, lar_error *error
     p->count = count;
     status = lar_comm_listen("127.0.0.1:0", &p->listener, p->address, error);
     return status ? status : start_all(p, error);
+}
+
+/* In a handler: whom this process has started ends before it. Where all have met nothing is left of
+ * who is killed. */
+static void end_started(lar_processes *p) {
+    double until = created ? 0 : lar_clock_seconds() + LAST_GRACE;
+    for (int32_t k = 1; k < p->count && !created; k++)
+        if (p->pid[k] > 0) kill(p->pid[k], OVER);
+    for (int32_t k = 1; k < p->count; k++) {
+        while (p->pid[k] > 0 && waitpid(p->pid[k], NULL, WNOHANG) == 0) {
+            if (lar_clock_seconds() > until) kill(p->pid[k], SIGKILL);
+            nap();
+        }
+        p->pid[k] = 0;
+    }
 }
 
 /* ---- rendezvous ----------------------------------------------------------------------------- */
@@ -321,11 +353,21 @@ lar_status lar_processes_create(lar_processes *p, const lar_model *model,
         lar_arrival_begin(&arrival);
     }
     status = lar_simulation_create(model, &mine, simulation, error);
+    created = true;
+    /* Asked when all had just come: the others are ended before they find this one gone. */
+    if (!status && p && p->several && lar_comm_check_interrupt(error)) {
+        if (p->pid) end_started(p);
+        lar_simulation_destroy(*simulation);
+        *simulation = NULL;
+        status = LAR_ERROR_PEER;
+    }
     return name_missing(p, &arrival, status, error);
 }
 
 bool lar_processes_interrupt(void) {
-    return lar_comm_interrupt();
+    if (lar_comm_interrupt()) return true;
+    if (parent_of_all) end_started(parent_of_all);
+    return false;
 }
 
 bool lar_processes_interrupted(const lar_error *error) {
@@ -370,7 +412,8 @@ static int32_t reap(lar_processes *p, lar_status failure, lar_error *worst) {
         if (found == p->pid[k] && WIFSTOPPED(status)) {
             if (failure) end_stopped(p, k, status, worst);
         } else if (found != 0) {
-            bool told = k == p->named || (failure && found > 0 && WIFEXITED(status));
+            bool ended = WIFEXITED(status) || (WIFSIGNALED(status) && WTERMSIG(status) == SIGALRM);
+            bool told = k == p->named || (failure && found > 0 && ended);
             p->pid[k] = 0;
             if (found > 0 && status != 0 && !told && !worst->status) describe_end(k, status, worst);
             continue;
@@ -418,6 +461,7 @@ lar_status lar_processes_end(lar_processes *p, lar_status failure, lar_error *er
         status = worst.status;
         if (error) *error = worst;
     }
+    parent_of_all = NULL;
     free(p->pid);
     free(p);
     return status;

@@ -33,7 +33,26 @@ if [ -z "${LARIAT_TEST_SANITIZED:-}" ]; then
     small --resume "$SCRATCH/small.checkpoint"
     small --grid 2x1x1 --comm shm --no-pin
     expect 0 sh -c 'ulimit -s 96; exec "$@"' sh "$LARIAT" demo-model "$SCRATCH/small_demo"
+    for command in "doctor --no-speed" "fit $SOURCE/examples/fit_tension.yaml" \
+        "requirements $beam --no-speed" "info $beam" "verify $beam --grid 2x1x1"; do
+        # shellcheck disable=SC2086
+        expect 0 sh -c 'ulimit -s 96; exec "$@"' sh "$LARIAT" $command
+    done
 fi
+for command in "run $beam --steps 5" doctor "requirements $beam --no-speed"; do
+    # shellcheck disable=SC2086
+    expect 1 sh -c 'ulimit -s 64; exec "$@"' sh "$LARIAT" $command
+    complains 'the stack may have 64 KiB only, .*raise the limit (ulimit -s)'
+done
+
+# A name that is too long for a state is found before the first step.
+long=$(awk 'BEGIN { for (i = 0; i < 240; i++) printf "n" }')
+cp "$beam" "$SCRATCH/$long.yaml"
+expect 1 timeout 20 "$LARIAT" run "$SCRATCH/$long.yaml" --steps 1000000000 --out "$SCRATCH/named"
+complains 'cannot be written: File name too long; choose a shorter name'
+ln -s /nonexistent/folder "$SCRATCH/dangling"
+expect 1 "$LARIAT" run "$beam" --steps 1 --out "$SCRATCH/dangling"
+complains 'dangling: .* it is a link that leads nowhere; choose another'
 
 # What a file says to the terminal is not passed on.
 sed 's/^title:.*/title: "a\\e[31mred \\u009b1m"/' "$beam" >"$SCRATCH/red.yaml"
@@ -133,7 +152,7 @@ rm -rf "$SCRATCH/many"
     "$LARIAT" run "$beam" --steps 10 --out "$SCRATCH/limited" >"$SCRATCH/out" 2>"$SCRATCH/err"
 )
 [ $? -eq 1 ] || fail "no plain failure where files may not grow"
-complains 'cannot be written: File too large'
+complains 'cannot be written: File too large; .*(ulimit -f)'
 [ -z "$(find "$SCRATCH/limited" -name '*.part')" ] || fail "a half frame is left"
 
 # Closed streams: no message ends up in a result.

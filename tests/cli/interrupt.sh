@@ -54,6 +54,18 @@ for signal in INT TERM HUP; do
     interrupt $signal --grid 2x1x1 --comm shm
     interrupt $signal --grid 3x1x1 --comm tcp
 done
+# What batch systems send before the end, and the system at a limit of processor time.
+interrupt USR1 --grid 2x1x1 --comm shm
+interrupt USR2
+interrupt XCPU --grid 2x1x1 --comm tcp
+(
+    ulimit -S -t 1
+    exec "$LARIAT" run "$SOURCE/examples/beam.yaml" --time 3600 --grid 1x1x1 --json \
+        --save "$SCRATCH/cpu.checkpoint"
+) >"$SCRATCH/out" 2>"$SCRATCH/err"
+[ $? -eq 130 ] || fail "no interruption at the limit of processor time: $(cat "$SCRATCH/err")"
+[ "$(value_of interrupted)" = true ] || fail "a run without processor time is not interrupted"
+[ -s "$SCRATCH/cpu.checkpoint" ] || fail "no state when the processor time is used up"
 
 # A session that all of its group is told to end, twice: no processor is lost.
 if "$LARIAT" view "$SOURCE/examples/beam.yaml" --port 0 --seconds 0.1 --json >/dev/null 2>&1; then
@@ -144,6 +156,27 @@ for who in 0 1; do
         [ $? -eq 130 ] || fail "processor 1 does not leave: $(cat "$SCRATCH/err")"
     fi
     [ ! -e "$memory" ] || fail "$memory is left by processor $who"
+done
+
+# At any moment of the start of several processes: the status, no process and no other words.
+for comm in shm tcp $("$LARIAT" doctor --no-speed | grep -q 'yes *--comm ucx' && echo ucx); do
+    for wait in 0 0.01 0.02 0.03 0.04 0.05 0.06 0.08 0.1 0.15 0.2; do
+        "$LARIAT" run "$SOURCE/examples/beam.yaml" --time 3600 --grid 2x1x1 --comm "$comm" --json \
+            >"$SCRATCH/out" 2>"$SCRATCH/err" &
+        pid=$!
+        listens $pid
+        sleep $wait
+        others=$(children $pid)
+        kill -TERM $pid
+        wait $pid
+        status=$?
+        [ $status -eq 130 ] || fail "status $status, SIGTERM $wait s into --comm $comm"
+        for other in $others; do
+            [ ! -e "/proc/$other" ] || fail "process $other is left by --comm $comm"
+        done
+        [ ! -s "$SCRATCH/err" ] || [ "$(cat "$SCRATCH/err")" = "lariat run: interrupted" ] ||
+            fail "SIGTERM $wait s into --comm $comm: $(cat "$SCRATCH/err")"
+    done
 done
 
 # Too few open files: who cannot begin takes with it whom it has started.

@@ -74,6 +74,24 @@ expect 2 "$LARIAT" run "$beam" --element tet
 complains 'hex8, hex8-full, hex8-matrix'
 expect 0 "$LARIAT" run --steps 1 --grid 1x1x1 --threads=1 -- "$beam"
 
+cp "$beam" "$SCRATCH/--beam.yaml"
+cp "$SOURCE/examples/beam.vtk" "$SCRATCH"
+(cd "$SCRATCH" && "$LARIAT" run --steps 5 -- --beam.yaml >/dev/null) || fail "a file after --"
+
+# Words in the environment that mean nothing: before all else, by every command.
+for word in LARIAT_ISA=z80 LARIAT_GRID=two LARIAT_GRID=0x1x1 LARIAT_BLOCKS=fat LARIAT_UCX=pigeons; do
+    for command in "run $beam --steps 1" "info $beam" "verify $beam --grid 2x1x1" doctor \
+        "view $beam --port 0 --seconds 0.1" "bench kernel --elements 100" "mesh none.stl --real-time"; do
+        # shellcheck disable=SC2086
+        expect 2 env $word "$LARIAT" $command
+        complains "${word%%=*}.*\(expected one of\|no grid\|grid\)"
+        silent
+    done
+done
+for word in LARIAT_GRID=auto LARIAT_GRID= LARIAT_BLOCKS=auto LARIAT_ISA= LARIAT_UCX=put; do
+    expect 0 env $word "$LARIAT" run "$beam" --steps 1
+done
+
 expect 1 "$LARIAT" run "$SCRATCH/none.yaml"
 complains '^lariat run: .*none\.yaml'
 expect 1 "$LARIAT" info "$SCRATCH"

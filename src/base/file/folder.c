@@ -35,10 +35,9 @@ lar_status lar_folder_make(const char *folder, lar_error *error) {
     }
     free(path);
     if (!cause) return LAR_OK;
-    return lar_fail(error, LAR_ERROR_IO,
-                    "%s: cannot be used as a folder: %s; choose another one or check the "
-                    "permissions",
-                    folder, strerror(cause));
+    return lar_fail(error, LAR_ERROR_IO, "%s: cannot be used as a folder: %s; %s", folder,
+                    cause == EEXIST ? "it is a link that leads nowhere" : strerror(cause),
+                    lar_remedy(cause, "choose another one or check the permissions"));
 }
 
 lar_status lar_folder_lock(const char *folder, int *lock, lar_error *error) {

@@ -9,10 +9,9 @@
 #include "base/file/folder.h"
 
 static lar_status failed(lar_part_file *out, const char *what) {
-    return lar_fail(out->error, LAR_ERROR_IO,
-                    "%s: cannot be written: %s%s; check the folder, its permissions and the free "
-                    "space",
-                    out->path, what, strerror(errno ? errno : EIO));
+    const int cause = errno ? errno : EIO;
+    return lar_fail(out->error, LAR_ERROR_IO, "%s: cannot be written: %s%s; %s", out->path, what,
+                    strerror(cause), lar_remedy(cause, LAR_FILE_REMEDY));
 }
 
 lar_status lar_part_open(lar_part_file *out, const char *path, lar_error *error) {

@@ -182,7 +182,8 @@ lar_status lar_scene_friction(const lar_scene *scene, const lar_yaml *entry, dou
     if (!node) return LAR_OK;
     lar_status status = lar_scene_number(scene, node, LAR_A_FRICTION, friction);
     if (status || !lar_friction_problem(*friction)) return status;
-    return check_sign(scene, node, LAR_A_FRICTION, false, "be from 0 to 5");
+    return lar_scene_fail(scene, node, LAR_ERROR_MODEL,
+                          "friction is %.40s; it must be from 0 to 5, for example 0.3", node->text);
 }
 
 lar_status lar_scene_vector(const lar_scene *scene, const lar_yaml *node, const char *expected,

@@ -49,9 +49,8 @@ lar_status lar_recording_create(const char *path, const lar_recording_header *he
         return lar_fail(error, LAR_ERROR_IO,
                         "%s: another recording is being written to it; choose another name", path);
     if (!writer->file)
-        return lar_fail(error, LAR_ERROR_IO,
-                        "%s: cannot be written: %s; check the folder and its permissions", path,
-                        strerror(errno));
+        return lar_fail(error, LAR_ERROR_IO, "%s: cannot be written: %s; %s", path, strerror(errno),
+                        lar_remedy(errno, LAR_FILE_REMEDY));
     uint64_t version = header->spares > 0 ? LAR_RECORDING_VERSION : LAR_RECORDING_WITHOUT_SPARES;
     uint64_t words[1 + LAR_RECORDING_HEADER_WORDS] = {0,
                                                       version,
@@ -111,9 +110,8 @@ void lar_recording_flush(lar_recording_writer *writer) {
 
 lar_status lar_recording_incomplete(const char *path, int cause, lar_error *error) {
     return lar_fail(error, LAR_ERROR_IO,
-                    "%s: the recording could not be written completely: %s; check the free space, "
-                    "and record again",
-                    path, strerror(cause));
+                    "%s: the recording could not be written completely: %s; %s, and record again",
+                    path, strerror(cause), lar_remedy(cause, "check the free space"));
 }
 
 /* What ends before its first state is complete is no recording, and would lie in the way. */

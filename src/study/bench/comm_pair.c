@@ -149,7 +149,8 @@ static lar_status open_end(lar_pair_job *j, int end, lar_error *error) {
     o.master = p->master;
     if (end == 0) o.listener = p->listener;
     lar_status status = p->launched ? lar_comm_job_meet(p->launched, &o, error) : LAR_OK;
-    return status ? status : lar_comm_open(&o, &p->comm[end], error);
+    if (!status) status = lar_comm_open(&o, &p->comm[end], error);
+    return status ? status : lar_comm_check_interrupt(error);
 }
 
 /* Both at once: each waits for the other's goodbye. */
