@@ -185,7 +185,7 @@ void lar_tool_contact_observe(lar_tool_contact *contact, const lar_condition_con
 void lar_tool_contact_stop(lar_tool_contact *contact, const lar_condition_context *context,
                            lar_state *state);
 
-/* ---- for other sources of tools, grasp.c and fault_tool.c ------------------------------------ */
+/* ---- for other sources of tools, grasp.c and fault/tool.c ------------------------------------ */
 
 /* Puts neighbouring faces next to each other, into groups. */
 lar_status lar_tool_faces_group(lar_tool_faces *faces, lar_error *error);

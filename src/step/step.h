@@ -31,11 +31,16 @@ typedef struct lar_fault {
     uint64_t step;   /* the step under way */
     int32_t part;    /* of a divided step */
     /* What lar_fault_examine found, for the report. */
-    double place[3];     /* [m] */
-    double volume_ratio; /* of the element; of LAR_FAULT_ENERGY_GAIN: in its worst corner */
-    double growth;       /* of its frequency */
-    double speed;        /* of the node [m/s] */
-    double given;        /* of LAR_FAULT_ENERGY_GAIN: more than it took [J] */
+    double place[3];      /* [m] */
+    double volume_ratio;  /* of the element; of LAR_FAULT_ENERGY_GAIN: in its worst corner */
+    double growth;        /* of its frequency */
+    double stretch;       /* of the element: the largest */
+    double stress;        /* of its fibres, or of its law where it has none [Pa] */
+    double fibre_stretch; /* 0: it has none that stiffen */
+    double times;         /* that stress by the shear modulus, of a law the larger modulus */
+    bool slow;            /* the last step has changed little of its strain */
+    double speed;         /* of the node [m/s] */
+    double given;         /* of LAR_FAULT_ENERGY_GAIN: more than it took [J] */
     bool examined;
     bool too_many_pairs; /* of LAR_FAULT_TOO_FAST: the list had too many pairs for the skin it needs
                           */
@@ -148,6 +153,14 @@ void lar_fault_examine(const lar_domain *domain, const lar_state *state, lar_lid
 /* Looks for the tool, or the force that was set, that has to do with an examined fault, once.
  * `domain` is the whole model's; the tools still move as they did. */
 void lar_fault_attribute(const lar_domain *domain, const lar_tools *tools, lar_fault *fault);
+
+/* Of a broken element: stretch, stress, and how fast it came. */
+void lar_fault_examine_strain(const lar_domain *domain, const lar_state *state, lar_fault *fault);
+/* What a broken element that was examined is to blame for, and what helps. False: nothing but the
+ * time step stands out. `forceful`: it exceeds the force limit; *step_helps: a smaller time step
+ * may help, which the text leaves to the caller then. */
+bool lar_fault_remedy(const lar_domain *domain, const lar_fault *fault, bool forceful, char *text,
+                      size_t size, bool *step_helps);
 
 /* The sentence for an examined fault: element or node, place, time, cause and remedy. */
 lar_status lar_fault_report(const lar_domain *domain, const lar_fault *fault, lar_error *error);

@@ -22,6 +22,24 @@ static void test_node_selectors(void **state) {
     selects("nodes", "{all: [bottom, {not: edge}, {not: {nearest: [1, 1, 0]}}]}", "3 4 5 6 7");
 }
 
+/* A material that is covered from end to end. */
+static void a_material_without_elements_is_told(void **state) {
+    (void)state;
+    const char *const law = "law: neo-hookean, density: 1, shear_modulus: 1, bulk_modulus: 9}\n";
+    const char *const cells[][2] = {{"{tag: 1}, name: fat", "all"}, {"all", "{tag: 1}"}};
+    for (int i = 0; i < 2; i++) {
+        char text[600];
+        snprintf(text, sizeof text, HEAD "materials:\n- {cells: %s, %s- {cells: %s, %s",
+                 cells[i][0], law, cells[i][1], law);
+        lar_model *model = scene(text);
+        assert_int_equal(model->notice_count, 1 - i);
+        if (i == 0 && !strstr(model->notice[0], ":4: the material 'fat' has no elements: later "
+                                                "ones (the last in line 5) have them all; put"))
+            fail_msg("%s", model->notice[0]);
+        lar_model_destroy(model);
+    }
+}
+
 static void test_element_selectors(void **state) {
     (void)state;
     selects("elements", "{box: [[0, 0, 0], [0.02, 0.01, 0.01]]}", "0 1");
@@ -473,6 +491,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_node_selectors),
         cmocka_unit_test(laws_that_give_way_are_told),
+        cmocka_unit_test(a_material_without_elements_is_told),
         cmocka_unit_test(test_element_selectors),
         cmocka_unit_test(test_elements_of_a_node_set),
         cmocka_unit_test(test_line_ends_and_byte_order_mark),

@@ -233,11 +233,16 @@ static lar_status read_viscosity(const lar_scene *scene, const lar_yaml *node, l
     return status;
 }
 
-static lar_status assign(lar_scene *scene, const lar_yaml *cells, int material) {
+/* taker[m]: the line of the last entry that took elements from material m. */
+static lar_status assign(lar_scene *scene, const lar_yaml *cells, int material, int *taker) {
     int32_t *index, count;
     lar_status status = lar_scene_select(scene, cells, LAR_SET_ELEMENTS, true, &index, &count);
     if (status) return status;
-    for (int32_t i = 0; i < count; i++) scene->model->element_material[index[i]] = material;
+    for (int32_t i = 0; i < count; i++) {
+        int32_t *of = &scene->model->element_material[index[i]];
+        if (*of >= 0) taker[*of] = cells->line;
+        *of = material;
+    }
     free(index);
     return LAR_OK;
 }
@@ -296,7 +301,7 @@ static lar_status read_fibres_beside(const lar_scene *scene, const lar_yaml *ent
                           "{direction: {axis: [1, 0, 0]}}");
 }
 
-static lar_status read_material(lar_scene *scene, const lar_yaml *node) {
+static lar_status read_material(lar_scene *scene, const lar_yaml *node, int *taker) {
     const lar_yaml *cells = NULL;
     const bool apart = lar_yaml_get(node, "tissue") != NULL;
     lar_status status = apart ? LAR_OK : check_keys(scene, node);
@@ -314,27 +319,60 @@ static lar_status read_material(lar_scene *scene, const lar_yaml *node) {
     char where[512];
     snprintf(where, sizeof where, "%s:%d:%d", scene->path, node->line, node->column);
     status = lar_material_check(material, where, scene->error);
-    return status ? status : assign(scene, cells, scene->model->material_count - 1);
+    return status ? status : assign(scene, cells, scene->model->material_count - 1, taker);
+}
+
+/* A material whose elements later entries have taken: they were meant the other way round. */
+static lar_status notice_taken(const lar_scene *scene, const lar_yaml *node, const int *taker) {
+    const lar_model *model = scene->model;
+    lar_status status = LAR_OK;
+    int m = 0;
+    for (const lar_yaml *entry = node->first; !status && entry; entry = entry->next, m++) {
+        bool has = false;
+        char name[120] = "";
+        for (int32_t e = 0; e < model->mesh.element_count && !has; e++)
+            has = model->element_material[e] == m;
+        if (has) continue;
+        if (model->material[m].name)
+            snprintf(name, sizeof name, " '%.100s'", model->material[m].name);
+        status = lar_model_notice(scene->model, scene->error,
+                                  "%.300s:%d: the material%s has no elements: later ones (the last "
+                                  "in line %d) have them all; put the one for `all` first",
+                                  scene->path, entry->line, name, taker[m]);
+    }
+    return status;
+}
+
+/* All entries, and whether each element has a material. */
+static lar_status read_entries(lar_scene *scene, const lar_yaml *node, int *taker) {
+    const lar_mesh *mesh = &scene->model->mesh;
+    const int32_t *material = scene->model->element_material;
+    lar_status status = LAR_OK;
+    for (const lar_yaml *entry = node->first; !status && entry; entry = entry->next)
+        status = read_material(scene, entry, taker);
+    for (int32_t e = 0; e < mesh->element_count && !status; e++)
+        if (material[e] < 0)
+            status =
+                lar_scene_fail(scene, node, LAR_ERROR_MODEL,
+                               "element %lld (tag %d) has no material; add an entry whose cells "
+                               "contain it, for example cells: all as the first one",
+                               (long long)mesh->element_id[e], (int)mesh->element_tag[e]);
+    return status ? status : notice_taken(scene, node, taker);
 }
 
 lar_status lar_scene_read_materials(lar_scene *scene, const lar_yaml *node) {
-    const lar_mesh *mesh = &scene->model->mesh;
-    size_t count = (size_t)mesh->element_count;
+    size_t count = (size_t)scene->model->mesh.element_count;
     int32_t *material = lar_calloc(count, sizeof *material);
     if (!material) return lar_scene_no_memory(scene, count * sizeof *material);
     for (size_t e = 0; e < count; e++) material[e] = -1;
     scene->model->element_material = material;
     lar_status status =
         lar_scene_list(scene, node, "materials, {cells: all, law: neo-hookean, ...}");
-    for (const lar_yaml *entry = node->first; !status && entry; entry = entry->next)
-        status = read_material(scene, entry);
     if (status) return status;
-    for (size_t e = 0; e < count; e++)
-        if (material[e] < 0)
-            return lar_scene_fail(scene, node, LAR_ERROR_MODEL,
-                                  "element %lld (tag %d) has no material; add an entry whose cells "
-                                  "contain it, for example cells: all as the first one",
-                                  (long long)mesh->element_id[e], (int)mesh->element_tag[e]);
+    int *taker = lar_calloc((size_t)node->count, sizeof *taker);
+    if (!taker) return lar_scene_no_memory(scene, (size_t)node->count * sizeof *taker);
+    status = read_entries(scene, node, taker);
+    free(taker);
     int index = 0;
     for (const lar_yaml *entry = node->first; !status && entry; entry = entry->next, index++) {
         const lar_yaml *fibres = lar_yaml_get(entry, "fibres");

@@ -1,6 +1,8 @@
 #include "step/step.h"
 
 #include <math.h>
+#include <stdio.h>
+#include <string.h>
 
 #include "mechanics/hex8_full.h"
 #include "mechanics/hexahedron.h"
@@ -95,6 +97,7 @@ static lar_status report_element(const lar_domain *domain, const lar_fault *faul
     const lar_mesh *mesh = &domain->model->mesh;
     const double *place = fault->place, volume_ratio = fault->volume_ratio, growth = fault->growth;
     const char *cause, *remedy;
+    bool forceful = false;
     if (fault->tool != 0)
         return lar_fault_report_tool(domain, fault, describe_action(domain, fault), error);
     if (!isfinite(volume_ratio) || !isfinite(growth))
@@ -114,17 +117,24 @@ static lar_status report_element(const lar_domain *domain, const lar_fault *faul
         remedy = " or a stiffer or finer mesh there";
     } else {
         cause = "exceeds the force limit";
+        forceful = true;
         remedy = ", or slower or smaller loads";
     }
-    return lar_fail(
-        error, LAR_ERROR_UNSTABLE,
-        "unstable at step %llu (%.6g s): element %lld near (%.4g, %.4g, %.4g) m %s "
-        "(volume ratio %.3g, time step %.3g s of %.3g s stable at rest); use a smaller time "
-        "step, such as %.2g s%s%s",
-        (unsigned long long)fault->step, (double)fault->step * domain->time_step,
-        (long long)mesh->element_id[fault->element], place[0], place[1], place[2], cause,
-        volume_ratio, domain->time_step, domain->stable_step, shorter_step(domain), remedy,
-        hint(fault));
+    char why[500];
+    bool step_helps;
+    bool named = lar_fault_remedy(domain, fault, forceful, why, sizeof why, &step_helps);
+    if (step_helps) {
+        size_t used = named ? strlen(why) : 0;
+        snprintf(why + used, sizeof why - used, "%s a smaller time step, such as %.2g s%s%s",
+                 named ? ", or use" : "; use", shorter_step(domain), named ? "" : remedy,
+                 named ? "" : hint(fault));
+    }
+    return lar_fail(error, LAR_ERROR_UNSTABLE,
+                    "unstable at step %llu (%.6g s): element %lld near (%.4g, %.4g, %.4g) m %s "
+                    "(volume ratio %.3g, time step %.3g s of %.3g s stable at rest)%s",
+                    (unsigned long long)fault->step, (double)fault->step * domain->time_step,
+                    (long long)mesh->element_id[fault->element], place[0], place[1], place[2],
+                    cause, volume_ratio, domain->time_step, domain->stable_step, why);
 }
 
 /* The fastest of some nodes, and where it is. */
@@ -243,6 +253,7 @@ void lar_fault_examine(const lar_domain *domain, const lar_state *state, lar_lid
     if (fault->kind == LAR_FAULT_ELEMENT) {
         examine_element(domain, state, fault->element, &fault->volume_ratio, &fault->growth);
         examine_place(domain, state, fault);
+        lar_fault_examine_strain(domain, state, fault);
     } else if (fault->kind == LAR_FAULT_ENERGY_GAIN) {
         examine_surface(domain, state, fault);
         examine_place(domain, state, fault);
