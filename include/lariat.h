@@ -849,9 +849,9 @@ enum { LAR_MATERIALS_SET_MAX = 16 };
  * square). LAR_ERROR_ARGUMENT for that, for what the law does not have, which the message lists,
  * for values that no material can have, and beyond LAR_MATERIALS_SET_MAX. Strained tissue that
  * becomes many times as stiff at once springs back with what that adds, and may break the run: go
- * there in steps. A change is no strain: what had relaxed stays so at once, dampers of viscous terms
- * stay where they are, and what their springs gain counts as external. Takes as long as creating
- * the elements of that material, and some 10 us for each viscous term of an element. */
+ * there in steps. A change is no strain: what had relaxed stays so at once, dampers of viscous
+ * terms stay where they are, and what their springs gain counts as external. Takes as long as
+ * creating the elements of that material, and some 10 us for each viscous term of an element. */
 LAR_API lar_status lar_simulation_set_parameter(lar_simulation *simulation, int32_t material,
                                                 const char *name, double value, lar_error *error);
 /* How active a material is, from 0 to 1 (it starts at 1): times what its model says at that time by
