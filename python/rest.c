@@ -56,10 +56,9 @@ static PyObject *restless(const lar_rest *rest, double time) {
         "give the scene more `damping` where it swings, less where it creeps, or a "
         "time to end after (seconds=)";
     if (rest->looked == 2)
-        remedy = "viscous terms still relax, which takes a dozen of their times and, where they "
-                 "creep, more; "
-                 "at rest the body is where the scene without `viscous` takes it sooner (moduli "
-                 "times g0)";
+        remedy =
+            "viscous terms still relax, for a dozen of their times and more; the scene without "
+            "`viscous` (moduli times g0) comes to the same rest sooner";
     lar_error error = {.status = LAR_ERROR_MODEL};
     snprintf(error.message, sizeof error.message,
              "rest: not at rest after %.4g s: %s, and at rest that is %.0e; %s", time, left,

@@ -324,10 +324,8 @@ static const char *remedy(const run *r) {
         return "without damping nothing takes the motion away, give the scene a damping";
     if (!r->rest.looked) return "give more time with --until-rest --time";
     if (r->rest.looked == 2)
-        return "viscous terms still relax, which takes a dozen times the longest of their times; "
-               "at "
-               "rest the body is where the scene without `viscous` takes it sooner (moduli times "
-               "g0)";
+        return "viscous terms still relax, for a dozen of their times and more; the scene without "
+               "`viscous` (moduli times g0) comes to the same rest sooner";
     if (!(r->rest.left < 1))
         return "look whether something still falls or turns freely, or give more time with "
                "--until-rest --time";
@@ -363,7 +361,7 @@ static double time_left(const run *r) {
 static int choose_time(run *r) {
     double time = r->settings.time;
     if (time <= 0) time = time_left(r);
-    double steps = round(time / lar_simulation_time_step(r->simulation));
+    double step = lar_simulation_time_step(r->simulation), steps = round(time / step);
     if (r->first_step > 0 && steps < 1 && r->settings.time <= 0)
         return cli_complain(&cli_run, CLI_DONE,
                             "note: %s: %g s are simulated already, the scene's duration: nothing "
@@ -372,13 +370,13 @@ static int choose_time(run *r) {
     if (steps > 1e15)
         return cli_complain(&cli_run, CLI_FAILED,
                             "%g s take %.3g steps of %.3g s; give a smaller --time or --steps",
-                            time, steps, lar_simulation_time_step(r->simulation));
+                            time, steps, step);
     r->last_step = r->first_step + (uint64_t)fmax(1, steps);
-    double done = fmax(1, steps) * lar_simulation_time_step(r->simulation);
+    double done = fmax(1, steps) * step;
     if (r->settings.time > 0 && fabs(done - time) > 0.05 * time)
         cli_complain(&cli_run, CLI_DONE,
                      "note: %g s are no whole number of steps of %.4g s; the run is %.4g s long",
-                     time, lar_simulation_time_step(r->simulation), done);
+                     time, step, done);
     return CLI_DONE;
 }
 
@@ -388,14 +386,12 @@ static int choose_length(run *r) {
     r->interval = lar_model_output_interval(r->model);
     r->first_step = lar_simulation_steps(r->simulation);
     r->last_step = r->first_step + (uint64_t)settings->steps;
-    bool open = settings->steps == 0 && settings->time <= 0;
-    r->follows =
-        settings->until_rest || (open && !settings->verify && lar_model_until_rest(r->model));
+    bool open = settings->steps == 0 && settings->time <= 0, any = open && !settings->verify;
+    r->follows = settings->until_rest || (any && lar_model_until_rest(r->model));
     if (r->follows) lar_rest_begin(&r->rest, r->simulation);
-    if (r->follows && isinf(r->rest.since))
+    if (isinf(r->rest.since))
         return cli_complain(&cli_run, CLI_FAILED,
-                            "%s: a wave or a curve comes again and again, so the body never "
-                            "rests; leave out --until-rest",
+                            "%s: a wave or a curve comes again and again: leave out --until-rest",
                             settings->scene);
     if (r->follows && open) r->last_step = r->rest.limit;
     int status = r->last_step > r->first_step ? CLI_DONE : choose_time(r);

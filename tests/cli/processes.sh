@@ -108,8 +108,8 @@ for comm in shm tcp; do
     lose KILL $comm 2
     complains 'processor 2 was ended by signal 9'
 done
-lose USR2 shm 1
-complains 'processor 1 was ended by signal 12'
+lose PROF shm 1
+complains 'processor 1 was ended by signal 27'
 lose KILL shm 0
 lose STOP shm 1
 complains 'processor 1 was stopped by signal'
