@@ -27,16 +27,16 @@ complains "^lariat run: .*/x/: .*Not a directory; choose another"
 # A small stack: what a run keeps is elsewhere. Sanitizers need more for themselves.
 if [ -z "${LARIAT_TEST_SANITIZED:-}" ]; then
     small() {
-        expect 0 sh -c 'ulimit -s 96; exec "$@"' sh "$LARIAT" run "$beam" --steps 5 "$@"
+        expect 0 sh -c 'ulimit -s 256; exec "$@"' sh "$LARIAT" run "$beam" --steps 5 "$@"
     }
     small --save "$SCRATCH/small.checkpoint" --out "$SCRATCH/small"
     small --resume "$SCRATCH/small.checkpoint"
     small --grid 2x1x1 --comm shm --no-pin
-    expect 0 sh -c 'ulimit -s 96; exec "$@"' sh "$LARIAT" demo-model "$SCRATCH/small_demo"
+    expect 0 sh -c 'ulimit -s 256; exec "$@"' sh "$LARIAT" demo-model "$SCRATCH/small_demo"
     for command in "doctor --no-speed" "fit $SOURCE/examples/fit_tension.yaml" \
         "requirements $beam --no-speed" "info $beam" "verify $beam --grid 2x1x1"; do
         # shellcheck disable=SC2086
-        expect 0 sh -c 'ulimit -s 96; exec "$@"' sh "$LARIAT" $command
+        expect 0 sh -c 'ulimit -s 256; exec "$@"' sh "$LARIAT" $command
     done
 fi
 for command in "run $beam --steps 5" doctor "requirements $beam --no-speed"; do
