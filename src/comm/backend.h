@@ -101,7 +101,6 @@ static inline bool lar_comm_fits(size_t half, size_t offset, size_t bytes) {
            lar_comm_packet_bytes(bytes) <= half - offset;
 }
 
-
 /* Whether all processors are on this machine because processor zero can be reached from nowhere
  * else. */
 bool lar_comm_is_local(const lar_comm *comm);

@@ -156,9 +156,9 @@ void lar_fault_attribute(const lar_domain *domain, const lar_tools *tools, lar_f
 
 /* Of a broken element: stretch, stress, and how fast it came. */
 void lar_fault_examine_strain(const lar_domain *domain, const lar_state *state, lar_fault *fault);
-/* What a broken element that was examined is to blame for, and what helps. False: nothing but the
- * time step stands out. `forceful`: it exceeds the force limit; *step_helps: a smaller time step
- * may help, which the text leaves to the caller then. */
+/* Why an element that was examined broke, where its tissue or a pressure says, and what helps.
+ * False: nothing but the time step stands out. `forceful`: it exceeds the force limit; *step_helps:
+ * a smaller time step may help, which the text leaves to the caller then. */
 bool lar_fault_remedy(const lar_domain *domain, const lar_fault *fault, bool forceful, char *text,
                       size_t size, bool *step_helps);
 
