@@ -45,6 +45,9 @@ typedef struct lar_computer_contact {
     double (*x)[3], (*searched)[3]; /* [contact nodes] places now, and at the last search [m] */
     double skin;                    /* of that search [m] */
     double moved, way;              /* since then, and in the last step, at most [m] */
+    double since;                   /* what had moved when the search under way began [m] */
+    uint64_t stretch;               /* steps between the last two stops */
+    bool searching;                 /* a search is under way */
     bool valid;                     /* the search belongs to the state */
     bool too_many_pairs;            /* it had to be made with a thinner skin than asked for */
     bool always;                    /* search in every step */

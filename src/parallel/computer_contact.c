@@ -6,8 +6,12 @@
 
 #include "parallel/computer.h"
 
-/* Steps that a search should last, and those that it must last besides the way of a stop. */
-enum { SEARCH_STEPS = 200, MIN_STEPS = 16 };
+/* Steps that a search should last, those that it must last besides the way of a stop, and those
+ * that the next one may take, so that no stop is much longer than others. */
+enum { SEARCH_STEPS = 200, MIN_STEPS = 16, PART_STEPS = 60 };
+
+/* The share of the way that a list is good for, after which the next search begins. */
+#define BEGIN_AT 0.75
 
 /* What is sent: the groups of the list and its faces follow. */
 typedef struct list_head {
@@ -118,8 +122,11 @@ static double reserve(const lar_computer *computer, double way) {
 static void take_list(lar_processor *p, const lar_contact_map *map, const lar_contact_list *list,
                       double moved) {
     if (list) lar_contact_compile(p, map, list);
-    for (int32_t t = 0; t < p->thread_count; t++)
-        p->worker[t].interactions.body_contact.moved = moved;
+    for (int32_t t = 0; t < p->thread_count; t++) {
+        lar_body_contact *contact = &p->worker[t].interactions.body_contact;
+        contact->moved = moved;
+        if (list) contact->travel = moved;
+    }
 }
 
 static lar_status send_list(lar_computer *computer, const lar_contact_list *list, double moved,
@@ -217,26 +224,39 @@ static bool search_with(lar_computer_contact *contact, double skin, double way) 
     return list->skin == fits || lar_contact_search_run(contact->search, x, fits);
 }
 
+static double skin_for(const lar_computer *computer, double way) {
+    const lar_contact_surface *surface = computer->contact.map.surface;
+    double room = fmin(fmax(way * SEARCH_STEPS, 0.125 * surface->reach), surface->reach_max);
+    return 2 * (reserve(computer, way) + room);
+}
+
+/* A search is done, of places since which nodes have `moved`: everyone takes its list. */
+static lar_status take_found(lar_computer *computer, double moved, lar_error *error) {
+    lar_computer_contact *contact = &computer->contact;
+    const lar_contact_list *list = &contact->search->list;
+    memcpy(contact->searched, contact->x,
+           (size_t)contact->map.surface->node_count * sizeof *contact->x);
+    contact->skin = list->skin;
+    contact->moved = moved;
+    contact->searching = false;
+    contact->info.searches++;
+    contact->info.boxed += (uint64_t)list->face_count;
+    return hand_out(computer, list, moved, error);
+}
+
 static lar_status search(lar_computer *computer, double way, lar_fault *fault, lar_error *error) {
     lar_computer_contact *contact = &computer->contact;
-    const lar_contact_surface *surface = contact->map.surface;
-    double room = fmin(fmax(way * SEARCH_STEPS, 0.125 * surface->reach), surface->reach_max);
-    double skin = 2 * (reserve(computer, way) + room);
+    double skin = skin_for(computer, way);
+    contact->searching = false;
     if (!search_with(contact, skin, way)) {
         *fault = (lar_fault){.kind = LAR_FAULT_TOO_MANY_PAIRS,
                              .element = -1,
                              .step = computer->processor[0].worker[0].state.step};
         return LAR_OK;
     }
-    const lar_contact_list *list = &contact->search->list;
-    memcpy(contact->searched, contact->x, (size_t)surface->node_count * sizeof *contact->x);
-    contact->skin = list->skin;
-    contact->too_many_pairs = list->skin < skin;
-    contact->moved = 0;
+    contact->too_many_pairs = contact->search->list.skin < skin;
     contact->way = way;
-    contact->info.searches++;
-    contact->info.boxed += (uint64_t)list->face_count;
-    return hand_out(computer, list, 0, error);
+    return take_found(computer, 0, error);
 }
 
 /* Where faces are so crowded that the list has no room for the skin that a stretch takes, all stop
@@ -247,26 +267,91 @@ static bool is_crowded(const lar_computer *computer) {
            contact->moved + reserve(computer, contact->way) >= 0.5 * contact->skin;
 }
 
-lar_status lar_contact_refresh(lar_computer *computer, lar_fault *fault, lar_error *error) {
+/* What nodes may still move until the list must be another one [m]. */
+static double left_of(const lar_computer *computer, double moved, double reserved) {
+    return 0.5 * computer->contact.skin - reserved - moved;
+}
+
+/* Nodes that are to be looked for in this stop: as many as must be, when the rest of the way is to
+ * be enough for the others, and all when there is none. */
+static int32_t portion(const lar_computer_contact *contact, double left) {
+    if (!(left > 0)) return INT32_MAX;
+    double steps = contact->way > 0 ? left / (1.25 * contact->way) : PART_STEPS;
+    double stops = fmin(steps, PART_STEPS) / (double)(contact->stretch ? contact->stretch : 1);
+    return (int32_t)(lar_contact_search_left(contact->search) / fmax(stops, 1)) + 1;
+}
+
+/* Some more of the search under way, whose places are those of when nodes had moved by `since`. */
+static lar_status go_on(lar_computer *computer, double left, lar_error *error) {
     lar_computer_contact *contact = &computer->contact;
-    if (!contact->map.surface) return LAR_OK;
-    bool due = !contact->valid || contact->always, crowded = is_crowded(computer);
-    double room = crowded ? 0 : reserve(computer, contact->way);
-    if (!due && contact->moved + room < 0.5 * contact->skin) return LAR_OK;
+    switch (lar_contact_search_go_on(contact->search, portion(contact, left))) {
+    case LAR_SEARCH_UNDER_WAY:
+        return LAR_OK;
+    case LAR_SEARCH_DONE:
+        /* Rounding of two sums of positive numbers, far more of them than there are steps. */
+        return take_found(computer, contact->moved - contact->since + 1e-6 * contact->moved, error);
+    case LAR_SEARCH_FULL:
+        break;
+    }
+    contact->searching = contact->valid = false; /* from here, with a thinner skin */
+    return LAR_OK;
+}
+
+/* The next search begins before it is due, a part of it at every stop. */
+static lar_status look_ahead(lar_computer *computer, lar_error *error) {
+    lar_computer_contact *contact = &computer->contact;
+    double reserved = reserve(computer, contact->way), left;
+    if (!contact->searching) {
+        double way, moved, before = contact->moved, good = left_of(computer, 0, reserved);
+        if (contact->too_many_pairs || !(before > BEGIN_AT * good)) return LAR_OK;
+        lar_status status = fetch_places(computer, &moved, &way, error);
+        if (status) return status;
+        contact->moved = moved;
+        if (moved < 0.5 * BEGIN_AT * good) return hand_out(computer, NULL, moved, error);
+        contact->since = before;
+        contact->moved = before;
+        lar_contact_search_begin(contact->search, (const double(*)[3])contact->x,
+                                 skin_for(computer, way));
+        contact->searching = true;
+    }
+    left = left_of(computer, contact->moved, reserved);
+    return go_on(computer, left, error);
+}
+
+/* The list must be another one, or nodes have moved less than was feared. */
+static lar_status renew(lar_computer *computer, bool due, bool crowded, lar_fault *fault,
+                        lar_error *error) {
+    lar_computer_contact *contact = &computer->contact;
     double moved, way;
     lar_status status = fetch_places(computer, &moved, &way, error);
     if (status) return status;
+    contact->searching = false;
     if (crowded)
         due = due || !(moved < 0.25 * contact->skin);
     else
         due = due || !(moved < 0.125 * contact->skin) ||
-              !(moved + reserve(computer, way) < 0.5 * contact->skin);
-    if (due) {
-        status = search(computer, way, fault, error);
-    } else {
-        contact->moved = moved;
-        status = hand_out(computer, NULL, moved, error);
-    }
+              !(left_of(computer, moved, reserve(computer, way)) > 0);
+    if (due) return search(computer, way, fault, error);
+    contact->moved = moved;
+    return hand_out(computer, NULL, moved, error);
+}
+
+static bool is_late(const lar_computer *computer, bool crowded) {
+    const lar_computer_contact *contact = &computer->contact;
+    double reserved = crowded ? 0 : reserve(computer, contact->way);
+    return !contact->valid || contact->always ||
+           !(left_of(computer, contact->moved, reserved) > 0);
+}
+
+lar_status lar_contact_refresh(lar_computer *computer, lar_fault *fault, lar_error *error) {
+    lar_computer_contact *contact = &computer->contact;
+    if (!contact->map.surface) return LAR_OK;
+    bool crowded = is_crowded(computer), always = !contact->valid || contact->always;
+    lar_status status = LAR_OK;
+    if (!always && (contact->searching || !is_late(computer, crowded)))
+        status = look_ahead(computer, error);
+    if (!status && is_late(computer, crowded))
+        status = renew(computer, !contact->valid || contact->always, crowded, fault, error);
     contact->valid = !status;
     return status;
 }
@@ -280,6 +365,7 @@ void lar_contact_count(lar_computer *computer, uint64_t steps) {
     lar_computer_contact *contact = &computer->contact;
     if (!contact->map.surface) return;
     contact->moved = computer->report.moved;
+    contact->stretch = steps;
     contact->way = computer->report.way * computer->tools->division.parts; /* it is of a part */
     contact->info.steps += steps;
     contact->info.possible += steps * contact->map.surface->possible;
