@@ -72,6 +72,8 @@ struct lar_comm {
     int *links;                  /* [count] the rendezvous's connections, -1: none */
     int32_t *waiting; /* [count], atomic: whom each waits for, plus 1. Of the team; else NULL */
     struct lar_comm_heartbeat *heartbeat;
+    bool times;    /* lar_comm_time_waits */
+    double waited; /* [s] in lar_comm_wait, since then */
     pid_t process; /* that opened it */
     bool forked;   /* closed by a child of that: all but the own descriptors is the parent's */
     void *state;   /* the backend's */

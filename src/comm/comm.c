@@ -380,10 +380,21 @@ typedef lar_status (*wait_way)(lar_comm *comm, int32_t peer, const uint64_t *tai
 static lar_status wait_long(lar_comm *comm, int32_t peer, const uint64_t *tail, uint64_t step,
                             wait_way way, lar_error *error) {
     int32_t *waiting = comm->waiting ? &comm->waiting[comm->options.self] : NULL;
+    double begin = comm->times ? lar_comm_now() : 0;
     if (waiting) __atomic_store_n(waiting, peer + 1, __ATOMIC_RELEASE);
     lar_status status = way(comm, peer, tail, step, error);
     if (waiting) __atomic_store_n(waiting, 0, __ATOMIC_RELEASE);
+    if (comm->times) comm->waited += lar_comm_now() - begin;
     return status;
+}
+
+void lar_comm_time_waits(lar_comm *comm, bool times) {
+    comm->times = times;
+    comm->waited = 0;
+}
+
+double lar_comm_time_waited(const lar_comm *comm) {
+    return comm->waited;
 }
 
 static inline lar_status wait_for(lar_comm *comm, int32_t peer, size_t offset, size_t bytes,

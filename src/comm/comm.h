@@ -149,6 +149,11 @@ lar_status lar_comm_wait(lar_comm *comm, int32_t peer, size_t offset, size_t byt
 lar_status lar_comm_await(lar_comm *comm, int32_t peer, size_t offset, size_t bytes, uint64_t step,
                           const void **payload, lar_error *error);
 
+/* Whether lar_comm_wait is timed from now on; how long it has waited since [s]. For the thread that
+ * waits, or while nobody does. */
+void lar_comm_time_waits(lar_comm *comm, bool times);
+double lar_comm_time_waited(const lar_comm *comm);
+
 /* What messages call the packets of step n: step n + ahead, for who counts packets otherwise than
  * the steps of a simulation (0 at first). While nobody waits. */
 void lar_comm_number_steps(lar_comm *comm, int64_t ahead);

@@ -1,5 +1,7 @@
 #include "divide/cut.h"
 
+#include <stdlib.h>
+
 void lar_logical_positions(const lar_mesh *mesh, double (*logical)[3]) {
     double low[3] = {0}, high[3] = {0};
     for (int32_t e = 0; e < mesh->element_count; e++)
@@ -58,23 +60,44 @@ static void separate(lar_cut_item *item, int32_t count, int32_t at) {
 typedef struct cutter {
     const lar_grid *grid;
     const double (*logical)[3];
+    const float *weight; /* NULL: all are alike */
     int32_t *processor;
 } cutter;
 
 static void cut_axis(const cutter *c, int axis, lar_cut_item *item, int32_t count,
                      int32_t processor);
 
+/* Processors of a place of this axis. */
+static int32_t stride_of(const lar_grid *grid, int axis) {
+    return axis == 0 ? 1 : axis == 1 ? grid->edge[0] : grid->edge[0] * grid->edge[1];
+}
+
+static int compare_items(const void *a, const void *b) {
+    const lar_cut_item *x = a, *y = b;
+    return before(*x, *y) ? -1 : before(*y, *x);
+}
+
+/* Sorted items: how many of them weigh `share` of all, the nearest number of at least `min` for the
+ * places before the cut, and as many as `left` for those behind. */
+static int32_t weigh(const cutter *c, const lar_cut_item *item, int32_t count, double share,
+                     int32_t min, int32_t left) {
+    double all = 0, sum = 0;
+    int32_t at = 0;
+    for (int32_t i = 0; i < count; i++) all += (double)c->weight[item[i].element];
+    while (at < count && sum + 0.5 * (double)c->weight[item[at].element] < share * all)
+        sum += (double)c->weight[item[at++].element];
+    if (at > count - left) at = count - left;
+    return at < min ? min : at;
+}
+
 /* Divides a block among places from..to-1 of an axis, the middle cut first. Cut i of n comes
  * after i count / n elements. */
 static void cut_places(const cutter *c, int axis, lar_cut_item *item, int32_t whole, int32_t from,
                        int32_t to, int32_t processor) {
-    int32_t n = c->grid->edge[axis];
+    int32_t n = c->grid->edge[axis], stride = stride_of(c->grid, axis);
     int32_t start = (int32_t)((int64_t)whole * from / n);
     int32_t end = (int32_t)((int64_t)whole * to / n);
     if (to - from == 1) {
-        int32_t stride = axis == 0   ? 1
-                         : axis == 1 ? c->grid->edge[0]
-                                     : c->grid->edge[0] * c->grid->edge[1];
         cut_axis(c, axis - 1, item, end - start, processor + from * stride);
         return;
     }
@@ -86,6 +109,21 @@ static void cut_places(const cutter *c, int axis, lar_cut_item *item, int32_t wh
     cut_places(c, axis, item + at, whole, half, to, processor);
 }
 
+/* The same by weight, of so many items. */
+static void weigh_places(const cutter *c, int axis, lar_cut_item *item, int32_t count, int32_t from,
+                         int32_t to, int32_t processor) {
+    int32_t stride = stride_of(c->grid, axis), half = from + (to - from) / 2;
+    if (to - from == 1) {
+        cut_axis(c, axis - 1, item, count, processor + from * stride);
+        return;
+    }
+    qsort(item, (size_t)count, sizeof *item, compare_items);
+    int32_t at = weigh(c, item, count, (double)(half - from) / (to - from), (half - from) * stride,
+                       (to - half) * stride);
+    weigh_places(c, axis, item, at, from, half, processor);
+    weigh_places(c, axis, item + at, count - at, half, to, processor);
+}
+
 static void cut_axis(const cutter *c, int axis, lar_cut_item *item, int32_t count,
                      int32_t processor) {
     if (axis < 0) {
@@ -93,12 +131,21 @@ static void cut_axis(const cutter *c, int axis, lar_cut_item *item, int32_t coun
         return;
     }
     for (int32_t i = 0; i < count; i++) item[i].key = c->logical[item[i].element][axis];
-    cut_places(c, axis, item, count, 0, c->grid->edge[axis], processor);
+    int32_t places = c->grid->edge[axis];
+    if (c->weight)
+        weigh_places(c, axis, item, count, 0, places, processor);
+    else
+        cut_places(c, axis, item, count, 0, places, processor);
+}
+
+void lar_cut_by_weight(const lar_grid *grid, int32_t count, const double (*logical)[3],
+                       const float *weight, lar_cut_item *item, int32_t *processor) {
+    const cutter c = {grid, logical, weight, processor};
+    for (int32_t e = 0; e < count; e++) item[e].element = e;
+    cut_axis(&c, 2, item, count, 0);
 }
 
 void lar_cut(const lar_grid *grid, int32_t count, const double (*logical)[3], lar_cut_item *item,
              int32_t *processor) {
-    const cutter c = {grid, logical, processor};
-    for (int32_t e = 0; e < count; e++) item[e].element = e;
-    cut_axis(&c, 2, item, count, 0);
+    lar_cut_by_weight(grid, count, logical, NULL, item, processor);
 }

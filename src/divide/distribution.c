@@ -27,8 +27,9 @@ void lar_distribution_clear(lar_distribution *distribution) {
     *distribution = (lar_distribution){0};
 }
 
-lar_status lar_distribution_cut(const lar_mesh *mesh, const lar_grid *grid, lar_distribution *out,
-                                lar_error *error) {
+lar_status lar_distribution_cut_by_weight(const lar_mesh *mesh, const lar_grid *grid,
+                                          const float *weight, lar_distribution *out,
+                                          lar_error *error) {
     lar_distribution made = {0};
     lar_status status = lar_distribution_create(mesh, grid, &made, error);
     if (status) return status;
@@ -37,7 +38,8 @@ lar_status lar_distribution_cut(const lar_mesh *mesh, const lar_grid *grid, lar_
     lar_cut_item *item = lar_calloc(elements, sizeof *item);
     if (logical && item) {
         lar_logical_positions(mesh, logical);
-        lar_cut(grid, mesh->element_count, (const double(*)[3])logical, item, made.processor);
+        lar_cut_by_weight(grid, mesh->element_count, (const double(*)[3])logical, weight, item,
+                          made.processor);
         *out = made;
     } else {
         status = lar_fail_memory(error, elements * (sizeof *item + sizeof *logical), "cutting");
@@ -46,6 +48,11 @@ lar_status lar_distribution_cut(const lar_mesh *mesh, const lar_grid *grid, lar_
     free(logical);
     free(item);
     return status;
+}
+
+lar_status lar_distribution_cut(const lar_mesh *mesh, const lar_grid *grid, lar_distribution *out,
+                                lar_error *error) {
+    return lar_distribution_cut_by_weight(mesh, grid, NULL, out, error);
 }
 
 lar_status lar_distribution_random(const lar_mesh *mesh, const lar_grid *grid, uint64_t seed,

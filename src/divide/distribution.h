@@ -37,6 +37,10 @@ void lar_distribution_clear(lar_distribution *distribution);
 /* Algorithm 3 on the elements' centres. */
 lar_status lar_distribution_cut(const lar_mesh *mesh, const lar_grid *grid, lar_distribution *out,
                                 lar_error *error);
+/* The same by weight[elements], positive; NULL: by their number. */
+lar_status lar_distribution_cut_by_weight(const lar_mesh *mesh, const lar_grid *grid,
+                                          const float *weight, lar_distribution *out,
+                                          lar_error *error);
 
 /* Any element anywhere, balanced; the same for a seed everywhere. */
 lar_status lar_distribution_random(const lar_mesh *mesh, const lar_grid *grid, uint64_t seed,

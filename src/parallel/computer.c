@@ -6,32 +6,22 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "base/hash.h"
-#include "base/pin.h"
-#include "step/identity.h"
+#include "base/clock.h"
 #include "step/mass/heavier.h"
-
-static int32_t all_threads(const lar_computer *computer) {
-    return computer->hosted * computer->threads;
-}
-
-static lar_processor *processor_of(const lar_computer *computer, int32_t number) {
-    return &computer->processor[number / computer->threads];
-}
 
 /* ---- what went wrong ----------------------------------------------------------------------- */
 
 /* How little a thread's failure says: it may be a consequence of another one. */
 static int consequence(const lar_computer *computer, int32_t number) {
-    const lar_processor *p = processor_of(computer, number);
+    const lar_processor *p = lar_processor_of(computer, number);
     if (p->worker && p->worker[number % computer->threads].follows) return 2;
     return computer->result[number].status == LAR_ERROR_PEER;
 }
 
-static lar_status first_failure(lar_computer *computer, lar_error *error) {
+lar_status lar_first_failure(lar_computer *computer, lar_error *error) {
     const lar_thread_result *chosen = NULL;
     int min = 3;
-    for (int32_t i = 0; i < all_threads(computer); i++) {
+    for (int32_t i = 0; i < lar_all_threads(computer); i++) {
         if (!computer->result[i].status || consequence(computer, i) >= min) continue;
         chosen = &computer->result[i];
         min = consequence(computer, i);
@@ -59,198 +49,6 @@ static void first_fault(const lar_computer *computer, lar_fault *fault) {
             const lar_fault *other = &computer->processor[i].worker[t].fault;
             if (earlier(other, fault)) *fault = *other;
         }
-}
-
-/* ---- opening ------------------------------------------------------------------------------- */
-
-static lar_status open_comm(lar_computer *computer, lar_processor *p, lar_error *error) {
-    const lar_options *options = computer->options;
-    const lar_schedule *schedule = &computer->division.schedules.of[p->self];
-    lar_comm_options comm = lar_comm_options_default();
-    if (options->comm) comm.backend = options->comm;
-    comm.self = p->self;
-    comm.count = computer->division.grid.count;
-    comm.receive_bytes = computer->shift[p->self] +
-                         (size_t)p->layers * (size_t)schedule->receive_bytes +
-                         lar_contact_bytes(&computer->contact.map);
-    comm.identity = computer->identity;
-    comm.time_step = computer->whole->time_step;
-    comm.team = computer->team;
-    comm.master = options->master;
-    comm.listener = p->self == 0 ? options->listener : -1;
-    /* A processor that lives may be slow on a busy machine; whether it lives is watched anyway, and
-     * within one process it cannot die alone. */
-    comm.patience = computer->team ? 120 : 20;
-    return lar_comm_open(&comm, &p->comm, error);
-}
-
-static bool shares_memory(const lar_options *options) {
-    return options->comm && strcmp(options->comm, "shm") == 0;
-}
-
-/* Every processor is compiled in its own first thread. */
-static void compile_on_thread(void *context, int32_t number) {
-    lar_computer *computer = context;
-    lar_thread_result *result = &computer->result[number];
-    if (number % computer->threads != 0) return;
-    lar_processor *p = processor_of(computer, number);
-    const lar_schedule *schedule =
-        &computer->division.schedules.of[computer->first + number / computer->threads];
-    lar_processor_setting setting = {.whole = computer->whole,
-                                     .interactions = computer->interactions,
-                                     .reporter = computer->division.reporter,
-                                     .check = computer->checking ? &computer->check : NULL,
-                                     .shift = computer->shift,
-                                     .delays = computer->options->delays,
-                                     .low_latency =
-                                         computer->team || shares_memory(computer->options)};
-    result->status = lar_processor_create(&setting, schedule, p, &result->error);
-    if (!result->status) lar_processor_scatter(p, computer->whole, computer->state);
-}
-
-static void rendezvous_on_thread(void *context, int32_t number) {
-    lar_computer *computer = context;
-    lar_thread_result *result = &computer->result[number];
-    if (number % computer->threads != 0) return;
-    result->status = open_comm(computer, processor_of(computer, number), &result->error);
-}
-
-static lar_status size_buffers(lar_computer *computer, bool several, lar_error *error) {
-    int32_t count = computer->division.grid.count;
-    computer->shift = lar_calloc((size_t)count, sizeof *computer->shift);
-    computer->clock = lar_calloc((size_t)count, sizeof *computer->clock);
-    if (!computer->shift || !computer->clock)
-        return lar_fail_memory(error, 16 * (size_t)count, "the processors");
-    for (int32_t p = 0; several && p < count; p++) computer->shift[p] = lar_control_bytes(count, p);
-    return LAR_OK;
-}
-
-/* Whether so many threads, in this and other processes, get a core each. */
-static bool pins(const lar_options *options, int32_t threads) {
-    int32_t cores = options->pin ? lar_pin_cores() : 0;
-    return options->pin == 1 ? threads <= cores : cores > 0 && threads == cores;
-}
-
-static lar_status prepare(lar_computer *computer, lar_error *error) {
-    const lar_options *options = computer->options;
-    const lar_model *model = computer->whole->model;
-    lar_status status = lar_division_create(model, options, &computer->division, error);
-    if (status) return status;
-    int32_t count = computer->division.grid.count;
-    bool several = options->comm && strcmp(options->comm, "threads") != 0;
-    if (options->processor < 0 || options->processor >= count)
-        return lar_fail(error, LAR_ERROR_ARGUMENT,
-                        "processor %d of a grid of %d; they count from 0", (int)options->processor,
-                        (int)count);
-    computer->threads = computer->division.schedules.of[0].threads;
-    computer->first = several ? options->processor : 0;
-    computer->hosted = several ? 1 : count;
-    computer->checking = options->verify != 0;
-    computer->identity =
-        lar_identity(computer->whole, computer->state, computer->division.schedules.of[0].division);
-    /* Forces are nothing to who expects lists. */
-    computer->identity = lar_hash_word(computer->identity, computer->checking);
-    if (computer->checking) status = lar_verification_create(model, &computer->check, error);
-    if (!status) status = size_buffers(computer, several, error);
-    if (!status) status = lar_contact_open(computer, error);
-    if (!status && !several) status = lar_comm_team_create(count, &computer->team, error);
-    if (status) return status;
-    computer->processor = lar_calloc((size_t)computer->hosted, sizeof *computer->processor);
-    computer->result = lar_calloc((size_t)all_threads(computer), sizeof *computer->result);
-    if (!computer->processor || !computer->result)
-        return lar_fail_memory(error, (size_t)all_threads(computer) * sizeof *computer->result,
-                               "the processors");
-    return lar_thread_pool_create(all_threads(computer), pins(options, count * computer->threads),
-                                  computer->first * computer->threads, &computer->pool, error);
-}
-
-/* They meet when all here are compiled: otherwise the others would wait for one that does not come.
- */
-static lar_status open_processors(lar_computer *computer, bool *met, lar_error *error) {
-    lar_thread_pool_run(computer->pool, compile_on_thread, computer);
-    lar_status status = first_failure(computer, error);
-    if (status) return status;
-    *met = true;
-    lar_thread_pool_run(computer->pool, rendezvous_on_thread, computer);
-    status = first_failure(computer, error);
-    if (!status && computer->hosted < computer->division.grid.count)
-        status = lar_control_create(computer->processor[0].comm, &computer->control, error);
-    return status;
-}
-
-lar_status lar_computer_create(const lar_domain *whole, lar_interactions *interactions,
-                               lar_state *state, lar_tools *tools, lar_tool_list *list,
-                               const lar_options *options, lar_computer **out, lar_error *error) {
-    lar_computer *computer = lar_calloc(1, sizeof *computer);
-    lar_status status = LAR_OK;
-    bool met = false;
-    if (!computer) {
-        status = lar_fail_memory(error, sizeof *computer, "the parallel computer");
-    } else {
-        computer->options = options;
-        computer->whole = whole;
-        computer->interactions = interactions;
-        computer->gathered = true;
-        computer->process = getpid();
-        computer->state = state;
-        computer->tools = tools;
-        computer->list = list;
-        status = prepare(computer, error);
-        if (!status) status = open_processors(computer, &met, error);
-        lar_schedule_set_clear(&computer->division.schedules);
-        computer->options = NULL;
-    }
-    /* Only the rendezvous of processor zero takes the listener over. */
-    if (options->listener >= 0 && !(met && computer->first == 0)) close(options->listener);
-    if (status)
-        lar_computer_destroy(computer);
-    else
-        *out = computer;
-    return status;
-}
-
-static void close_on_thread(void *context, int32_t number) {
-    lar_computer *computer = context;
-    if (number % computer->threads != 0) return;
-    lar_processor *p = processor_of(computer, number);
-    lar_comm_close(p->comm);
-    lar_processor_destroy(p);
-}
-
-/* Processor zero lets the other processes go. Who goes before that, or cannot say so, is given up:
- * after a goodbye alone the others would wait for as long as they live. */
-static void dismiss_processes(lar_computer *computer) {
-    lar_comm *comm = computer->processor ? computer->processor[0].comm : NULL;
-    if (!comm || computer->hosted == computer->division.grid.count) return;
-    const lar_order finish = {.kind = LAR_ORDER_FINISH};
-    if (computer->first == 0 && computer->control && !computer->broken)
-        computer->finished = lar_control_order(computer->control, &finish, NULL, 0, NULL) == LAR_OK;
-    if (!computer->finished) lar_comm_abort(comm);
-}
-
-/* In a forked child, which has none of the threads, one after the other. */
-static void close_processors(lar_computer *computer, bool here) {
-    if (!computer->pool) return;
-    if (here) lar_thread_pool_run(computer->pool, close_on_thread, computer);
-    for (int32_t i = 0; !here && i < all_threads(computer); i++) close_on_thread(computer, i);
-}
-
-void lar_computer_destroy(lar_computer *computer) {
-    if (!computer) return;
-    bool here = computer->process == getpid();
-    if (here) dismiss_processes(computer);
-    lar_control_destroy(computer->control);
-    close_processors(computer, here);
-    lar_thread_pool_destroy(computer->pool);
-    lar_comm_team_destroy(computer->team);
-    lar_contact_close(computer);
-    lar_verification_destroy(&computer->check);
-    lar_division_destroy(&computer->division);
-    free(computer->processor);
-    free(computer->result);
-    free(computer->shift);
-    free(computer->clock);
-    free(computer);
 }
 
 /* ---- advancing ----------------------------------------------------------------------------- */
@@ -312,16 +110,19 @@ static void after_round(lar_computer *computer, lar_worker *worker, int32_t numb
 static void advance_thread(void *context, int32_t number) {
     lar_computer *computer = context;
     lar_thread_result *result = &computer->result[number];
-    lar_processor *p = processor_of(computer, number);
+    lar_processor *p = lar_processor_of(computer, number);
     lar_worker *worker = &p->worker[number % computer->threads];
     /* In the stretch before, which ended within that step: what it was is known. */
     bool faulted = worker->fault.kind != LAR_FAULT_NONE;
+    double begin = computer->balance.samples ? lar_clock_seconds() : 0;
+    if (begin > 0) lar_comm_time_waits(p->comm, true);
     if (p->exchange) lar_contact_publish(worker, worker->round + 1);
     while (!must_stop(computer, worker)) {
         result->status = lar_worker_step(worker, &result->error);
         if (result->status) break;
         after_round(computer, worker, number, &faulted);
     }
+    if (begin > 0) lar_balance_note(computer, p, lar_clock_seconds() - begin);
     /* Nobody shall wait for this processor; after a verdict this changes nothing. */
     if (result->status && worker->thread == 0) lar_comm_abort(p->comm);
 }
@@ -329,8 +130,8 @@ static void advance_thread(void *context, int32_t number) {
 /* What the threads here have felt in the last advance. */
 static void report_here(const lar_computer *computer, lar_report *report) {
     *report = (lar_report){0};
-    for (int32_t i = 0; i < all_threads(computer); i++) {
-        const lar_worker *worker = &processor_of(computer, i)->worker[i % computer->threads];
+    for (int32_t i = 0; i < lar_all_threads(computer); i++) {
+        const lar_worker *worker = &lar_processor_of(computer, i)->worker[i % computer->threads];
         lar_report_add(report, &worker->interactions, &worker->state);
     }
 }
@@ -338,7 +139,7 @@ static void report_here(const lar_computer *computer, lar_report *report) {
 static void stiffen_on_thread(void *context, int32_t number) {
     lar_computer *computer = context;
     if (number % computer->threads == 0)
-        lar_domain_stiffen(&processor_of(computer, number)->domain, &computer->tools->settings,
+        lar_domain_stiffen(&lar_processor_of(computer, number)->domain, &computer->tools->settings,
                            &computer->tools->parameters);
 }
 
@@ -364,8 +165,8 @@ static void take_settings(lar_computer *computer) {
 
 static lar_status take_supports(lar_computer *computer, lar_error *error) {
     lar_status status = LAR_OK;
-    for (int32_t i = 0; i < all_threads(computer) && !status; i++) {
-        lar_worker *worker = &processor_of(computer, i)->worker[i % computer->threads];
+    for (int32_t i = 0; i < lar_all_threads(computer) && !status; i++) {
+        lar_worker *worker = &lar_processor_of(computer, i)->worker[i % computer->threads];
         status = lar_step_support(&worker->context, &computer->tools->supports,
                                   &worker->interactions, error);
     }
@@ -379,19 +180,20 @@ static lar_status advance_here(lar_computer *computer, uint64_t until, bool firs
     take_settings(computer);
     lar_status status = take_supports(computer, error);
     if (status) return status;
-    for (int32_t i = 0; i < all_threads(computer); i++) {
+    for (int32_t i = 0; i < lar_all_threads(computer); i++) {
         lar_interactions *interactions =
-            &processor_of(computer, i)->worker[i % computer->threads].interactions;
+            &lar_processor_of(computer, i)->worker[i % computer->threads].interactions;
         if (first) lar_report_begin(interactions);
         lar_tool_contact_forget_depths(&interactions->tool_contact);
-        processor_of(computer, i)->worker[i % computer->threads].state.need = 0;
-        lar_needs_clear(&processor_of(computer, i)->worker[i % computer->threads].needs);
+        lar_processor_of(computer, i)->worker[i % computer->threads].state.need = 0;
+        lar_needs_clear(&lar_processor_of(computer, i)->worker[i % computer->threads].needs);
     }
     for (int32_t i = 0; i < computer->hosted; i++) lar_contact_begin(&computer->processor[i]);
+    lar_balance_sample(computer);
     lar_thread_pool_run(computer->pool, advance_thread, computer);
     for (int32_t i = 0; i < computer->hosted; i++) lar_processor_pause(&computer->processor[i]);
     report_here(computer, &computer->report);
-    return first_failure(computer, error);
+    return lar_first_failure(computer, error);
 }
 
 static lar_status hear_all(lar_computer *computer, lar_fault *fault, lar_error *error) {

@@ -54,8 +54,26 @@ typedef struct lar_computer_contact {
     lar_contact_info info;          /* what concerns all processors together */
 } lar_computer_contact;
 
+/* What elements cost, and whether another division would be faster (redivide.c). */
+typedef struct lar_balance {
+    bool adapts;      /* the division may become another one */
+    bool samples;     /* the stretch under way is timed */
+    uint64_t count;   /* stretches since `since` */
+    double *busy;     /* [processors] in those that were timed [s] */
+    double computed;  /* what those took [s] */
+    double since;     /* when the counting began, and */
+    double next;      /* when it is looked at again, by the clock [s] */
+    double pause;     /* until the next look, at least [s] */
+    double corrected; /* what strained and pushed elements cost, times what they should */
+    double before;    /* how uneven it was before the last change; 0: that is known */
+    uint64_t times;   /* that the division was made anew */
+} lar_balance;
+
 typedef struct lar_computer {
     lar_division division;
+    lar_schedule_options wanted; /* of `options`, */
+    lar_options kept;            /* and all of them but the strings */
+    lar_balance balance;
     lar_verification check;
     bool checking;
     int32_t threads;       /* of a processor */
@@ -121,7 +139,35 @@ lar_status lar_computer_look(lar_computer *computer, lar_error *error);
 /* Every other process: does what processor zero says until it ends. */
 lar_status lar_computer_serve(lar_computer *computer, lar_error *error);
 
-/* ---- between computer.c, computer_state.c and computer_contact.c ----------------------------- */
+/* Between advances, of processors that are threads: where some elements have come to cost so much
+ * more than others that another division is faster, *computer becomes another one, with the same
+ * state and the same bits; what there is no memory for is not made. `whole` is the computer's. */
+void lar_computer_redivide(lar_computer **computer, lar_domain *whole);
+/* The same with any distribution for its grid; after a failure *computer is as it was. */
+lar_status lar_computer_redistribute(lar_computer **computer, lar_domain *whole,
+                                     const lar_distribution *distribution, lar_error *error);
+
+/* ---- between computer.c, computer_*.c and redivide.c ----------------------------------------- */
+
+static inline int32_t lar_all_threads(const lar_computer *computer) {
+    return computer->hosted * computer->threads;
+}
+static inline lar_processor *lar_processor_of(const lar_computer *computer, int32_t number) {
+    return &computer->processor[number / computer->threads];
+}
+lar_status lar_first_failure(lar_computer *computer, lar_error *error);
+
+/* Another computer with another distribution takes over the state, the threads and what was
+ * counted; the old one is destroyed, or stays after a failure. */
+lar_status lar_computer_create_like(lar_computer *old, const lar_distribution *distribution,
+                                    lar_computer **computer, lar_error *error);
+
+lar_status lar_balance_create(lar_balance *balance, int32_t processors, lar_error *error);
+/* Counts anew. `cost`: what the last look took, with a new computer where one was made [s]. */
+void lar_balance_begin(lar_computer *computer, double cost);
+/* Before a stretch: whether it is timed; after it, what a processor took for it, waits included. */
+void lar_balance_sample(lar_computer *computer);
+void lar_balance_note(lar_computer *computer, const lar_processor *p, double seconds);
 
 /* Before the processors are made; what cannot be made is cleared by lar_contact_close. */
 lar_status lar_contact_open(lar_computer *computer, lar_error *error);

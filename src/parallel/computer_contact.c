@@ -339,8 +339,7 @@ static lar_status renew(lar_computer *computer, bool due, bool crowded, lar_faul
 static bool is_late(const lar_computer *computer, bool crowded) {
     const lar_computer_contact *contact = &computer->contact;
     double reserved = crowded ? 0 : reserve(computer, contact->way);
-    return !contact->valid || contact->always ||
-           !(left_of(computer, contact->moved, reserved) > 0);
+    return !contact->valid || contact->always || !(left_of(computer, contact->moved, reserved) > 0);
 }
 
 lar_status lar_contact_refresh(lar_computer *computer, lar_fault *fault, lar_error *error) {

@@ -175,6 +175,22 @@ static lar_status find_spread(lar_division *division, lar_error *error) {
     return LAR_OK;
 }
 
+/* What follows from the schedules. `made` is cleared after a failure, or becomes the division. */
+static lar_status complete(const lar_model *model, lar_status status, lar_division *made,
+                           lar_division *division, lar_error *error) {
+    if (!status) {
+        made->grid = made->schedules.of[0].grid;
+        status = find_reporters(made, model->mesh.node_count, error);
+    }
+    if (!status) status = find_recoverers(made, model->mesh.element_count, error);
+    if (!status) status = find_spread(made, error);
+    if (status)
+        lar_division_destroy(made);
+    else
+        *division = *made;
+    return status;
+}
+
 lar_status lar_division_create(const lar_model *model, const lar_options *options,
                                lar_division *division, lar_error *error) {
     lar_division made = {0};
@@ -186,17 +202,20 @@ lar_status lar_division_create(const lar_model *model, const lar_options *option
     else if (!status)
         status = build_schedules(&model->mesh, &incidence, options, &made.schedules, error);
     lar_incidence_clear(&incidence);
-    if (!status) {
-        made.grid = made.schedules.of[0].grid;
-        status = find_reporters(&made, model->mesh.node_count, error);
-    }
-    if (!status) status = find_recoverers(&made, model->mesh.element_count, error);
-    if (!status) status = find_spread(&made, error);
-    if (status)
-        lar_division_destroy(&made);
-    else
-        *division = made;
-    return status;
+    return complete(model, status, &made, division, error);
+}
+
+lar_status lar_division_from(const lar_model *model, const lar_distribution *distribution,
+                             const lar_schedule_options *wanted, lar_division *division,
+                             lar_error *error) {
+    lar_division made = {0};
+    lar_incidence incidence = {0};
+    lar_status status = lar_incidence_build(&model->mesh, &incidence, error);
+    if (!status)
+        status = lar_schedule_build(&model->mesh, &incidence, distribution, wanted, &made.schedules,
+                                    error);
+    lar_incidence_clear(&incidence);
+    return complete(model, status, &made, division, error);
 }
 
 void lar_division_destroy(lar_division *division) {

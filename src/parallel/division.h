@@ -31,6 +31,10 @@ bool lar_distribution_is_file(const char *distribution);
 /* From the parallel part of lar_options. Schedules from files are proved before they are used. */
 lar_status lar_division_create(const lar_model *model, const lar_options *options,
                                lar_division *division, lar_error *error);
+/* From a distribution, with what the options of another division said of schedules. */
+lar_status lar_division_from(const lar_model *model, const lar_distribution *distribution,
+                             const lar_schedule_options *wanted, lar_division *division,
+                             lar_error *error);
 void lar_division_destroy(lar_division *division); /* idempotent */
 
 #endif

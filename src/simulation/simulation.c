@@ -318,6 +318,8 @@ static lar_status advance_portion(lar_simulation *simulation, uint64_t end, bool
     lar_status status = LAR_OK;
     if (computer) {
         uint64_t steps = end - lar_simulation_steps(simulation);
+        if (first) lar_computer_redivide(&simulation->computer, &simulation->domain);
+        computer = simulation->computer;
         status = lar_computer_advance(computer, steps, first, callback, context, &simulation->fault,
                                       error);
         simulation->report = computer->report;

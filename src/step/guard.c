@@ -22,6 +22,7 @@ lar_status lar_strained_create(const lar_domain *domain, lar_strained *strained,
     size_t runs = (size_t)domain->run_count;
     *strained = (lar_strained){.lane = lar_calloc(lanes, sizeof *strained->lane),
                                .count = lar_calloc(runs, sizeof *strained->count),
+                               .listed_count = lar_calloc(runs, sizeof *strained->count),
                                .strain = lar_calloc(lanes, sizeof *strained->strain),
                                .near = lar_calloc(lanes, sizeof *strained->near),
                                .stiffness = lar_calloc(lanes, sizeof *strained->stiffness),
@@ -39,10 +40,10 @@ lar_status lar_strained_create(const lar_domain *domain, lar_strained *strained,
         strained->activation = lar_calloc_aligned(lanes, sizeof *strained->activation);
         strained->active_energy = lar_calloc_aligned(lanes, sizeof *strained->active_energy);
     }
-    if (strained->lane && strained->count && strained->strain && strained->near &&
-        strained->stiffness && strained->sound && strained->damped && strained->damped_count &&
-        strained->lacked && strained->lacked_count && strained->pressed && strained->beyond &&
-        (!active || (strained->activation && strained->active_energy)))
+    if (strained->lane && strained->count && strained->listed_count && strained->strain &&
+        strained->near && strained->stiffness && strained->sound && strained->damped &&
+        strained->damped_count && strained->lacked && strained->lacked_count && strained->pressed &&
+        strained->beyond && (!active || (strained->activation && strained->active_energy)))
         return LAR_OK;
     lar_strained_destroy(strained);
     size_t each = 3 * sizeof *strained->lane + sizeof *strained->strain +
@@ -53,6 +54,7 @@ lar_status lar_strained_create(const lar_domain *domain, lar_strained *strained,
 void lar_strained_destroy(lar_strained *strained) {
     free(strained->lane);
     free(strained->count);
+    free(strained->listed_count);
     free(strained->strain);
     free(strained->near);
     free(strained->stiffness);

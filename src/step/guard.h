@@ -26,8 +26,9 @@ typedef struct lar_damped {
 /* The strained elements of a domain's runs, beside the state: each run has the places of its
  * blocks, and is one thread's. */
 struct lar_strained {
-    int32_t *lane;  /* [8 for each block] what is looked at in every step */
-    int32_t *count; /* [run_count] of these, from the first of a run's places on */
+    int32_t *lane;         /* [8 for each block] what is looked at in every step */
+    int32_t *count;        /* [run_count] of these, from the first of a run's places on */
+    int32_t *listed_count; /* [run_count] strained elements of the last list (redivide.c) */
     float (*strain)[LAR_STRAIN_NUMBERS]; /* [8 for each block] scratch of a monitor */
     int32_t *near;                       /* [8 for each block] scratch: lanes with a corner below */
     double *stiffness;                   /* twice START, and of their barriers, likewise [N/m] */

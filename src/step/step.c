@@ -110,6 +110,7 @@ static void recover_blocks(const lar_domain *domain, int32_t first, int32_t coun
                                     .lane = state->strained->lane + place,
                                     .strain = state->strained->strain + place};
         int64_t found = recover_run(domain, r, true, watches ? &monitor : NULL, state);
+        if (watches) state->strained->listed_count[r] = monitor.count;
         if (watches)
             lar_guard_select_and_apply(domain, r, &monitor, due, state);
         else
