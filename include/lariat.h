@@ -90,8 +90,9 @@ LAR_API const char *lar_version(void);
 LAR_API int32_t lar_version_number(void);
 
 /* Cores that the calling thread may use, second threads of cores included: those that it may run
- * on, and no more than the time of whole cores that control groups leave it, as those of a container
- * do (Linux); at least 1. What is chosen by itself, a grid or the workers of a batch, keeps to it. */
+ * on, and no more than the time of whole cores that control groups leave it, as those of a
+ * container do (Linux); at least 1. What is chosen by itself, a grid or the workers of a batch,
+ * keeps to it. */
 LAR_API int32_t lar_usable_cores(void);
 
 /* Functions for memory, from any thread; NULL says that there is none. `alignment` is a power of 2
@@ -398,17 +399,17 @@ LAR_SIZED lar_status lar_model_tool(const lar_model *model, int32_t index, lar_t
 
 /* What the tissue does to a tool. */
 typedef struct lar_tool_force {
-    double force[3];    /* [N], the mean over the steps of the last advance */
-    double torque[3];   /* about the tip [N m], likewise */
-    int32_t touching;   /* surface points that it touched in the last step */
-    int32_t held;       /* surface points that it has hold of */
-    double limit;       /* beyond it stays behind its hand [N]; 0 for hands: none. It may do so with
-                           less, too: half its radius deep, or where elements need shorter steps */
-    double depth;       /* the deepest tissue point in it in the last advance [m]; 0: none */
-    double apart;       /* from its tip to where its hand asks the tip to be, now [m]; 0 where tissue
-                           keeps it from turning or closing only, of which `limited` tells */
-    int32_t limited;    /* 1 while tissue keeps it from following its hand, which includes its way
-                           back to it; else 0 */
+    double force[3];  /* [N], the mean over the steps of the last advance */
+    double torque[3]; /* about the tip [N m], likewise */
+    int32_t touching; /* surface points that it touched in the last step */
+    int32_t held;     /* surface points that it has hold of */
+    double limit;     /* beyond it stays behind its hand [N]; 0 for hands: none. It may do so with
+                         less, too: half its radius deep, or where elements need shorter steps */
+    double depth;     /* the deepest tissue point in it in the last advance [m]; 0: none */
+    double apart;     /* from its tip to where its hand asks the tip to be, now [m]; 0 where tissue
+                         keeps it from turning or closing only, of which `limited` tells */
+    int32_t limited;  /* 1 while tissue keeps it from following its hand, which includes its way
+                         back to it; else 0 */
     double grasp_force; /* what both jaws of a grasper press with on the tissue between them [N],
                      the mean over the last advance: the smaller of what each is pushed outwards
                      with; 0 when a jaw is not, and for other tools */
@@ -608,7 +609,8 @@ typedef struct lar_options {
     int32_t threads;          /* of every processor; 0: one */
     const char *scheme;       /* who sends to whom: "all" (NULL), "local", "one", "two" */
     const char *channels;     /* of scheme local: "sequential" (NULL) or "concurrent" */
-    const char *distribution; /* "cut" (NULL), "genetic", "metis", "random", or a file's path */
+    const char *distribution; /* "cut", "genetic", "metis", "random", or a file's path; NULL: cut,
+                                 and anew under way (lar_simulation_redivisions) */
     const char *schedules;    /* a folder of schedule files, instead of all these */
     const char *comm;         /* "threads" (NULL); "shm", "ucx", "mpi", "tcp": other processes */
     uint64_t delays;          /* seed of random delays, to test with; 0: none */
@@ -990,6 +992,13 @@ LAR_API int32_t lar_simulation_step_parts(const lar_simulation *simulation);
 /* How many steps were divided since the simulation was created, and into how many parts at most
  * (`max`; may be NULL). Going back, loading and a reset do not change these. */
 LAR_API uint64_t lar_simulation_divided_steps(const lar_simulation *simulation, int32_t *max);
+/* How often a grid of threads has been divided anew since the simulation was created. Where tools
+ * press, elements come to cost many times what others do; when the slowest processor would be a
+ * tenth faster with another division it gets one, between two advances, which takes as long as the
+ * first one did, and a hundredth of the time in all at most. The bits stay the same. 0 for
+ * processes, threads of a processor, a distribution that was asked for, and more processors than
+ * cores. */
+LAR_API uint64_t lar_simulation_redivisions(const lar_simulation *simulation);
 
 /* Where the scene allows it (mass_scaling: {strained: SHARE}) the elements that are strained most
  * move with more mass for a while, so that steps are divided into fewer parts, or none. */
@@ -1120,12 +1129,12 @@ typedef struct lar_rest {
                        after `since` */
     int reached;    /* 1: the body is at rest */
     int looked;     /* not 0: `left` is known; 2: most of it is what viscous terms still relax */
-    double since;   /* no load or prescribed value changes after that time [s]; infinite where a wave or
-                       a curve comes again and again: then there is no rest, and `limit` is 0 */
+    double since; /* no load or prescribed value changes after that time [s]; infinite where a wave
+                     or a curve comes again and again: then there is no rest, and `limit` is 0 */
     double kinetic, strain; /* when last looked, strain with the hourglass energy [J] */
     double left;            /* largest kinetic energy lately, what damping will still take and what
-                               viscous terms store that will have relaxed, as a share of the strain energy; where that is next to nothing, of one
-                               at which this share is rounding */
+                               viscous terms store that will have relaxed, as a share of the strain energy;
+                               where that is next to nothing, of one            at which this share is rounding */
     double share;           /* at rest `left` is at most that */
     /* The rest is its own. */
     uint64_t since_step, every;
@@ -1337,7 +1346,8 @@ typedef struct lar_device_status {
     int port;          /* where it listens */
     int connected;     /* not 0: a client is connected now */
     uint64_t received; /* positions taken */
-    uint64_t answered; /* of these, with a force; what is sent besides while it fades is not counted */
+    uint64_t
+        answered; /* of these, with a force; what is sent besides while it fades is not counted */
     uint64_t refused;  /* malformed packets, or packets from another sender */
     uint64_t late;     /* packets that came after a newer one, or twice */
     uint64_t lost;     /* sequence numbers that never came */

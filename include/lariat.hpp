@@ -515,6 +515,7 @@ class Simulation : public detail::Handle<lar_simulation, lar_simulation_destroy>
     std::uint64_t divided_steps(std::int32_t *max = nullptr) const {
         return lar_simulation_divided_steps(get(), max);
     }
+    std::uint64_t redivisions() const { return lar_simulation_redivisions(get()); }
     lar_heavier heavier() const {
         lar_heavier heavier;
         lar_simulation_heavier(get(), &heavier);

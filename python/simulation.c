@@ -462,13 +462,15 @@ static PyObject *get_info(PyObject *me, void *unused) {
     lar_heavier heavier;
     lar_simulation_heavier(simulation, &heavier);
     return Py_BuildValue(
-        "{s:s,s:i,s:i,s:d,s:i,s:i,s:s,s:i,s:K,s:i,s:{s:i,s:d,s:d,s:d}}", "element",
+        "{s:s,s:i,s:i,s:d,s:i,s:i,s:K,s:s,s:i,s:K,s:i,s:{s:i,s:d,s:d,s:d}}", "element",
         elements[i.element], "tools", (int)i.tools, "spares", (int)i.spares, "time_step",
         i.time_step, "processors", (int)lar_simulation_processors(simulation), "threads",
-        (int)lar_simulation_threads(simulation), "isa", lar_simulation_isa(simulation),
-        "step_parts", (int)lar_simulation_step_parts(simulation), "divided_steps", divided,
-        "most_parts", (int)most, "heavier", "elements", (int)heavier.elements, "share",
-        heavier.share, "mean_share", heavier.mean_share, "largest_share", heavier.largest_share);
+        (int)lar_simulation_threads(simulation), "redivisions",
+        (unsigned long long)lar_simulation_redivisions(simulation), "isa",
+        lar_simulation_isa(simulation), "step_parts", (int)lar_simulation_step_parts(simulation),
+        "divided_steps", divided, "most_parts", (int)most, "heavier", "elements",
+        (int)heavier.elements, "share", heavier.share, "mean_share", heavier.mean_share,
+        "largest_share", heavier.largest_share);
 }
 
 static PyGetSetDef simulation_properties[] = {
@@ -479,8 +481,9 @@ static PyGetSetDef simulation_properties[] = {
     {"closed", get_closed, NULL, "True after close().", NULL},
     {"options", get_options, NULL, "dict: the keyword arguments that it was made with.", NULL},
     {"info", get_info, NULL,
-     "dict: element, tools, spares, time_step [s], processors, threads, isa, step_parts (parts of "
-     "a step now), divided_steps, most_parts, heavier (a dict: strained elements that are, and "
+     "dict: element, tools, spares, time_step [s], processors, threads, redivisions (how often "
+     "the grid was divided anew under way), isa, step_parts (parts of a step now), divided_steps, "
+     "most_parts, heavier (a dict: strained elements that are, and "
      "what "
      "they have more, as a share of the model's mass).",
      NULL},

@@ -98,6 +98,14 @@ void cli_print_reason(const lar_parallel *parallel, FILE *out) {
                 parallel->divided ? "chosen" : parallel->grid, parallel->reason);
 }
 
+void cli_print_redivisions(const lar_simulation *simulation, FILE *out) {
+    unsigned long long times = lar_simulation_redivisions(simulation);
+    if (times > 0)
+        fprintf(out,
+                "%-17s%llu times, where elements had come to cost one processor more than others\n",
+                "divided anew", times);
+}
+
 void cli_write_parallel(lar_json *json, const lar_parallel *parallel) {
     lar_json_text(json, "grid", parallel->grid);
     lar_json_text(json, "grid_reason", parallel->reason);

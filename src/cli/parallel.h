@@ -69,6 +69,8 @@ int cli_choose_grid(const cli_command *command, const cli_parallel *parallel,
                     lar_grid_choice *choice);
 /* Why, where one was chosen. */
 void cli_print_reason(const lar_parallel *parallel, FILE *out);
+/* A line where the grid was divided anew under way. */
+void cli_print_redivisions(const lar_simulation *simulation, FILE *out);
 /* Who computes, and why so. */
 void cli_write_parallel(lar_json *json, const lar_parallel *parallel);
 

@@ -424,6 +424,10 @@ uint64_t lar_simulation_divided_steps(const lar_simulation *simulation, int32_t 
     return interval->divided;
 }
 
+uint64_t lar_simulation_redivisions(const lar_simulation *simulation) {
+    return simulation && simulation->computer ? simulation->computer->balance.times : 0;
+}
+
 /* What may be added is the share that the scene says, of the model's mass. */
 void lar_simulation_heavier(const lar_simulation *simulation, lar_heavier *heavier) {
     if (!heavier) return;

@@ -163,6 +163,7 @@ void run_report_json(const run_report *report, FILE *out) {
     lar_json_number(&json, "stable_step", report->info.stable_step);
     cli_write_mass_scaling(&json, report->model, &report->info.mass_scaling);
     cli_write_parallel(&json, report->parallel);
+    lar_json_integer(&json, "redivisions", (int64_t)lar_simulation_redivisions(simulation));
     lar_json_text(&json, "isa", lar_simulation_isa(simulation));
     lar_json_number(&json, "wall_time", stepping_time(report));
     write_times(&json, report->clock);
@@ -271,6 +272,7 @@ static void print_parts(const lar_simulation *simulation, FILE *out) {
         fprintf(out, "%-17s%" PRIu64 " steps, into %d parts at most\n", "divided", divided,
                 (int)max);
     cli_print_heavier(simulation, out);
+    cli_print_redivisions(simulation, out);
 }
 
 static void print_rest(const run_report *report, FILE *out) {

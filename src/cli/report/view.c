@@ -99,6 +99,7 @@ void view_report_json(const view_report *report, FILE *out) {
     lar_json_integer(&json, "elements", report->info.elements);
     lar_json_integer(&json, "nodes", report->info.nodes);
     cli_write_parallel(&json, report->parallel);
+    lar_json_integer(&json, "redivisions", (int64_t)lar_simulation_redivisions(report->simulation));
     lar_json_text(&json, "isa", lar_simulation_isa(report->simulation));
     lar_json_text(&json, "state", state_names[s->state]);
     lar_json_text(&json, "message", s->message);
@@ -176,6 +177,7 @@ void view_report_table(const view_report *report, FILE *out) {
         fprintf(out, "%-17s%" PRIu64 " steps, into %d parts at most\n", "divided", s->divided_steps,
                 (int)max_parts(report));
     cli_print_heavier(report->simulation, out);
+    cli_print_redivisions(report->simulation, out);
     print_tools(report, out);
     print_devices(report, out);
     fprintf(out, "%-17s%d at once at most\n", "viewers", (int)report->viewers_max);
