@@ -47,6 +47,36 @@ static void cutting_equal_positions_goes_by_element(void **state) {
     lar_mesh_clear(&mesh);
 }
 
+/* Every processor has one element at least, and by no more than the heaviest element and what is
+ * cut off by each of three axes more than its share. */
+static void weights_are_cut_too(void **state) {
+    (void)state;
+    lar_mesh organ = {0};
+    assert_int_equal(lar_demo_mesh(&organ, NULL), LAR_OK);
+    float *weight = lar_calloc((size_t)organ.element_count, sizeof *weight);
+    for (int i = 0; i < GRIDS; i++)
+        for (int heavy = 1; heavy <= 1000; heavy *= 10) {
+            lar_grid grid = grid_of(edges[i][0], edges[i][1], edges[i][2]);
+            lar_distribution d = {0};
+            double all = 0;
+            for (int32_t e = 0; e < organ.element_count; e++)
+                all += (double)(weight[e] = (float)(e % 50 == 7 ? heavy : 1));
+            assert_int_equal(lar_distribution_cut_by_weight(&organ, &grid, weight, &d, NULL), 0);
+            for (int32_t p = 0; p < grid.count; p++) {
+                double sum = 0;
+                int32_t count = 0;
+                for (int32_t e = 0; e < organ.element_count; e++)
+                    if (d.processor[e] == p) count++, sum += (double)weight[e];
+                assert_true(count >= 1);
+                assert_true(sum <= all / grid.count + 3 * heavy);
+            }
+            if (heavy == 1) check_balance(&d);
+            lar_distribution_clear(&d);
+        }
+    free(weight);
+    lar_mesh_clear(&organ);
+}
+
 static void random_follows_its_seed(void **state) {
     (void)state;
     lar_mesh mesh = brick_mesh(4, 4, 4);
@@ -238,6 +268,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(cut_and_random_are_balanced),
         cmocka_unit_test(cutting_equal_positions_goes_by_element),
+        cmocka_unit_test(weights_are_cut_too),
         cmocka_unit_test(random_follows_its_seed),
         cmocka_unit_test(balancing),
         cmocka_unit_test(metis),

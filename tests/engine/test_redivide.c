@@ -140,8 +140,68 @@ static void bodies_go_on(void **unused) {
     check(&(scene){falling, nothing, 40});
 }
 
+/* ---- who decides ----------------------------------------------------------------------------- */
+
+static uint64_t elements_of_first(const lar_simulation *simulation) {
+    uint64_t count = 0;
+    for (int32_t e = 0; e < simulation->domain.model->mesh.element_count; e++)
+        count += simulation->computer->division.recoverer[e] == 0;
+    return count;
+}
+
+/* As if two processors had computed for a while, the first one so many times as long. */
+static void pretend(lar_simulation *simulation, double times) {
+    lar_balance *balance = &simulation->computer->balance;
+    balance->count = 1000;
+    balance->busy[0] = balance->computed = 1e3 * times;
+    balance->busy[1] = 1e3;
+    balance->next = 0;
+}
+
+/* The tools press at the end that the first processor has. */
+static lar_simulation *press_one_end(const lar_model *model, const char *distribution) {
+    lar_options options = lar_options_default();
+    options.grid = "2x1x1";
+    options.distribution = distribution;
+    lar_simulation *simulation = start_with(model, options);
+    for (int tick = 0; tick < TICKS; tick++) {
+        place_tool(simulation, TEST_BALL, 0.012, 0.025, 0.0485 - 0.0006 * tick, 1, TICK_STEPS);
+        advance(simulation, TICK_STEPS);
+    }
+    return simulation;
+}
+
+/* Clocks say that one has more to do, and what is known of elements which these are. */
+static void times_and_elements_decide(void **unused) {
+    (void)unused;
+    lar_model *model = tool_model_of(&fine_tool_brick);
+    lar_simulation *simulation = press_one_end(model, NULL);
+    uint64_t wanted = elements_of_first(simulation), fixed;
+    lar_simulation *kept = press_one_end(model, "cut");
+    bool adapts = lar_usable_cores() >= 2;
+    pretend(simulation, 1); /* nobody waits */
+    advance(simulation, 1);
+    assert_int_equal(lar_simulation_redivisions(simulation), 0);
+    pretend(simulation, 2);
+    advance(simulation, 1);
+    assert_int_equal(lar_simulation_redivisions(simulation), adapts);
+    fixed = elements_of_first(simulation);
+    assert_true(adapts ? fixed < wanted : fixed == wanted);
+    pretend(simulation, 1); /* again */
+    advance(simulation, 1);
+    assert_int_equal(lar_simulation_redivisions(simulation), adapts);
+    pretend(kept, 2); /* asked for */
+    advance(kept, 3);
+    assert_int_equal(lar_simulation_redivisions(kept), 0);
+    assert_int_equal(lar_simulation_hash(kept), lar_simulation_hash(simulation));
+    lar_simulation_destroy(kept);
+    lar_simulation_destroy(simulation);
+    lar_model_destroy(model);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(tools_and_settings_go_on),
-                                       cmocka_unit_test(bodies_go_on)};
+                                       cmocka_unit_test(bodies_go_on),
+                                       cmocka_unit_test(times_and_elements_decide)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
