@@ -141,8 +141,9 @@ lar_status lar_computer_serve(lar_computer *computer, lar_error *error);
 
 /* Between advances, of processors that are threads: where some elements have come to cost so much
  * more than others that another division is faster, *computer becomes another one, with the same
- * state and the same bits; what there is no memory for is not made. `whole` is the computer's. */
-void lar_computer_redivide(lar_computer **computer, lar_domain *whole);
+ * state and the same bits; true then. What there is no memory for is not made. `whole` is the
+ * computer's. */
+bool lar_computer_redivide(lar_computer **computer, lar_domain *whole);
 /* The same with any distribution for its grid; after a failure *computer is as it was. */
 lar_status lar_computer_redistribute(lar_computer **computer, lar_domain *whole,
                                      const lar_distribution *distribution, lar_error *error);

@@ -203,20 +203,22 @@ lar_status lar_computer_redistribute(lar_computer **computer, lar_domain *whole,
     return LAR_OK;
 }
 
-void lar_computer_redivide(lar_computer **computer, lar_domain *whole) {
+bool lar_computer_redivide(lar_computer **computer, lar_domain *whole) {
     lar_computer *old = *computer;
-    if (!is_due(old)) return;
+    if (!is_due(old)) return false;
     double begin = lar_clock_seconds();
     lar_distribution found = {0};
+    bool made = false;
     learn(old);
     if (is_uneven(old)) {
         float *more = lar_calloc((size_t)whole->model->mesh.element_count, sizeof *more);
         double(*has)[2] = lar_calloc((size_t)old->division.grid.count, sizeof *has);
         if (more && has && find_better(old, more, has, &found))
-            lar_computer_redistribute(computer, whole, &found, NULL);
+            made = !lar_computer_redistribute(computer, whole, &found, NULL);
         free(more);
         free(has);
     }
     lar_distribution_clear(&found);
     lar_balance_begin(*computer, lar_clock_seconds() - begin);
+    return made;
 }

@@ -121,9 +121,9 @@ static void measure_lengths(const double (*u)[3], size_t nodes, float *out) {
 }
 
 static void tell_processors(const lar_simulation *simulation, size_t nodes, float *out) {
-    const lar_computer *computer = simulation->computer;
+    const int32_t *reporter = simulation->reporter;
     for (size_t n = 0; n < nodes; n++)
-        out[n] = computer ? (float)computer->division.reporter[n] : 0;
+        out[n] = reporter ? (float)__atomic_load_n(&reporter[n], __ATOMIC_RELAXED) : 0;
 }
 
 static lar_status refuse_null(const char *call, lar_error *error) {

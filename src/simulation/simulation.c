@@ -182,6 +182,31 @@ static lar_status settle_grid(const lar_model *model, lar_options *options, lar_
     return status;
 }
 
+/* Other threads may look meanwhile. */
+static void note_division(lar_simulation *simulation) {
+    const lar_computer *computer = simulation->computer;
+    uint64_t times = computer->balance.times;
+    __atomic_store_n(&simulation->redivisions, times, __ATOMIC_RELAXED);
+    for (int32_t n = 0; n < simulation->domain.model->mesh.node_count; n++)
+        __atomic_store_n(&simulation->reporter[n], computer->division.reporter[n],
+                         __ATOMIC_RELAXED);
+}
+
+static lar_status create_computer(lar_simulation *simulation, const lar_options *options,
+                                  lar_error *error) {
+    size_t nodes = (size_t)simulation->domain.model->mesh.node_count;
+    lar_status status = lar_computer_create(
+        &simulation->domain, &simulation->interactions, &simulation->state, &simulation->tools,
+        &simulation->list, options, &simulation->computer, error);
+    if (status) return status;
+    simulation->processors = simulation->computer->division.grid.count;
+    simulation->threads = simulation->computer->threads;
+    simulation->reporter = lar_calloc(nodes, sizeof *simulation->reporter);
+    if (!simulation->reporter) return lar_fail_memory(error, 4 * nodes, "the processors of nodes");
+    note_division(simulation);
+    return LAR_OK;
+}
+
 lar_status lar_simulation_create(const lar_model *model, const lar_options *options,
                                  lar_simulation **simulation, lar_error *error) {
     lar_options chosen = options ? *options : lar_options_default();
@@ -197,8 +222,7 @@ lar_status lar_simulation_create(const lar_model *model, const lar_options *opti
         status = lar_fail_memory(error, sizeof *made, "the simulation");
     if (!status) status = compile(model, &chosen, made, error);
     if (!status && lar_division_asked(&chosen))
-        status = lar_computer_create(&made->domain, &made->interactions, &made->state, &made->tools,
-                                     &made->list, &chosen, &made->computer, error);
+        status = create_computer(made, &chosen, error);
     else if (chosen.listener >= 0)
         close(chosen.listener); /* taken over, and nobody to use it */
     if (status)
@@ -211,6 +235,7 @@ lar_status lar_simulation_create(const lar_model *model, const lar_options *opti
 void lar_simulation_destroy(lar_simulation *simulation) {
     if (!simulation) return;
     lar_computer_destroy(simulation->computer);
+    free(simulation->reporter);
     if (simulation->scratch) {
         lar_measure_scratch_destroy(&simulation->scratch->measure);
         lar_field_plan_destroy(simulation->scratch->field);
@@ -318,7 +343,8 @@ static lar_status advance_portion(lar_simulation *simulation, uint64_t end, bool
     lar_status status = LAR_OK;
     if (computer) {
         uint64_t steps = end - lar_simulation_steps(simulation);
-        if (first) lar_computer_redivide(&simulation->computer, &simulation->domain);
+        if (first && lar_computer_redivide(&simulation->computer, &simulation->domain))
+            note_division(simulation);
         computer = simulation->computer;
         status = lar_computer_advance(computer, steps, first, callback, context, &simulation->fault,
                                       error);
@@ -439,12 +465,12 @@ const lar_state *lar_simulation_state(const lar_simulation *simulation) {
 
 int32_t lar_simulation_processors(const lar_simulation *simulation) {
     if (!simulation) return 0;
-    return simulation->computer ? simulation->computer->division.grid.count : 1;
+    return simulation->reporter ? simulation->processors : 1;
 }
 
 int32_t lar_simulation_threads(const lar_simulation *simulation) {
     if (!simulation) return 0;
-    return simulation->computer ? simulation->computer->threads : 1;
+    return simulation->reporter ? simulation->threads : 1;
 }
 
 uint64_t lar_simulation_steps(const lar_simulation *simulation) {

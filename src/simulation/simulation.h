@@ -29,16 +29,20 @@ struct lar_simulation {
     lar_tool_list list;
     lar_tools tools;
     lar_interval interval;  /* of an advance without a computer */
-    lar_computer *computer; /* NULL: lar_step advances the whole model */
-    lar_report report;      /* of the last advance, of all processors */
-    uint64_t report_steps;  /* how many steps that was */
-    double measured;        /* the most energy of the bodies when that was asked [J] */
-    double taken;           /* by contacts, as of the last report [J] */
-    int32_t sessions;       /* open on it: 0 or 1. Atomic */
-    int32_t held;           /* by the thread of a session, which alone may change it. Atomic */
-    int32_t calling;        /* a callback: 1 within an advance, 2 between two; then it may be looked
-                               at, and not be changed (within an advance of several processors or
-                               threads not even that). 0: no callback is under way */
+    lar_computer *computer; /* NULL: lar_step advances the whole model; another one after it was
+                               divided anew, so who looks from other threads looks here: */
+    int32_t processors, threads; /* of each processor; constant */
+    int32_t *reporter; /* [nodes of the model] the processor of each, atomic; NULL: there is one */
+    uint64_t redivisions;  /* atomic */
+    lar_report report;     /* of the last advance, of all processors */
+    uint64_t report_steps; /* how many steps that was */
+    double measured;       /* the most energy of the bodies when that was asked [J] */
+    double taken;          /* by contacts, as of the last report [J] */
+    int32_t sessions;      /* open on it: 0 or 1. Atomic */
+    int32_t held;          /* by the thread of a session, which alone may change it. Atomic */
+    int32_t calling;       /* a callback: 1 within an advance, 2 between two; then it may be looked
+                              at, and not be changed (within an advance of several processors or
+                              threads not even that). 0: no callback is under way */
 };
 
 /* The state as it is now: everything that looks at a simulation's state begins with this. */

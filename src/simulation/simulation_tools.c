@@ -425,7 +425,7 @@ uint64_t lar_simulation_divided_steps(const lar_simulation *simulation, int32_t 
 }
 
 uint64_t lar_simulation_redivisions(const lar_simulation *simulation) {
-    return simulation && simulation->computer ? simulation->computer->balance.times : 0;
+    return simulation ? __atomic_load_n(&simulation->redivisions, __ATOMIC_RELAXED) : 0;
 }
 
 /* What may be added is the share that the scene says, of the model's mass. */
