@@ -74,8 +74,7 @@ LAR_SETUP lar_status lar_tool_faces_create(const lar_model *model, const int32_t
         for (int32_t f = 0; f < surface->face_count; f++)
             if (mine(model, share, f)) add_face(model, local, marked, f, faces);
         for (int n = 2; n <= LAR_POINTS_ALONG_EDGE; n++)
-            for (int i = 0; i < n * n; i++)
-                lar_tool_contact_weights(i, n, faces->weights->of[n][i]);
+            lar_tool_contact_grid(n, &faces->weights->of[n]);
         status = lar_tool_faces_group(faces, error);
     }
     if (!status) {

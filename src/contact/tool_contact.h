@@ -27,7 +27,7 @@
 #include "contact/plane_contact.h"
 #include "contact/spares.h"
 #include "contact/touch_list.h"
-#include "mechanics/contact.h"
+#include "mechanics/face_contact.h"
 
 /* An advance may have any number of steps, and a force of one of them nearly 2^63 units. */
 __extension__ typedef __int128 lar_wide;
@@ -60,7 +60,7 @@ typedef struct lar_tool_contact_face {
 /* Weights of the corners in the points of a face, n x n of them (lar_tool_contact_points). */
 enum { LAR_POINTS_ALONG_EDGE = 6 };
 typedef struct lar_point_weights {
-    double of[LAR_POINTS_ALONG_EDGE + 1][LAR_POINTS_ALONG_EDGE * LAR_POINTS_ALONG_EDGE][4];
+    lar_face_grid of[LAR_POINTS_ALONG_EDGE + 1];
 } lar_point_weights;
 
 /* Neighbouring faces. */
@@ -193,6 +193,7 @@ lar_status lar_tool_faces_group(lar_tool_faces *faces, lar_error *error);
  * that touches has several inside. The weights of point 0 .. n n - 1. */
 int lar_tool_contact_points(const lar_tool_contact_face *face, double radius);
 void lar_tool_contact_weights(int point, int n, double weight[4]);
+void lar_tool_contact_grid(int n, lar_face_grid *grid);
 /* Corners of a face now [m], and the ball around them. */
 void lar_tool_contact_corners(const lar_tool_contact_face *face, const lar_state *state,
                               double x[4][3]);

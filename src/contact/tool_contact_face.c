@@ -17,6 +17,15 @@ void lar_tool_contact_weights(int point, int n, double weight[4]) {
     lar_face_weights((2 * (point % n) + 1.0) / n - 1, (2 * (point / n) + 1.0) / n - 1, weight);
 }
 
+void lar_tool_contact_grid(int n, lar_face_grid *grid) {
+    double weight[4];
+    grid->count = n * n;
+    for (int i = 0; i < LAR_FACE_GRID_MAX; i++) {
+        lar_tool_contact_weights(i < n * n ? i : n * n - 1, n, weight);
+        for (int a = 0; a < 4; a++) grid->weight[a][i] = weight[a];
+    }
+}
+
 double lar_tool_contact_point_mass(const lar_tool_contact_face *face, const double *mass, int n) {
     double min = INFINITY;
     for (int a = 0; a < 4; a++) min = fmin(min, mass[face->node[a]] * face->share[a]);
@@ -115,26 +124,36 @@ static double push_point(lar_tool_contact_patch *patch, const lar_contact_law *l
     return force;
 }
 
-/* A point of the grid against the tool's segments. */
-static void touch_point(lar_tool_contact_patch *patch, const lar_contact_law *law,
-                        const lar_segment_axis *axis, const double weight[4]) {
-    /* More than what rounding could bring in; whether a point is in the tool its depth says. */
-    const double within = patch->radius * patch->radius * (1 + 1e-9);
+/* A point of the grid in or close to segment s. */
+static void touch_point(lar_tool_contact_patch *patch, const lar_contact_law *law, int32_t s,
+                        const double weight[4]) {
     double x[3], normal[3], along;
     lar_face_mean((const double(*)[3])patch->x, weight, x);
-    for (int32_t s = 0; s < patch->body->count; s++) {
-        const lar_segment *segment = &patch->body->now[s];
-        double square = lar_segment_away(segment, &axis[s], x, normal, &along);
-        if (square < patch->min[s]) patch->min[s] = square;
-        if (!(square < within)) continue;
-        double depth = lar_segment_depth(segment, patch->radius, x, normal, &along);
-        if (!(depth > 0)) continue;
-        double share = facing(patch, normal, triangle_at(weight));
-        if (share == 0) continue;
-        patch->depth = fmax(patch->depth, share * depth);
-        patch->covered += fmin(1, depth / (WALL * patch->radius));
-        double force = push_point(patch, law, s, along, weight, normal, share * patch->mass, depth);
-        if (patch->touches) note_point(patch, s, weight, normal, force, share * depth);
+    double depth = lar_segment_depth(&patch->body->now[s], patch->radius, x, normal, &along);
+    if (!(depth > 0)) return;
+    double share = facing(patch, normal, triangle_at(weight));
+    if (share == 0) return;
+    patch->depth = fmax(patch->depth, share * depth);
+    patch->covered += fmin(1, depth / (WALL * patch->radius));
+    double force = push_point(patch, law, s, along, weight, normal, share * patch->mass, depth);
+    if (patch->touches) note_point(patch, s, weight, normal, force, share * depth);
+}
+
+/* All of the grid against the tool's segments. */
+static void touch_grid(lar_tool_contact_patch *patch, const lar_contact_law *law,
+                       const lar_face_grid *grid) {
+    /* More than what rounding could bring in; whether a point is in the tool its depth says. */
+    const double within = patch->radius * patch->radius * (1 + 1e-9);
+    uint64_t near[2] = {0};
+    for (int32_t s = 0; s < patch->body->count; s++)
+        near[s] = lar_face_grid_near(&patch->body->now[s], (const double(*)[3])patch->x, grid,
+                                     within, &patch->min[s]);
+    for (uint64_t any = near[0] | near[1]; any; any &= any - 1) {
+        int p = __builtin_ctzll(any);
+        double weight[4];
+        for (int a = 0; a < 4; a++) weight[a] = grid->weight[a][p];
+        for (int32_t s = 0; s < 2; s++)
+            if (near[s] >> p & 1) touch_point(patch, law, s, weight);
     }
 }
 
@@ -234,19 +253,13 @@ static double touch_walls(lar_tool_contact_patch *patch, const lar_contact_law *
 void lar_tool_contact_push_face(lar_tool_contact_patch *patch, const lar_contact_law *law,
                                 const double *mass, const lar_point_weights *weights) {
     const lar_tool_contact_face *face = patch->face;
-    const lar_tool_body *body = patch->body;
     int n = lar_tool_contact_points(face, patch->radius);
-    lar_segment_axis axis[2];
     patch->mass = lar_tool_contact_point_mass(face, mass, n);
     lar_face_normal((const double(*)[3])patch->x, patch->out);
     double size = lar_length(patch->out);
     for (int i = 0; i < 3; i++) patch->out[i] = size > 0 ? patch->out[i] / size : 0;
-    for (int32_t s = 0; s < body->count; s++) {
-        axis[s] = lar_segment_axis_of(&body->now[s]);
-        patch->min[s] = INFINITY;
-    }
-    for (int i = 0; i < n * n; i++) touch_point(patch, law, axis, weights->of[n][i]);
+    touch_grid(patch, law, &weights->of[n]);
     patch->closest = touch_walls(patch, law, mass, n);
-    for (int32_t s = 0; s < body->count; s++)
+    for (int32_t s = 0; s < patch->body->count; s++)
         patch->closest = fmin(patch->closest, sqrt(patch->min[s]) - patch->radius);
 }

@@ -16,6 +16,8 @@
 #define LAR_MECHANICS_CONTACT_H
 
 #include <math.h>
+#include <stdbool.h>
+#include <string.h>
 
 typedef struct lar_contact_law {
     double stiffness; /* k per mass moved [1/s^2] */
@@ -96,6 +98,11 @@ void lar_face_normal(const double x[4][3], double normal[3]);
 typedef struct lar_segment {
     double end[2][3];
 } lar_segment;
+
+/* A sphere's. */
+static inline bool lar_segment_is_point(const lar_segment *segment) {
+    return memcmp(segment->end[0], segment->end[1], sizeof segment->end[0]) == 0;
+}
 
 /* What many points need of a segment. */
 typedef struct lar_segment_axis {

@@ -24,6 +24,7 @@
 #define LAR_MECHANICS_FACE_CONTACT_H
 
 #include <stdbool.h>
+#include <stdint.h>
 
 #include "mechanics/contact.h"
 
@@ -90,6 +91,19 @@ typedef struct lar_face_segment {
 /* To each of its triangles. */
 void lar_face_segment_closest(const lar_segment *segment, const double corner[4][3],
                               lar_face_segment closest[4]);
+
+/* Points of a face by the weights of its corners, component by component. What fills the last four
+ * is the last point again. */
+enum { LAR_FACE_GRID_MAX = 36 };
+typedef struct lar_face_grid {
+    int32_t count, padding;
+    double weight[4][LAR_FACE_GRID_MAX];
+} lar_face_grid;
+
+/* Which of the points are closer to a segment than the square root of `within` [m^2], a bit each,
+ * and the square of the least distance of all; INFINITY where there are no numbers. */
+uint64_t lar_face_grid_near(const lar_segment *segment, const double corner[4][3],
+                            const lar_face_grid *grid, double within, double *least);
 
 /* A point of the surface that moves smoothly where the closest one jumps: the mean of the closest
  * points of all triangles that are about as close to x as the closest of all, `min` away. Adds

@@ -1,4 +1,5 @@
-/* The four triangles of a face (face_contact.h) seen from a point, all of them.
+/* The four triangles of a face (face_contact.h) seen from a point or a segment, all of them, and
+ * the points of a face's grid.
  *
  * One after the other, or beside each other in four lanes where the processor has them (AVX2): the
  * same operations in the same order, and so the same bits.
@@ -7,6 +8,8 @@
 #define LAR_MECHANICS_FACE_PARTS_H
 
 #include <stdbool.h>
+
+#include "mechanics/face_contact.h"
 
 /* Of triangle t, with corners t, t + 1 and the middle: */
 typedef struct lar_face_parts {
@@ -23,17 +26,33 @@ void lar_face_parts_one_by_one(const double x[3], const double corner[4][3], con
 double lar_face_before_one_by_one(const double x[3], const double corner[4][3],
                                   const double middle[3]);
 
-/* Both in lanes, of builds that have them. */
+/* Where a segment comes closest to each: lar_face_segment_closest. */
+void lar_face_segment_one_by_one(const lar_segment *segment, const double corner[4][3],
+                                 const double middle[3], lar_face_segment closest[4]);
+
+/* The points of a grid: lar_face_grid_near. */
+uint64_t lar_face_grid_one_by_one(const lar_segment *segment, const double corner[4][3],
+                                  const lar_face_grid *grid, double within, double *least);
+
+/* All in lanes, of builds that have them. */
 void lar_face_parts_in_lanes(const double x[3], const double corner[4][3], const double middle[3],
                              lar_face_parts *parts);
 double lar_face_before_in_lanes(const double x[3], const double corner[4][3],
                                 const double middle[3]);
+void lar_face_segment_in_lanes(const lar_segment *segment, const double corner[4][3],
+                               const double middle[3], lar_face_segment closest[4]);
+uint64_t lar_face_grid_in_lanes(const lar_segment *segment, const double corner[4][3],
+                                const lar_face_grid *grid, double within, double *least);
 
 /* What this processor takes. */
 typedef struct lar_face_finders {
     void (*parts)(const double x[3], const double corner[4][3], const double middle[3],
                   lar_face_parts *parts);
     double (*before)(const double x[3], const double corner[4][3], const double middle[3]);
+    void (*segment)(const lar_segment *segment, const double corner[4][3], const double middle[3],
+                    lar_face_segment closest[4]);
+    uint64_t (*grid)(const lar_segment *segment, const double corner[4][3],
+                     const lar_face_grid *grid, double within, double *least);
 } lar_face_finders;
 lar_face_finders lar_face_finders_here(void);
 

@@ -23,8 +23,7 @@ static void make(const double corner[4][3], lone_face *f) {
         f->mass[a] = 1e-3;
         memcpy(f->face.rest[a], corner[a], sizeof f->face.rest[a]);
     }
-    for (int n = 2; n <= LAR_POINTS_ALONG_EDGE; n++)
-        for (int i = 0; i < n * n; i++) lar_tool_contact_weights(i, n, f->weights.of[n][i]);
+    for (int n = 2; n <= LAR_POINTS_ALONG_EDGE; n++) lar_tool_contact_grid(n, &f->weights.of[n]);
 }
 
 /* How the face is pushed by a line from `tip` to `end`, along a unit direction [N]. */
