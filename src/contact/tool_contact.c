@@ -242,15 +242,20 @@ static void give(lar_tool_contact *contact, const lar_condition_context *context
                  int32_t tool, const double tip[3], const double x[4][3],
                  const double force[4][3]) {
     int32_t *at = &contact->loaded_at[f];
-    int64_t total[3] = {0};
-    lar_tool_sum *sum = &contact->sum[tool];
     lar_touch_list *touches = touches_of(contact, tool);
+    lar_tool_push push = {0};
+    double units[4][3];
+    int64_t whole[4][3];
+    bool breaks = false;
     for (int a = 0; a < 4; a++)
-        for (int i = 0; i < 3; i++) /* a run that is about to break; the element says why */
-            if (!(fabs(force[a][i] * context->scale) < 0x1p56)) {
-                if (touches) touches->pending = 0;
-                return;
-            }
+        for (int i = 0; i < 3; i++) {
+            units[a][i] = force[a][i] * context->scale;
+            breaks |= !(fabs(units[a][i]) < 0x1p56);
+        }
+    if (breaks) { /* a run that is about to break; the element says why */
+        if (touches) touches->pending = 0;
+        return;
+    }
     if (*at < 0) {
         *at = contact->loaded_count++;
         contact->loaded[*at] = (lar_tool_contact_force){.face = f};
@@ -258,22 +263,18 @@ static void give(lar_tool_contact *contact, const lar_condition_context *context
     lar_tool_contact_force *loaded = &contact->loaded[*at];
     for (int a = 0; a < 4; a++) {
         double arm[3];
-        int64_t whole[3];
         for (int i = 0; i < 3; i++) {
-            whole[i] = llrint(force[a][i] * context->scale);
-            loaded->force[a][i] += whole[i];
-            total[i] += whole[i];
+            whole[a][i] = llrint(units[a][i]);
+            loaded->force[a][i] += whole[a][i];
             arm[i] = x[a][i] - tip[i];
         }
-        lar_tool_sum_add(sum, context->shares, arm, whole);
+        lar_tool_push_add(&push, arm, whole[a]);
     }
+    lar_tool_sum_add(&contact->sum[tool], context->shares, &push);
     if (!touches) return;
+    const int64_t total[3] = {-push.force[0], -push.force[1], -push.force[2]};
     lar_touch_settle(touches, total, context->scale);
-    for (int a = 0; a < 4; a++) {
-        int64_t whole[3];
-        for (int i = 0; i < 3; i++) whole[i] = llrint(force[a][i] * context->scale);
-        lar_touch_push(touches, contact->faces->face[f].node[a], whole);
-    }
+    for (int a = 0; a < 4; a++) lar_touch_push(touches, contact->faces->face[f].node[a], whole[a]);
 }
 
 /* Nothing of a run that is about to break. */
@@ -305,7 +306,7 @@ static void touch_near(lar_tool_contact *contact, const lar_condition_context *c
         if (patch.touching == 0) continue;
         lar_tool_sum *sum = &contact->sum[tool];
         sum->touching += patch.touching;
-        sum->depth = fmax(sum->depth, patch.depth);
+        if (patch.depth > sum->depth) sum->depth = patch.depth;
         sum->squeeze += context->shares * whole_units(patch.squeeze * context->scale);
         for (int s = 0; s < 2; s++)
             sum->jaw[s] += context->shares * whole_units(patch.jaw[s] * context->scale);

@@ -198,12 +198,17 @@ void lar_tool_contact_grid(int n, lar_face_grid *grid);
 void lar_tool_contact_corners(const lar_tool_contact_face *face, const lar_state *state,
                               double x[4][3]);
 double lar_tool_contact_ball_of(const double x[4][3], double center[3]);
-/* Adds a force on the tissue [force units], `arm` from the tip, to what the tool feels. */
-static inline void lar_tool_sum_add(lar_tool_sum *sum, int32_t shares, const double arm[3],
-                                    const int64_t force[3]) {
+/* Forces on the corners of a face, each below 2^56 units, and what they turn about the tip, as sums
+ * of a tool count it. */
+typedef struct lar_tool_push {
+    int64_t force[3], torque[3], rest[3];
+} lar_tool_push;
+/* Adds a force on the tissue [force units], `arm` from the tip. */
+static inline void lar_tool_push_add(lar_tool_push *push, const double arm[3],
+                                     const int64_t force[3]) {
     double units[3];
     for (int i = 0; i < 3; i++) {
-        sum->force[i] -= shares * force[i];
+        push->force[i] -= force[i];
         units[i] = (double)force[i];
     }
     for (int i = 0; i < 3; i++) {
@@ -212,8 +217,16 @@ static inline void lar_tool_sum_add(lar_tool_sum *sum, int32_t shares, const dou
         if (!(fabs(torque) < 0x1p56)) continue; /* an arm beyond all places */
         int64_t whole = (int64_t)torque;
         whole -= (double)whole > torque; /* floor() without a call */
-        sum->torque[i] += shares * whole;
-        sum->rest[i] += shares * llrint((torque - (double)whole) / LAR_TORQUE_REST);
+        push->torque[i] += whole;
+        push->rest[i] += llrint((torque - (double)whole) / LAR_TORQUE_REST);
+    }
+}
+/* To what the tool feels. */
+static inline void lar_tool_sum_add(lar_tool_sum *sum, int32_t shares, const lar_tool_push *push) {
+    for (int i = 0; i < 3; i++) {
+        sum->force[i] += (lar_wide)shares * push->force[i];
+        sum->torque[i] += (lar_wide)shares * push->torque[i];
+        sum->rest[i] += shares * push->rest[i];
     }
 }
 /* The pose now, or `ahead` parts of a step later. `time_step`: of a whole step. */

@@ -6,6 +6,15 @@
 #include "base/vector.h"
 #include "mechanics/face_contact.h"
 
+/* fmin and fmax without a call, of a number `a`: what is no number is not taken. */
+static inline double smaller(double a, double b) {
+    return b < a ? b : a;
+}
+
+static inline double larger(double a, double b) {
+    return b > a ? b : a;
+}
+
 /* ---- points -------------------------------------------------------------------------------- */
 
 int lar_tool_contact_points(const lar_tool_contact_face *face, double radius) {
@@ -28,7 +37,7 @@ void lar_tool_contact_grid(int n, lar_face_grid *grid) {
 
 double lar_tool_contact_point_mass(const lar_tool_contact_face *face, const double *mass, int n) {
     double min = INFINITY;
-    for (int a = 0; a < 4; a++) min = fmin(min, mass[face->node[a]] * face->share[a]);
+    for (int a = 0; a < 4; a++) min = smaller(min, mass[face->node[a]] * face->share[a]);
     return 4 * min / (n * n);
 }
 
@@ -65,13 +74,15 @@ static void normal_of(const lar_tool_contact_patch *patch, int a, double normal[
 /* A point that has been passed by the middle of the tool sees a normal that would push it on, out
  * of the body: its face then looks the same way as the push. It is let go, smoothly where the push
  * goes along the face. A crumpled face looks elsewhere as a whole than where the point is, and
- * would let in what lies before it: of both, what keeps the tool outside counts. */
-static double facing(const lar_tool_contact_patch *patch, const double normal[3], int triangle) {
+ * would let in what lies before it: of both, what keeps the tool outside counts. `triangle`: -1,
+ * where its weights say. */
+static double facing(const lar_tool_contact_patch *patch, const double normal[3], int triangle,
+                     const double weight[4]) {
     double against = -lar_dot(normal, patch->out);
     if (against < 0.2) {
         double local[3];
-        normal_of(patch, triangle, local);
-        against = fmax(against, -lar_dot(normal, local));
+        normal_of(patch, triangle < 0 ? triangle_at(weight) : triangle, local);
+        against = larger(against, -lar_dot(normal, local));
     }
     return against <= 0 ? 0 : against < 0.2 ? 5 * against : 1;
 }
@@ -83,7 +94,7 @@ static const double LEAVES = 0.5, THROWN = 1.5;
 
 static double not_thrown(double rate) {
     double away = -rate - LEAVES;
-    return away <= 0 ? 1 : fmax(0, 1 - away / (THROWN - LEAVES));
+    return away <= 0 ? 1 : larger(0, 1 - away / (THROWN - LEAVES));
 }
 
 /* For who looks. `deep`: how deep the point counts as. */
@@ -126,15 +137,16 @@ static double push_point(lar_tool_contact_patch *patch, const lar_contact_law *l
 
 /* A point of the grid in or close to segment s. */
 static void touch_point(lar_tool_contact_patch *patch, const lar_contact_law *law, int32_t s,
-                        const double weight[4]) {
+                        const lar_segment_axis *axis, const double weight[4]) {
     double x[3], normal[3], along;
     lar_face_mean((const double(*)[3])patch->x, weight, x);
-    double depth = lar_segment_depth(&patch->body->now[s], patch->radius, x, normal, &along);
+    double depth =
+        lar_segment_depth_by(&patch->body->now[s], axis, patch->radius, x, normal, &along);
     if (!(depth > 0)) return;
-    double share = facing(patch, normal, triangle_at(weight));
+    double share = facing(patch, normal, -1, weight);
     if (share == 0) return;
-    patch->depth = fmax(patch->depth, share * depth);
-    patch->covered += fmin(1, depth / (WALL * patch->radius));
+    patch->depth = larger(patch->depth, share * depth);
+    patch->covered += smaller(1, depth / (WALL * patch->radius));
     double force = push_point(patch, law, s, along, weight, normal, share * patch->mass, depth);
     if (patch->touches) note_point(patch, s, weight, normal, force, share * depth);
 }
@@ -145,15 +157,18 @@ static void touch_grid(lar_tool_contact_patch *patch, const lar_contact_law *law
     /* More than what rounding could bring in; whether a point is in the tool its depth says. */
     const double within = patch->radius * patch->radius * (1 + 1e-9);
     uint64_t near[2] = {0};
-    for (int32_t s = 0; s < patch->body->count; s++)
+    lar_segment_axis axis[2];
+    for (int32_t s = 0; s < patch->body->count; s++) {
+        axis[s] = lar_segment_axis_of(&patch->body->now[s]);
         near[s] = lar_face_grid_near(&patch->body->now[s], (const double(*)[3])patch->x, grid,
                                      within, &patch->min[s]);
+    }
     for (uint64_t any = near[0] | near[1]; any; any &= any - 1) {
         int p = __builtin_ctzll(any);
         double weight[4];
         for (int a = 0; a < 4; a++) weight[a] = grid->weight[a][p];
         for (int32_t s = 0; s < 2; s++)
-            if (near[s] >> p & 1) touch_point(patch, law, s, weight);
+            if (near[s] >> p & 1) touch_point(patch, law, s, &axis[s], weight);
     }
 }
 
@@ -165,28 +180,24 @@ static double wall_mass(const lar_tool_contact_face *face, const double *mass,
                         const double weight[4]) {
     double max = INFINITY;
     for (int a = 0; a < 4; a++)
-        if (weight[a] > 0) max = fmin(max, mass[face->node[a]] * face->share[a] / weight[a]);
+        if (weight[a] > 0) max = smaller(max, mass[face->node[a]] * face->share[a] / weight[a]);
     return max;
 }
 
 /* What a triangle of the face has of the wall. */
 typedef struct wall_part {
-    lar_face_segment at;
     double share, count; /* facing; against those of the other triangles [m^2] */
 } wall_part;
 
-static wall_part part_of(const lar_tool_contact_patch *patch, int triangle,
-                         const lar_face_segment *at) {
+static wall_part part_of(const lar_tool_contact_patch *patch, int triangle, lar_face_segment *at) {
     double beyond = (1 - WALL) * patch->radius - at->distance;
-    wall_part part = {.at = *at};
-    if (!(beyond > 0)) return part;
+    if (!(beyond > 0)) return (wall_part){0};
     if (!(at->distance > 0)) { /* the middle line goes through the face: out the way it came */
-        normal_of(patch, triangle, part.at.normal);
-        for (int i = 0; i < 3; i++) part.at.normal[i] = -part.at.normal[i];
+        normal_of(patch, triangle, at->normal);
+        for (int i = 0; i < 3; i++) at->normal[i] = -at->normal[i];
     }
-    part.share = facing(patch, part.at.normal, triangle);
-    part.count = part.share * beyond * beyond;
-    return part;
+    double share = facing(patch, at->normal, triangle, at->weight);
+    return (wall_part){share, share * beyond * beyond};
 }
 
 /* The wall of one segment. Where a face is folded around a tool, two of its triangles are as close
@@ -202,19 +213,20 @@ static double touch_wall(lar_tool_contact_patch *patch, const lar_contact_law *l
     for (int t = 0; t < 4; t++) {
         parts[t] = part_of(patch, t, &closest[t]);
         all += parts[t].count;
-        min = fmin(min, closest[t].distance);
+        min = smaller(min, closest[t].distance);
     }
     for (int t = 0; t < 4; t++) {
         const wall_part *part = &parts[t];
-        const double depth = patch->radius - part->at.distance;
+        const lar_face_segment *at = &closest[t];
+        const double depth = patch->radius - at->distance;
         if (!(part->count > 0)) continue;
-        patch->depth = fmax(patch->depth, part->share * depth);
+        patch->depth = larger(patch->depth, part->share * depth);
         double share = free_share * part->share * part->count / all;
-        double force = push_point(patch, law, s, part->at.along, part->at.weight, part->at.normal,
-                                  share * wall_mass(patch->face, mass, part->at.weight),
+        double force = push_point(patch, law, s, at->along, at->weight, at->normal,
+                                  share * wall_mass(patch->face, mass, at->weight),
                                   depth - WALL * patch->radius);
         if (patch->touches)
-            note_point(patch, s, part->at.weight, part->at.normal, force, part->share * depth);
+            note_point(patch, s, at->weight, at->normal, force, part->share * depth);
     }
     return min - (1 - WALL) * patch->radius;
 }
@@ -226,7 +238,7 @@ static double spacing(const lar_tool_contact_patch *patch, int n) {
     for (int a = 0; a < 4; a++) {
         double edge[3];
         lar_minus(patch->x[(a + 1) % 4], patch->x[a], edge);
-        longest = fmax(longest, lar_dot(edge, edge));
+        longest = larger(longest, lar_dot(edge, edge));
     }
     return sqrt(0.5 * longest) / n;
 }
@@ -243,7 +255,7 @@ static double touch_walls(lar_tool_contact_patch *patch, const lar_contact_law *
         double own = distance - between + WALL * patch->radius;
         if (own < 0)
             own = free_share > 0 ? touch_wall(patch, law, mass, s, free_share) : -patch->radius;
-        gap = fmin(gap, own);
+        gap = smaller(gap, own);
     }
     return gap;
 }
@@ -261,5 +273,5 @@ void lar_tool_contact_push_face(lar_tool_contact_patch *patch, const lar_contact
     touch_grid(patch, law, &weights->of[n]);
     patch->closest = touch_walls(patch, law, mass, n);
     for (int32_t s = 0; s < patch->body->count; s++)
-        patch->closest = fmin(patch->closest, sqrt(patch->min[s]) - patch->radius);
+        patch->closest = smaller(patch->closest, sqrt(patch->min[s]) - patch->radius);
 }

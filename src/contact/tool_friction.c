@@ -234,8 +234,10 @@ static void rub_node(lar_tool_contact *contact, const lar_condition_context *con
     if (contact->touches && contact->touches->tool == tool->tool)
         note_rub(contact->touches, local, x, press, rubbed->force, context->scale);
     double arm[3];
+    lar_tool_push felt = {0};
     lar_minus(x, tool->now.position, arm);
-    lar_tool_sum_add(&tool->felt, 1, arm, rubbed->force);
+    lar_tool_push_add(&felt, arm, rubbed->force);
+    lar_tool_sum_add(&tool->felt, 1, &felt);
 }
 
 /* What a tool has felt of the step, in all shares of it. */

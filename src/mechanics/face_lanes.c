@@ -156,7 +156,8 @@ typedef struct candidate {
     four along, own, next, rest;
 } candidate;
 
-static inline candidate candidate_of(const triangles *of, four along) {
+/* Not inlined: three of it take room, and no time. */
+static __attribute__((noinline)) candidate candidate_of(const triangles *of, four along) {
     four wb, wc;
     closest_of(of, &wb, &wc);
     four rest = 0.25 * wc;

@@ -18,21 +18,31 @@ typedef struct lar_face_parts {
     double height[4];    /* over its plane there [m]; 0 where it has no area */
 } lar_face_parts;
 
+/* Where there are lanes hardly any processor does without: small rather than fast. */
+#if defined(LAR_HAVE_FACE_LANES)
+#define LAR_ONE_BY_ONE __attribute__((cold))
+#else
+#define LAR_ONE_BY_ONE
+#endif
+
 /* `x`: the point [m]; `middle`: the mean of the corners. */
-void lar_face_parts_one_by_one(const double x[3], const double corner[4][3], const double middle[3],
-                               lar_face_parts *parts);
+LAR_ONE_BY_ONE void lar_face_parts_one_by_one(const double x[3], const double corner[4][3],
+                                              const double middle[3], lar_face_parts *parts);
 
 /* How much x and the corners may move against each other: lar_face_before. */
-double lar_face_before_one_by_one(const double x[3], const double corner[4][3],
-                                  const double middle[3]);
+LAR_ONE_BY_ONE double lar_face_before_one_by_one(const double x[3], const double corner[4][3],
+                                                 const double middle[3]);
 
 /* Where a segment comes closest to each: lar_face_segment_closest. */
-void lar_face_segment_one_by_one(const lar_segment *segment, const double corner[4][3],
-                                 const double middle[3], lar_face_segment closest[4]);
+LAR_ONE_BY_ONE void lar_face_segment_one_by_one(const lar_segment *segment,
+                                                const double corner[4][3], const double middle[3],
+                                                lar_face_segment closest[4]);
 
 /* The points of a grid: lar_face_grid_near. */
-uint64_t lar_face_grid_one_by_one(const lar_segment *segment, const double corner[4][3],
-                                  const lar_face_grid *grid, double within, double *least);
+LAR_ONE_BY_ONE uint64_t lar_face_grid_one_by_one(const lar_segment *segment,
+                                                 const double corner[4][3],
+                                                 const lar_face_grid *grid, double within,
+                                                 double *least);
 
 /* All in lanes, of builds that have them. */
 void lar_face_parts_in_lanes(const double x[3], const double corner[4][3], const double middle[3],
