@@ -240,7 +240,7 @@ static lar_touch_list *touches_of(const lar_tool_contact *contact, int32_t tool)
  * between them. */
 static void give(lar_tool_contact *contact, const lar_condition_context *context, int32_t f,
                  int32_t tool, const double tip[3], const double x[4][3],
-                 const double force[4][3]) {
+                 const double force[3][4]) {
     int32_t *at = &contact->loaded_at[f];
     lar_touch_list *touches = touches_of(contact, tool);
     lar_tool_push push = {0};
@@ -249,7 +249,7 @@ static void give(lar_tool_contact *contact, const lar_condition_context *context
     bool breaks = false;
     for (int a = 0; a < 4; a++)
         for (int i = 0; i < 3; i++) {
-            units[a][i] = force[a][i] * context->scale;
+            units[a][i] = force[i][a] * context->scale;
             breaks |= !(fabs(units[a][i]) < 0x1p56);
         }
     if (breaks) { /* a run that is about to break; the element says why */
@@ -311,10 +311,10 @@ static void touch_near(lar_tool_contact *contact, const lar_condition_context *c
         for (int s = 0; s < 2; s++)
             sum->jaw[s] += context->shares * whole_units(patch.jaw[s] * context->scale);
         give(contact, context, vicinity->near[i], tool, vicinity->body.now[0].end[0],
-             (const double(*)[3])patch.x, (const double(*)[3])patch.force);
+             (const double(*)[3])patch.x, (const double(*)[4])patch.force);
         if (contact->list->tool[tool].friction > 0)
             lar_tool_friction_press(contact, context, contact->list->tool[tool].friction,
-                                    patch.face, (const double(*)[3])patch.force);
+                                    patch.face, (const double(*)[4])patch.force);
     }
 }
 
@@ -338,7 +338,7 @@ static void grasp_point(lar_tool_contact *contact, const lar_condition_context *
     const lar_tool_contact_face *face = &contact->faces->face[contact->faces->face_of[grasp->face]];
     const lar_tool *tool = &contact->list->tool[grasp->tool];
     double dt = context->time_step, now[3], next[3], x[4][3], v[4][3], point[3], speed[3];
-    double pull[3], force[4][3], length = 0, slack = 0;
+    double pull[3], force[3][4], length = 0, slack = 0;
     place_anchor(&motion->now, grasp->anchor, now);
     place_anchor(&motion->next, grasp->anchor, next);
     lar_tool_contact_corners(face, state, x);
@@ -356,7 +356,7 @@ static void grasp_point(lar_tool_contact *contact, const lar_condition_context *
     double most = stiffness * tool->radius * lar_division_reach(&contact->tools->division);
     double share = length > most ? most / length : 1;
     for (int a = 0; a < 4; a++)
-        for (int i = 0; i < 3; i++) force[a][i] = grasp->weight[a] * share * pull[i];
+        for (int i = 0; i < 3; i++) force[i][a] = grasp->weight[a] * share * pull[i];
     if (touches_of(contact, grasp->tool)) {
         lar_touch touch = {.kind = LAR_TOUCH_HELD, .face = grasp->face};
         for (int i = 0; i < 3; i++) {
@@ -367,7 +367,7 @@ static void grasp_point(lar_tool_contact *contact, const lar_condition_context *
         lar_touch_note(contact->touches, &touch);
     }
     give(contact, context, contact->faces->face_of[grasp->face], grasp->tool, motion->now.position,
-         (const double(*)[3])x, (const double(*)[3])force);
+         (const double(*)[3])x, (const double(*)[4])force);
     double jaws = tool->length + 2 * tool->radius; /* farther away it has slipped out of them */
     contact->sum[grasp->tool].held++;
     if (tool->shape == LAR_TOOL_HAND || slack <= jaws * jaws) contact->sum[grasp->tool].clings = 1;

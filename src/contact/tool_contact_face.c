@@ -71,19 +71,24 @@ static void normal_of(const lar_tool_contact_patch *patch, int a, double normal[
     for (int i = 0; i < 3; i++) normal[i] = length > 0 ? normal[i] / length : 0;
 }
 
+/* At most how squarely one of both looks against a push: the face as a whole, `against`, or the
+ * triangle; -1: the one where the weights say. */
+__attribute__((noinline)) static double against_of(const lar_tool_contact_patch *patch,
+                                                   const double normal[3], double against,
+                                                   int triangle, const double weight[4]) {
+    double local[3];
+    normal_of(patch, triangle < 0 ? triangle_at(weight) : triangle, local);
+    return larger(against, -lar_dot(normal, local));
+}
+
 /* A point that has been passed by the middle of the tool sees a normal that would push it on, out
  * of the body: its face then looks the same way as the push. It is let go, smoothly where the push
  * goes along the face. A crumpled face looks elsewhere as a whole than where the point is, and
- * would let in what lies before it: of both, what keeps the tool outside counts. `triangle`: -1,
- * where its weights say. */
+ * would let in what lies before it: of both, what keeps the tool outside counts. */
 static double facing(const lar_tool_contact_patch *patch, const double normal[3], int triangle,
                      const double weight[4]) {
     double against = -lar_dot(normal, patch->out);
-    if (against < 0.2) {
-        double local[3];
-        normal_of(patch, triangle < 0 ? triangle_at(weight) : triangle, local);
-        against = larger(against, -lar_dot(normal, local));
-    }
+    if (against < 0.2) against = against_of(patch, normal, against, triangle, weight);
     return against <= 0 ? 0 : against < 0.2 ? 5 * against : 1;
 }
 
@@ -124,8 +129,11 @@ static double push_point(lar_tool_contact_patch *patch, const lar_contact_law *l
         rate += normal[i] * ((begin + along * (end - begin)) * patch->rate_of - v[i]);
     }
     double force = not_thrown(rate) * lar_contact_force(law, mass, depth, rate);
-    for (int a = 0; a < 4; a++)
-        for (int i = 0; i < 3; i++) patch->force[a][i] += weight[a] * force * normal[i];
+    const double n[3] = {normal[0], normal[1], normal[2]};
+    double share[4];
+    for (int a = 0; a < 4; a++) share[a] = weight[a] * force;
+    for (int i = 0; i < 3; i++)
+        for (int a = 0; a < 4; a++) patch->force[i][a] += share[a] * n[i];
     if (patch->body->count == 2) {
         double outwards = lar_dot(normal, patch->body->outward[s]);
         patch->squeeze -= force * along * outwards;
@@ -135,19 +143,20 @@ static double push_point(lar_tool_contact_patch *patch, const lar_contact_law *l
     return force;
 }
 
-/* A point of the grid in or close to segment s. */
+/* A point of the grid that is in segment s or close to it. */
 static void touch_point(lar_tool_contact_patch *patch, const lar_contact_law *law, int32_t s,
-                        const lar_segment_axis *axis, const double weight[4]) {
-    double x[3], normal[3], along;
-    lar_face_mean((const double(*)[3])patch->x, weight, x);
-    double depth =
-        lar_segment_depth_by(&patch->body->now[s], axis, patch->radius, x, normal, &along);
-    if (!(depth > 0)) return;
+                        const lar_face_grid *grid, const lar_face_near *near, int p) {
+    double distance = sqrt(near->square[p]), depth = patch->radius - distance;
+    double normal[3], weight[4];
+    if (!(distance > 0) || !(depth > 0)) return;
+    for (int i = 0; i < 3; i++) normal[i] = near->away[i][p] / distance;
+    for (int a = 0; a < 4; a++) weight[a] = grid->weight[a][p];
     double share = facing(patch, normal, -1, weight);
     if (share == 0) return;
     patch->depth = larger(patch->depth, share * depth);
     patch->covered += smaller(1, depth / (WALL * patch->radius));
-    double force = push_point(patch, law, s, along, weight, normal, share * patch->mass, depth);
+    double force =
+        push_point(patch, law, s, near->along[p], weight, normal, share * patch->mass, depth);
     if (patch->touches) note_point(patch, s, weight, normal, force, share * depth);
 }
 
@@ -156,19 +165,17 @@ static void touch_grid(lar_tool_contact_patch *patch, const lar_contact_law *law
                        const lar_face_grid *grid) {
     /* More than what rounding could bring in; whether a point is in the tool its depth says. */
     const double within = patch->radius * patch->radius * (1 + 1e-9);
-    uint64_t near[2] = {0};
-    lar_segment_axis axis[2];
+    lar_face_near near[2];
+    near[1].points = 0;
     for (int32_t s = 0; s < patch->body->count; s++) {
-        axis[s] = lar_segment_axis_of(&patch->body->now[s]);
-        near[s] = lar_face_grid_near(&patch->body->now[s], (const double(*)[3])patch->x, grid,
-                                     within, &patch->min[s]);
+        lar_face_grid_near(&patch->body->now[s], (const double(*)[3])patch->x, grid, within,
+                           &near[s]);
+        patch->min[s] = near[s].least;
     }
-    for (uint64_t any = near[0] | near[1]; any; any &= any - 1) {
+    for (uint64_t any = near[0].points | near[1].points; any; any &= any - 1) {
         int p = __builtin_ctzll(any);
-        double weight[4];
-        for (int a = 0; a < 4; a++) weight[a] = grid->weight[a][p];
         for (int32_t s = 0; s < 2; s++)
-            if (near[s] >> p & 1) touch_point(patch, law, s, &axis[s], weight);
+            if (near[s].points >> p & 1) touch_point(patch, law, s, grid, &near[s], p);
     }
 }
 

@@ -422,29 +422,32 @@ void lar_face_segment_closest(const lar_segment *segment, const double corner[4]
 
 /* ---- grids ---------------------------------------------------------------------------------- */
 
-uint64_t lar_face_grid_one_by_one(const lar_segment *segment, const double corner[4][3],
-                                  const lar_face_grid *grid, double within, double *least) {
+void lar_face_grid_one_by_one(const lar_segment *segment, const double corner[4][3],
+                              const lar_face_grid *grid, double within, lar_face_near *near) {
     const lar_segment_axis axis = lar_segment_axis_of(segment);
-    uint64_t near = 0;
-    double min = INFINITY;
+    near->points = 0;
+    near->least = INFINITY;
     for (int p = 0; p < grid->count; p++) {
-        double weight[4], x[3], away[3], along;
+        double weight[4], x[3], away[3];
         for (int a = 0; a < 4; a++) weight[a] = grid->weight[a][p];
         lar_face_mean(corner, weight, x);
-        double square = lar_segment_away(segment, &axis, x, away, &along);
-        if (square < min) min = square;
-        if (square < within) near |= UINT64_C(1) << p;
+        double square = lar_segment_away(segment, &axis, x, away, &near->along[p]);
+        for (int i = 0; i < 3; i++) near->away[i][p] = away[i];
+        near->square[p] = square;
+        if (square < near->least) near->least = square;
+        if (square < within) near->points |= UINT64_C(1) << p;
     }
-    *least = min;
-    return near;
 }
 
-uint64_t lar_face_grid_near(const lar_segment *segment, const double corner[4][3],
-                            const lar_face_grid *grid, double within, double *least) {
+void lar_face_grid_near(const lar_segment *segment, const double corner[4][3],
+                        const lar_face_grid *grid, double within, lar_face_near *near) {
 #if defined(LAR_HAVE_FACE_LANES)
-    if (lar_face_lanes()) return lar_face_grid_in_lanes(segment, corner, grid, within, least);
+    if (lar_face_lanes()) {
+        lar_face_grid_in_lanes(segment, corner, grid, within, near);
+        return;
+    }
 #endif
-    return lar_face_grid_one_by_one(segment, corner, grid, within, least);
+    lar_face_grid_one_by_one(segment, corner, grid, within, near);
 }
 
 /* ---- smoothly from face to face ------------------------------------------------------------- */

@@ -100,10 +100,16 @@ typedef struct lar_face_grid {
     double weight[4][LAR_FACE_GRID_MAX];
 } lar_face_grid;
 
-/* Which of the points are closer to a segment than the square root of `within` [m^2], a bit each,
- * and the square of the least distance of all; INFINITY where there are no numbers. */
-uint64_t lar_face_grid_near(const lar_segment *segment, const double corner[4][3],
-                            const lar_face_grid *grid, double within, double *least);
+/* How they stand to a segment. */
+typedef struct lar_face_near {
+    uint64_t points; /* which are near it, a bit each; and of these, as lar_segment_away: */
+    double away[3][LAR_FACE_GRID_MAX], along[LAR_FACE_GRID_MAX], square[LAR_FACE_GRID_MAX];
+    double least; /* square of the least distance of all; INFINITY: there are no numbers [m^2] */
+} lar_face_near;
+
+/* Near: closer than the square root of `within` [m^2]. */
+void lar_face_grid_near(const lar_segment *segment, const double corner[4][3],
+                        const lar_face_grid *grid, double within, lar_face_near *near);
 
 /* A point of the surface that moves smoothly where the closest one jumps: the mean of the closest
  * points of all triangles that are about as close to x as the closest of all, `min` away. Adds

@@ -272,31 +272,36 @@ void lar_face_segment_in_lanes(const lar_segment *segment, const double corner[4
 
 /* ---- grids ---------------------------------------------------------------------------------- */
 
-uint64_t lar_face_grid_in_lanes(const lar_segment *segment, const double corner[4][3],
-                                const lar_face_grid *grid, double within, double *least) {
+void lar_face_grid_in_lanes(const lar_segment *segment, const double corner[4][3],
+                            const lar_face_grid *grid, double within, lar_face_near *near) {
     const lar_segment_axis axis = lar_segment_axis_of(segment);
-    uint64_t near = 0;
+    uint64_t points = 0;
     four min = all(INFINITY);
     for (int p = 0; p < grid->count; p += 4) {
-        four weight[4], from[3], dot = all(0), square = all(0);
+        four weight[4], away[3], dot = all(0), square = all(0);
         for (int a = 0; a < 4; a++) weight[a] = *(const four_anywhere *)&grid->weight[a][p];
         for (int i = 0; i < 3; i++) {
-            from[i] = ((weight[0] * corner[0][i] + weight[1] * corner[1][i]) +
+            away[i] = ((weight[0] * corner[0][i] + weight[1] * corner[1][i]) +
                        (weight[2] * corner[2][i] + weight[3] * corner[3][i])) -
                       segment->end[0][i];
-            dot += axis.way[i] * from[i];
+            dot += axis.way[i] * away[i];
         }
         four t = choose(dot < axis.square, dot / axis.square, all(1));
         t = choose((dot > 0) & (all(axis.square) > 0), t, all(0));
         for (int i = 0; i < 3; i++) {
-            four away = from[i] - t * axis.way[i];
-            square += away * away;
+            away[i] -= t * axis.way[i];
+            square += away[i] * away[i];
         }
         min = choose(square < min, square, min);
-        near |= (uint64_t)__builtin_ia32_movmskpd256((four)(square < within)) << p;
+        unsigned some = (unsigned)__builtin_ia32_movmskpd256((four)(square < within));
+        if (!some) continue;
+        points |= (uint64_t)some << p;
+        for (int i = 0; i < 3; i++) *(four_anywhere *)&near->away[i][p] = away[i];
+        *(four_anywhere *)&near->along[p] = t;
+        *(four_anywhere *)&near->square[p] = square;
     }
-    *least = min[0];
+    near->points = points & ((UINT64_C(1) << grid->count) - 1);
+    near->least = min[0];
     for (int t = 1; t < 4; t++)
-        if (min[t] < *least) *least = min[t];
-    return near & ((UINT64_C(1) << grid->count) - 1);
+        if (min[t] < near->least) near->least = min[t];
 }

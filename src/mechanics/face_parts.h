@@ -39,10 +39,9 @@ LAR_ONE_BY_ONE void lar_face_segment_one_by_one(const lar_segment *segment,
                                                 lar_face_segment closest[4]);
 
 /* The points of a grid: lar_face_grid_near. */
-LAR_ONE_BY_ONE uint64_t lar_face_grid_one_by_one(const lar_segment *segment,
-                                                 const double corner[4][3],
-                                                 const lar_face_grid *grid, double within,
-                                                 double *least);
+LAR_ONE_BY_ONE void lar_face_grid_one_by_one(const lar_segment *segment, const double corner[4][3],
+                                             const lar_face_grid *grid, double within,
+                                             lar_face_near *near);
 
 /* All in lanes, of builds that have them. */
 void lar_face_parts_in_lanes(const double x[3], const double corner[4][3], const double middle[3],
@@ -51,8 +50,8 @@ double lar_face_before_in_lanes(const double x[3], const double corner[4][3],
                                 const double middle[3]);
 void lar_face_segment_in_lanes(const lar_segment *segment, const double corner[4][3],
                                const double middle[3], lar_face_segment closest[4]);
-uint64_t lar_face_grid_in_lanes(const lar_segment *segment, const double corner[4][3],
-                                const lar_face_grid *grid, double within, double *least);
+void lar_face_grid_in_lanes(const lar_segment *segment, const double corner[4][3],
+                            const lar_face_grid *grid, double within, lar_face_near *near);
 
 /* What this processor takes. */
 typedef struct lar_face_finders {
@@ -61,8 +60,8 @@ typedef struct lar_face_finders {
     double (*before)(const double x[3], const double corner[4][3], const double middle[3]);
     void (*segment)(const lar_segment *segment, const double corner[4][3], const double middle[3],
                     lar_face_segment closest[4]);
-    uint64_t (*grid)(const lar_segment *segment, const double corner[4][3],
-                     const lar_face_grid *grid, double within, double *least);
+    void (*grid)(const lar_segment *segment, const double corner[4][3], const lar_face_grid *grid,
+                 double within, lar_face_near *near);
 } lar_face_finders;
 lar_face_finders lar_face_finders_here(void);
 

@@ -39,7 +39,7 @@ static double pushed(lone_face *f, const double tip[3], const double end[3],
     lar_tool_contact_push_face(&patch, &law, f->mass, &f->weights);
     double sum = 0;
     for (int a = 0; a < 4; a++)
-        for (int i = 0; i < 3; i++) sum += patch.force[a][i] * direction[i];
+        for (int i = 0; i < 3; i++) sum += patch.force[i][a] * direction[i];
     return sum;
 }
 
