@@ -248,6 +248,7 @@ static void give(lar_tool_contact *contact, const lar_condition_context *context
     int64_t whole[4][3];
     bool breaks = false;
     for (int a = 0; a < 4; a++)
+#pragma GCC unroll 3
         for (int i = 0; i < 3; i++) {
             units[a][i] = force[i][a] * context->scale;
             breaks |= !(fabs(units[a][i]) < 0x1p56);
@@ -263,6 +264,7 @@ static void give(lar_tool_contact *contact, const lar_condition_context *context
     lar_tool_contact_force *loaded = &contact->loaded[*at];
     for (int a = 0; a < 4; a++) {
         double arm[3];
+#pragma GCC unroll 3
         for (int i = 0; i < 3; i++) {
             whole[a][i] = llrint(units[a][i]);
             loaded->force[a][i] += whole[a][i];
@@ -435,6 +437,7 @@ static void add_forces(const lar_tool_contact *contact, lar_state *state) {
     for (int32_t i = 0; i < contact->loaded_count; i++) {
         const lar_tool_contact_force *loaded = &contact->loaded[i];
         for (int a = 0; a < 4; a++)
+#pragma GCC unroll 3
             for (int k = 0; k < 3; k++)
                 state->force[lar_state_at(state, contact->faces->face[loaded->face].node[a], k)] -=
                     loaded->force[a][k];
@@ -468,6 +471,7 @@ void lar_tool_contact_half_work(const lar_tool_contact *contact,
     for (int32_t i = 0; i < contact->loaded_count; i++) {
         const lar_tool_contact_force *loaded = &contact->loaded[i];
         for (int a = 0; a < 4; a++)
+#pragma GCC unroll 3
             for (int k = 0; k < 3; k++)
                 work +=
                     (double)loaded->force[a][k] *

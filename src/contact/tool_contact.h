@@ -207,10 +207,12 @@ typedef struct lar_tool_push {
 static inline void lar_tool_push_add(lar_tool_push *push, const double arm[3],
                                      const int64_t force[3]) {
     double units[3];
+#pragma GCC unroll 3
     for (int i = 0; i < 3; i++) {
         push->force[i] -= force[i];
         units[i] = (double)force[i];
     }
+#pragma GCC unroll 3
     for (int i = 0; i < 3; i++) {
         int j = (i + 1) % 3, k = (i + 2) % 3;
         double torque = -(arm[j] * units[k] - arm[k] * units[j]);

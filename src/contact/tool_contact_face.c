@@ -26,7 +26,7 @@ void lar_tool_contact_weights(int point, int n, double weight[4]) {
     lar_face_weights((2 * (point % n) + 1.0) / n - 1, (2 * (point / n) + 1.0) / n - 1, weight);
 }
 
-void lar_tool_contact_grid(int n, lar_face_grid *grid) {
+LAR_SETUP void lar_tool_contact_grid(int n, lar_face_grid *grid) {
     double weight[4];
     grid->count = n * n;
     for (int i = 0; i < LAR_FACE_GRID_MAX; i++) {
@@ -132,8 +132,8 @@ static double push_point(lar_tool_contact_patch *patch, const lar_contact_law *l
     const double n[3] = {normal[0], normal[1], normal[2]};
     double share[4];
     for (int a = 0; a < 4; a++) share[a] = weight[a] * force;
-    for (int i = 0; i < 3; i++)
-        for (int a = 0; a < 4; a++) patch->force[i][a] += share[a] * n[i];
+    for (int a = 0; a < 4; a++)
+        for (int i = 0; i < 3; i++) patch->force[i][a] += share[a] * n[i];
     if (patch->body->count == 2) {
         double outwards = lar_dot(normal, patch->body->outward[s]);
         patch->squeeze -= force * along * outwards;

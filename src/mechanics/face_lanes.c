@@ -274,22 +274,28 @@ void lar_face_segment_in_lanes(const lar_segment *segment, const double corner[4
 
 void lar_face_grid_in_lanes(const lar_segment *segment, const double corner[4][3],
                             const lar_face_grid *grid, double within, lar_face_near *near) {
-    const lar_segment_axis axis = lar_segment_axis_of(segment);
+    const int count = grid->count;
     uint64_t points = 0;
-    four min = all(INFINITY);
-    for (int p = 0; p < grid->count; p += 4) {
+    four x[4][3], from[3], way[3], whole = all(0), min = all(INFINITY);
+    for (int i = 0; i < 3; i++) {
+        for (int a = 0; a < 4; a++) x[a][i] = all(corner[a][i]);
+        from[i] = all(segment->end[0][i]);
+        way[i] = all(segment->end[1][i] - segment->end[0][i]);
+        whole += way[i] * way[i];
+    }
+    for (int p = 0; p < count; p += 4) { /* lar_face_mean, lar_segment_away */
         four weight[4], away[3], dot = all(0), square = all(0);
         for (int a = 0; a < 4; a++) weight[a] = *(const four_anywhere *)&grid->weight[a][p];
         for (int i = 0; i < 3; i++) {
-            away[i] = ((weight[0] * corner[0][i] + weight[1] * corner[1][i]) +
-                       (weight[2] * corner[2][i] + weight[3] * corner[3][i])) -
-                      segment->end[0][i];
-            dot += axis.way[i] * away[i];
+            away[i] = ((weight[0] * x[0][i] + weight[1] * x[1][i]) +
+                       (weight[2] * x[2][i] + weight[3] * x[3][i])) -
+                      from[i];
+            dot += way[i] * away[i];
         }
-        four t = choose(dot < axis.square, dot / axis.square, all(1));
-        t = choose((dot > 0) & (all(axis.square) > 0), t, all(0));
+        four t = choose(dot < whole, dot / whole, all(1));
+        t = choose((dot > 0) & (whole > 0), t, all(0));
         for (int i = 0; i < 3; i++) {
-            away[i] -= t * axis.way[i];
+            away[i] -= t * way[i];
             square += away[i] * away[i];
         }
         min = choose(square < min, square, min);
@@ -300,8 +306,8 @@ void lar_face_grid_in_lanes(const lar_segment *segment, const double corner[4][3
         *(four_anywhere *)&near->along[p] = t;
         *(four_anywhere *)&near->square[p] = square;
     }
-    near->points = points & ((UINT64_C(1) << grid->count) - 1);
-    near->least = min[0];
-    for (int t = 1; t < 4; t++)
-        if (min[t] < near->least) near->least = min[t];
+    double least = min[0];
+    for (int t = 1; t < 4; t++) least = min[t] < least ? min[t] : least;
+    near->points = points & ((UINT64_C(1) << count) - 1);
+    near->least = least;
 }
