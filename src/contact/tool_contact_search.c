@@ -7,6 +7,7 @@
 
 static double square_between(const double a[3], const double b[3]) {
     double square = 0;
+#pragma GCC unroll 3
     for (int i = 0; i < 3; i++) square += (a[i] - b[i]) * (a[i] - b[i]);
     return square;
 }
@@ -14,12 +15,14 @@ static double square_between(const double a[3], const double b[3]) {
 void lar_tool_contact_corners(const lar_tool_contact_face *face, const lar_state *state,
                               double x[4][3]) {
     for (int a = 0; a < 4; a++)
+#pragma GCC unroll 3
         for (int i = 0; i < 3; i++)
             x[a][i] = face->rest[a][i] + state->u[lar_state_at(state, face->node[a], i)];
 }
 
 double lar_tool_contact_ball_of(const double x[4][3], double center[3]) {
     double most = 0;
+#pragma GCC unroll 3
     for (int i = 0; i < 3; i++) center[i] = 0.25 * ((x[0][i] + x[1][i]) + (x[2][i] + x[3][i]));
     for (int a = 0; a < 4; a++) {
         double square = square_between(center, x[a]);

@@ -111,6 +111,7 @@ typedef struct lar_segment_axis {
 
 static inline lar_segment_axis lar_segment_axis_of(const lar_segment *segment) {
     lar_segment_axis axis = {.square = 0};
+#pragma GCC unroll 3
     for (int i = 0; i < 3; i++) {
         axis.way[i] = segment->end[1][i] - segment->end[0][i];
         axis.square += axis.way[i] * axis.way[i];
@@ -123,12 +124,14 @@ static inline lar_segment_axis lar_segment_axis_of(const lar_segment *segment) {
 static inline double lar_segment_away(const lar_segment *segment, const lar_segment_axis *axis,
                                       const double point[3], double away[3], double *along) {
     double from[3], dot = 0, square = 0;
+#pragma GCC unroll 3
     for (int i = 0; i < 3; i++) {
         from[i] = point[i] - segment->end[0][i];
         dot += axis->way[i] * from[i];
     }
     double t = dot > 0 ? dot < axis->square ? dot / axis->square : 1 : 0;
     if (!(axis->square > 0)) t = 0;
+#pragma GCC unroll 3
     for (int i = 0; i < 3; i++) {
         away[i] = from[i] - t * axis->way[i];
         square += away[i] * away[i];
