@@ -289,12 +289,12 @@ static void touch_near(lar_tool_contact *contact, const lar_condition_context *c
     lar_tool_vicinity *vicinity = &contact->vicinity[tool];
     for (int32_t i = 0; i < vicinity->near_count; i++) {
         if (vicinity->path < vicinity->look[i] && !contact->always) continue;
-        lar_tool_contact_patch patch = {.face = &contact->faces->face[vicinity->near[i]],
-                                        .body = &vicinity->body,
-                                        .radius = contact->list->tool[tool].radius,
-                                        .rate_of = 1 / context->time_step,
-                                        .touches = touches_of(contact, tool),
-                                        .closest = INFINITY};
+        lar_tool_contact_patch patch; /* the rest is filled in */
+        patch.face = &contact->faces->face[vicinity->near[i]];
+        patch.body = &vicinity->body;
+        patch.radius = contact->list->tool[tool].radius;
+        patch.rate_of = 1 / context->time_step;
+        patch.touches = touches_of(contact, tool);
         double center[3];
         lar_tool_contact_corners(patch.face, state, patch.x);
         double size = lar_tool_contact_ball_of((const double(*)[3])patch.x, center);

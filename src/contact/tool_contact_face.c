@@ -274,6 +274,9 @@ void lar_tool_contact_push_face(lar_tool_contact_patch *patch, const lar_contact
     const lar_tool_contact_face *face = patch->face;
     int n = lar_tool_contact_points(face, patch->radius);
     patch->mass = lar_tool_contact_point_mass(face, mass, n);
+    patch->covered = patch->depth = patch->squeeze = patch->jaw[0] = patch->jaw[1] = 0;
+    patch->touching = 0;
+    memset(patch->force, 0, sizeof patch->force);
     lar_face_normal((const double(*)[3])patch->x, patch->out);
     double size = lar_length(patch->out);
     for (int i = 0; i < 3; i++) patch->out[i] = size > 0 ? patch->out[i] / size : 0;
