@@ -5,7 +5,7 @@
  *     | . . . . |      and, of a small tool, the closest point of the face (the wall)
  *     | . . o . |
  *     | . . . . |      most points of most faces are far from most segments: what a point costs
- *     +---------+      then is a squared distance
+ *     +---------+      then is a squared distance, four of them at once (mechanics/face_parts.h)
  *
  * See docs/theory.md, contact with tools.
  */

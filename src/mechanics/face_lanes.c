@@ -195,10 +195,10 @@ static inline four height_of(const double x[3], const triangles *of, const four 
     return share(dot(away, normal), root(dot(normal, normal)));
 }
 
-/* Where the segment goes through triangles: nowhere of others. Whether it does through a plane. */
-static inline bool crossing(const lar_segment *segment, const four way[3], const triangles *of,
+/* Where the segment goes through triangles: nowhere of others. Whether it does through a plane;
+ * `of` is seen from there then. */
+static inline bool crossing(const lar_segment *segment, const four way[3], triangles *of,
                             candidate *out) {
-    triangles seen = *of;
     four normal[3];
     cross(of->to_next, of->to_middle, normal);
     four below = height_of(segment->end[0], of, normal);
@@ -207,10 +207,10 @@ static inline bool crossing(const lar_segment *segment, const four way[3], const
     if (!__builtin_ia32_movmskpd256((four)crosses)) return false;
     four along = choose(crosses, below / (below - above), all(NAN));
     for (int i = 0; i < 3; i++) {
-        seen.x[i] = segment->end[0][i] + along * way[i];
-        seen.to_x[i] = seen.x[i] - of->own[i];
+        of->x[i] = segment->end[0][i] + along * way[i];
+        of->to_x[i] = of->x[i] - of->own[i];
     }
-    *out = candidate_of(&seen, along);
+    *out = candidate_of(of, along);
     return true;
 }
 
