@@ -74,8 +74,7 @@ LAR_SETUP lar_status lar_tool_faces_create(const lar_model *model, const int32_t
         for (int32_t f = 0; f < surface->face_count; f++)
             if (mine(model, share, f)) add_face(model, local, marked, f, faces);
         for (int n = 2; n <= LAR_POINTS_ALONG_EDGE; n++)
-            for (int i = 0; i < n * n; i++)
-                lar_tool_contact_weights(i, n, faces->weights->of[n][i]);
+            lar_tool_contact_grid(n, &faces->weights->of[n]);
         status = lar_tool_faces_group(faces, error);
     }
     if (!status) {
@@ -241,17 +240,23 @@ static lar_touch_list *touches_of(const lar_tool_contact *contact, int32_t tool)
  * between them. */
 static void give(lar_tool_contact *contact, const lar_condition_context *context, int32_t f,
                  int32_t tool, const double tip[3], const double x[4][3],
-                 const double force[4][3]) {
+                 const double force[3][4]) {
     int32_t *at = &contact->loaded_at[f];
-    int64_t total[3] = {0};
-    lar_tool_sum *sum = &contact->sum[tool];
     lar_touch_list *touches = touches_of(contact, tool);
+    lar_tool_push push = {0};
+    double units[4][3];
+    int64_t whole[4][3];
+    bool breaks = false;
     for (int a = 0; a < 4; a++)
-        for (int i = 0; i < 3; i++) /* a run that is about to break; the element says why */
-            if (!(fabs(force[a][i] * context->scale) < 0x1p56)) {
-                if (touches) touches->pending = 0;
-                return;
-            }
+#pragma GCC unroll 3
+        for (int i = 0; i < 3; i++) {
+            units[a][i] = force[i][a] * context->scale;
+            breaks |= !(fabs(units[a][i]) < 0x1p56);
+        }
+    if (breaks) { /* a run that is about to break; the element says why */
+        if (touches) touches->pending = 0;
+        return;
+    }
     if (*at < 0) {
         *at = contact->loaded_count++;
         contact->loaded[*at] = (lar_tool_contact_force){.face = f};
@@ -259,22 +264,19 @@ static void give(lar_tool_contact *contact, const lar_condition_context *context
     lar_tool_contact_force *loaded = &contact->loaded[*at];
     for (int a = 0; a < 4; a++) {
         double arm[3];
-        int64_t whole[3];
+#pragma GCC unroll 3
         for (int i = 0; i < 3; i++) {
-            whole[i] = llrint(force[a][i] * context->scale);
-            loaded->force[a][i] += whole[i];
-            total[i] += whole[i];
+            whole[a][i] = llrint(units[a][i]);
+            loaded->force[a][i] += whole[a][i];
             arm[i] = x[a][i] - tip[i];
         }
-        lar_tool_sum_add(sum, context->shares, arm, whole);
+        lar_tool_push_add(&push, arm, whole[a]);
     }
+    lar_tool_sum_add(&contact->sum[tool], context->shares, &push);
     if (!touches) return;
+    const int64_t total[3] = {-push.force[0], -push.force[1], -push.force[2]};
     lar_touch_settle(touches, total, context->scale);
-    for (int a = 0; a < 4; a++) {
-        int64_t whole[3];
-        for (int i = 0; i < 3; i++) whole[i] = llrint(force[a][i] * context->scale);
-        lar_touch_push(touches, contact->faces->face[f].node[a], whole);
-    }
+    for (int a = 0; a < 4; a++) lar_touch_push(touches, contact->faces->face[f].node[a], whole[a]);
 }
 
 /* Nothing of a run that is about to break. */
@@ -287,12 +289,12 @@ static void touch_near(lar_tool_contact *contact, const lar_condition_context *c
     lar_tool_vicinity *vicinity = &contact->vicinity[tool];
     for (int32_t i = 0; i < vicinity->near_count; i++) {
         if (vicinity->path < vicinity->look[i] && !contact->always) continue;
-        lar_tool_contact_patch patch = {.face = &contact->faces->face[vicinity->near[i]],
-                                        .body = &vicinity->body,
-                                        .radius = contact->list->tool[tool].radius,
-                                        .rate_of = 1 / context->time_step,
-                                        .touches = touches_of(contact, tool),
-                                        .closest = INFINITY};
+        lar_tool_contact_patch patch; /* the rest is filled in */
+        patch.face = &contact->faces->face[vicinity->near[i]];
+        patch.body = &vicinity->body;
+        patch.radius = contact->list->tool[tool].radius;
+        patch.rate_of = 1 / context->time_step;
+        patch.touches = touches_of(contact, tool);
         double center[3];
         lar_tool_contact_corners(patch.face, state, patch.x);
         double size = lar_tool_contact_ball_of((const double(*)[3])patch.x, center);
@@ -306,15 +308,15 @@ static void touch_near(lar_tool_contact *contact, const lar_condition_context *c
         if (patch.touching == 0) continue;
         lar_tool_sum *sum = &contact->sum[tool];
         sum->touching += patch.touching;
-        sum->depth = fmax(sum->depth, patch.depth);
+        if (patch.depth > sum->depth) sum->depth = patch.depth;
         sum->squeeze += context->shares * whole_units(patch.squeeze * context->scale);
         for (int s = 0; s < 2; s++)
             sum->jaw[s] += context->shares * whole_units(patch.jaw[s] * context->scale);
         give(contact, context, vicinity->near[i], tool, vicinity->body.now[0].end[0],
-             (const double(*)[3])patch.x, (const double(*)[3])patch.force);
+             (const double(*)[3])patch.x, (const double(*)[4])patch.force);
         if (contact->list->tool[tool].friction > 0)
             lar_tool_friction_press(contact, context, contact->list->tool[tool].friction,
-                                    patch.face, (const double(*)[3])patch.force);
+                                    patch.face, (const double(*)[4])patch.force);
     }
 }
 
@@ -338,7 +340,7 @@ static void grasp_point(lar_tool_contact *contact, const lar_condition_context *
     const lar_tool_contact_face *face = &contact->faces->face[contact->faces->face_of[grasp->face]];
     const lar_tool *tool = &contact->list->tool[grasp->tool];
     double dt = context->time_step, now[3], next[3], x[4][3], v[4][3], point[3], speed[3];
-    double pull[3], force[4][3], length = 0, slack = 0;
+    double pull[3], force[3][4], length = 0, slack = 0;
     place_anchor(&motion->now, grasp->anchor, now);
     place_anchor(&motion->next, grasp->anchor, next);
     lar_tool_contact_corners(face, state, x);
@@ -356,7 +358,7 @@ static void grasp_point(lar_tool_contact *contact, const lar_condition_context *
     double most = stiffness * tool->radius * lar_division_reach(&contact->tools->division);
     double share = length > most ? most / length : 1;
     for (int a = 0; a < 4; a++)
-        for (int i = 0; i < 3; i++) force[a][i] = grasp->weight[a] * share * pull[i];
+        for (int i = 0; i < 3; i++) force[i][a] = grasp->weight[a] * share * pull[i];
     if (touches_of(contact, grasp->tool)) {
         lar_touch touch = {.kind = LAR_TOUCH_HELD, .face = grasp->face};
         for (int i = 0; i < 3; i++) {
@@ -367,7 +369,7 @@ static void grasp_point(lar_tool_contact *contact, const lar_condition_context *
         lar_touch_note(contact->touches, &touch);
     }
     give(contact, context, contact->faces->face_of[grasp->face], grasp->tool, motion->now.position,
-         (const double(*)[3])x, (const double(*)[3])force);
+         (const double(*)[3])x, (const double(*)[4])force);
     double jaws = tool->length + 2 * tool->radius; /* farther away it has slipped out of them */
     contact->sum[grasp->tool].held++;
     if (tool->shape == LAR_TOOL_HAND || slack <= jaws * jaws) contact->sum[grasp->tool].clings = 1;
@@ -435,6 +437,7 @@ static void add_forces(const lar_tool_contact *contact, lar_state *state) {
     for (int32_t i = 0; i < contact->loaded_count; i++) {
         const lar_tool_contact_force *loaded = &contact->loaded[i];
         for (int a = 0; a < 4; a++)
+#pragma GCC unroll 3
             for (int k = 0; k < 3; k++)
                 state->force[lar_state_at(state, contact->faces->face[loaded->face].node[a], k)] -=
                     loaded->force[a][k];
@@ -468,6 +471,7 @@ void lar_tool_contact_half_work(const lar_tool_contact *contact,
     for (int32_t i = 0; i < contact->loaded_count; i++) {
         const lar_tool_contact_force *loaded = &contact->loaded[i];
         for (int a = 0; a < 4; a++)
+#pragma GCC unroll 3
             for (int k = 0; k < 3; k++)
                 work +=
                     (double)loaded->force[a][k] *

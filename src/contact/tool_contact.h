@@ -27,7 +27,7 @@
 #include "contact/plane_contact.h"
 #include "contact/spares.h"
 #include "contact/touch_list.h"
-#include "mechanics/contact.h"
+#include "mechanics/face_contact.h"
 
 /* An advance may have any number of steps, and a force of one of them nearly 2^63 units. */
 __extension__ typedef __int128 lar_wide;
@@ -60,7 +60,7 @@ typedef struct lar_tool_contact_face {
 /* Weights of the corners in the points of a face, n x n of them (lar_tool_contact_points). */
 enum { LAR_POINTS_ALONG_EDGE = 6 };
 typedef struct lar_point_weights {
-    double of[LAR_POINTS_ALONG_EDGE + 1][LAR_POINTS_ALONG_EDGE * LAR_POINTS_ALONG_EDGE][4];
+    lar_face_grid of[LAR_POINTS_ALONG_EDGE + 1];
 } lar_point_weights;
 
 /* Neighbouring faces. */
@@ -193,26 +193,42 @@ lar_status lar_tool_faces_group(lar_tool_faces *faces, lar_error *error);
  * that touches has several inside. The weights of point 0 .. n n - 1. */
 int lar_tool_contact_points(const lar_tool_contact_face *face, double radius);
 void lar_tool_contact_weights(int point, int n, double weight[4]);
+void lar_tool_contact_grid(int n, lar_face_grid *grid);
 /* Corners of a face now [m], and the ball around them. */
 void lar_tool_contact_corners(const lar_tool_contact_face *face, const lar_state *state,
                               double x[4][3]);
 double lar_tool_contact_ball_of(const double x[4][3], double center[3]);
-/* Adds a force on the tissue [force units], `arm` from the tip, to what the tool feels. */
-static inline void lar_tool_sum_add(lar_tool_sum *sum, int32_t shares, const double arm[3],
-                                    const int64_t force[3]) {
+/* Forces on the corners of a face, each below 2^56 units, and what they turn about the tip, as sums
+ * of a tool count it. */
+typedef struct lar_tool_push {
+    int64_t force[3], torque[3], rest[3];
+} lar_tool_push;
+/* Adds a force on the tissue [force units], `arm` from the tip. */
+static inline void lar_tool_push_add(lar_tool_push *push, const double arm[3],
+                                     const int64_t force[3]) {
     double units[3];
+#pragma GCC unroll 3
     for (int i = 0; i < 3; i++) {
-        sum->force[i] -= shares * force[i];
+        push->force[i] -= force[i];
         units[i] = (double)force[i];
     }
+#pragma GCC unroll 3
     for (int i = 0; i < 3; i++) {
         int j = (i + 1) % 3, k = (i + 2) % 3;
         double torque = -(arm[j] * units[k] - arm[k] * units[j]);
         if (!(fabs(torque) < 0x1p56)) continue; /* an arm beyond all places */
         int64_t whole = (int64_t)torque;
         whole -= (double)whole > torque; /* floor() without a call */
-        sum->torque[i] += shares * whole;
-        sum->rest[i] += shares * llrint((torque - (double)whole) / LAR_TORQUE_REST);
+        push->torque[i] += whole;
+        push->rest[i] += llrint((torque - (double)whole) / LAR_TORQUE_REST);
+    }
+}
+/* To what the tool feels. */
+static inline void lar_tool_sum_add(lar_tool_sum *sum, int32_t shares, const lar_tool_push *push) {
+    for (int i = 0; i < 3; i++) {
+        sum->force[i] += (lar_wide)shares * push->force[i];
+        sum->torque[i] += (lar_wide)shares * push->torque[i];
+        sum->rest[i] += shares * push->rest[i];
     }
 }
 /* The pose now, or `ahead` parts of a step later. `time_step`: of a whole step. */

@@ -6,6 +6,15 @@
 #include "base/vector.h"
 #include "mechanics/face_contact.h"
 
+/* fmin and fmax without a call, of a number `a`: what is no number is not taken. */
+static inline double smaller(double a, double b) {
+    return b < a ? b : a;
+}
+
+static inline double larger(double a, double b) {
+    return b > a ? b : a;
+}
+
 /* ---- points -------------------------------------------------------------------------------- */
 
 int lar_tool_contact_points(const lar_tool_contact_face *face, double radius) {
@@ -17,9 +26,18 @@ void lar_tool_contact_weights(int point, int n, double weight[4]) {
     lar_face_weights((2 * (point % n) + 1.0) / n - 1, (2 * (point / n) + 1.0) / n - 1, weight);
 }
 
+LAR_SETUP void lar_tool_contact_grid(int n, lar_face_grid *grid) {
+    double weight[4];
+    grid->count = n * n;
+    for (int i = 0; i < LAR_FACE_GRID_MAX; i++) {
+        lar_tool_contact_weights(i < n * n ? i : n * n - 1, n, weight);
+        for (int a = 0; a < 4; a++) grid->weight[a][i] = weight[a];
+    }
+}
+
 double lar_tool_contact_point_mass(const lar_tool_contact_face *face, const double *mass, int n) {
     double min = INFINITY;
-    for (int a = 0; a < 4; a++) min = fmin(min, mass[face->node[a]] * face->share[a]);
+    for (int a = 0; a < 4; a++) min = smaller(min, mass[face->node[a]] * face->share[a]);
     return 4 * min / (n * n);
 }
 
@@ -53,17 +71,24 @@ static void normal_of(const lar_tool_contact_patch *patch, int a, double normal[
     for (int i = 0; i < 3; i++) normal[i] = length > 0 ? normal[i] / length : 0;
 }
 
+/* At most how squarely one of both looks against a push: the face as a whole, `against`, or the
+ * triangle; -1: the one where the weights say. */
+__attribute__((noinline)) static double against_of(const lar_tool_contact_patch *patch,
+                                                   const double normal[3], double against,
+                                                   int triangle, const double weight[4]) {
+    double local[3];
+    normal_of(patch, triangle < 0 ? triangle_at(weight) : triangle, local);
+    return larger(against, -lar_dot(normal, local));
+}
+
 /* A point that has been passed by the middle of the tool sees a normal that would push it on, out
  * of the body: its face then looks the same way as the push. It is let go, smoothly where the push
  * goes along the face. A crumpled face looks elsewhere as a whole than where the point is, and
  * would let in what lies before it: of both, what keeps the tool outside counts. */
-static double facing(const lar_tool_contact_patch *patch, const double normal[3], int triangle) {
+static double facing(const lar_tool_contact_patch *patch, const double normal[3], int triangle,
+                     const double weight[4]) {
     double against = -lar_dot(normal, patch->out);
-    if (against < 0.2) {
-        double local[3];
-        normal_of(patch, triangle, local);
-        against = fmax(against, -lar_dot(normal, local));
-    }
+    if (against < 0.2) against = against_of(patch, normal, against, triangle, weight);
     return against <= 0 ? 0 : against < 0.2 ? 5 * against : 1;
 }
 
@@ -74,7 +99,7 @@ static const double LEAVES = 0.5, THROWN = 1.5;
 
 static double not_thrown(double rate) {
     double away = -rate - LEAVES;
-    return away <= 0 ? 1 : fmax(0, 1 - away / (THROWN - LEAVES));
+    return away <= 0 ? 1 : larger(0, 1 - away / (THROWN - LEAVES));
 }
 
 /* For who looks. `deep`: how deep the point counts as. */
@@ -104,8 +129,11 @@ static double push_point(lar_tool_contact_patch *patch, const lar_contact_law *l
         rate += normal[i] * ((begin + along * (end - begin)) * patch->rate_of - v[i]);
     }
     double force = not_thrown(rate) * lar_contact_force(law, mass, depth, rate);
+    const double n[3] = {normal[0], normal[1], normal[2]};
+    double share[4];
+    for (int a = 0; a < 4; a++) share[a] = weight[a] * force;
     for (int a = 0; a < 4; a++)
-        for (int i = 0; i < 3; i++) patch->force[a][i] += weight[a] * force * normal[i];
+        for (int i = 0; i < 3; i++) patch->force[i][a] += share[a] * n[i];
     if (patch->body->count == 2) {
         double outwards = lar_dot(normal, patch->body->outward[s]);
         patch->squeeze -= force * along * outwards;
@@ -115,26 +143,39 @@ static double push_point(lar_tool_contact_patch *patch, const lar_contact_law *l
     return force;
 }
 
-/* A point of the grid against the tool's segments. */
-static void touch_point(lar_tool_contact_patch *patch, const lar_contact_law *law,
-                        const lar_segment_axis *axis, const double weight[4]) {
+/* A point of the grid that is in segment s or close to it. */
+static void touch_point(lar_tool_contact_patch *patch, const lar_contact_law *law, int32_t s,
+                        const lar_face_grid *grid, const lar_face_near *near, int p) {
+    double distance = sqrt(near->square[p]), depth = patch->radius - distance;
+    double normal[3], weight[4];
+    if (!(distance > 0) || !(depth > 0)) return;
+    for (int i = 0; i < 3; i++) normal[i] = near->away[i][p] / distance;
+    for (int a = 0; a < 4; a++) weight[a] = grid->weight[a][p];
+    double share = facing(patch, normal, -1, weight);
+    if (share == 0) return;
+    patch->depth = larger(patch->depth, share * depth);
+    patch->covered += smaller(1, depth / (WALL * patch->radius));
+    double force =
+        push_point(patch, law, s, near->along[p], weight, normal, share * patch->mass, depth);
+    if (patch->touches) note_point(patch, s, weight, normal, force, share * depth);
+}
+
+/* All of the grid against the tool's segments. */
+static void touch_grid(lar_tool_contact_patch *patch, const lar_contact_law *law,
+                       const lar_face_grid *grid) {
     /* More than what rounding could bring in; whether a point is in the tool its depth says. */
     const double within = patch->radius * patch->radius * (1 + 1e-9);
-    double x[3], normal[3], along;
-    lar_face_mean((const double(*)[3])patch->x, weight, x);
+    lar_face_near near[2];
+    near[1].points = 0;
     for (int32_t s = 0; s < patch->body->count; s++) {
-        const lar_segment *segment = &patch->body->now[s];
-        double square = lar_segment_away(segment, &axis[s], x, normal, &along);
-        if (square < patch->min[s]) patch->min[s] = square;
-        if (!(square < within)) continue;
-        double depth = lar_segment_depth(segment, patch->radius, x, normal, &along);
-        if (!(depth > 0)) continue;
-        double share = facing(patch, normal, triangle_at(weight));
-        if (share == 0) continue;
-        patch->depth = fmax(patch->depth, share * depth);
-        patch->covered += fmin(1, depth / (WALL * patch->radius));
-        double force = push_point(patch, law, s, along, weight, normal, share * patch->mass, depth);
-        if (patch->touches) note_point(patch, s, weight, normal, force, share * depth);
+        lar_face_grid_near(&patch->body->now[s], (const double(*)[3])patch->x, grid, within,
+                           &near[s]);
+        patch->min[s] = near[s].least;
+    }
+    for (uint64_t any = near[0].points | near[1].points; any; any &= any - 1) {
+        int p = __builtin_ctzll(any);
+        for (int32_t s = 0; s < 2; s++)
+            if (near[s].points >> p & 1) touch_point(patch, law, s, grid, &near[s], p);
     }
 }
 
@@ -146,28 +187,24 @@ static double wall_mass(const lar_tool_contact_face *face, const double *mass,
                         const double weight[4]) {
     double max = INFINITY;
     for (int a = 0; a < 4; a++)
-        if (weight[a] > 0) max = fmin(max, mass[face->node[a]] * face->share[a] / weight[a]);
+        if (weight[a] > 0) max = smaller(max, mass[face->node[a]] * face->share[a] / weight[a]);
     return max;
 }
 
 /* What a triangle of the face has of the wall. */
 typedef struct wall_part {
-    lar_face_segment at;
     double share, count; /* facing; against those of the other triangles [m^2] */
 } wall_part;
 
-static wall_part part_of(const lar_tool_contact_patch *patch, int triangle,
-                         const lar_face_segment *at) {
+static wall_part part_of(const lar_tool_contact_patch *patch, int triangle, lar_face_segment *at) {
     double beyond = (1 - WALL) * patch->radius - at->distance;
-    wall_part part = {.at = *at};
-    if (!(beyond > 0)) return part;
+    if (!(beyond > 0)) return (wall_part){0};
     if (!(at->distance > 0)) { /* the middle line goes through the face: out the way it came */
-        normal_of(patch, triangle, part.at.normal);
-        for (int i = 0; i < 3; i++) part.at.normal[i] = -part.at.normal[i];
+        normal_of(patch, triangle, at->normal);
+        for (int i = 0; i < 3; i++) at->normal[i] = -at->normal[i];
     }
-    part.share = facing(patch, part.at.normal, triangle);
-    part.count = part.share * beyond * beyond;
-    return part;
+    double share = facing(patch, at->normal, triangle, at->weight);
+    return (wall_part){share, share * beyond * beyond};
 }
 
 /* The wall of one segment. Where a face is folded around a tool, two of its triangles are as close
@@ -183,19 +220,20 @@ static double touch_wall(lar_tool_contact_patch *patch, const lar_contact_law *l
     for (int t = 0; t < 4; t++) {
         parts[t] = part_of(patch, t, &closest[t]);
         all += parts[t].count;
-        min = fmin(min, closest[t].distance);
+        min = smaller(min, closest[t].distance);
     }
     for (int t = 0; t < 4; t++) {
         const wall_part *part = &parts[t];
-        const double depth = patch->radius - part->at.distance;
+        const lar_face_segment *at = &closest[t];
+        const double depth = patch->radius - at->distance;
         if (!(part->count > 0)) continue;
-        patch->depth = fmax(patch->depth, part->share * depth);
+        patch->depth = larger(patch->depth, part->share * depth);
         double share = free_share * part->share * part->count / all;
-        double force = push_point(patch, law, s, part->at.along, part->at.weight, part->at.normal,
-                                  share * wall_mass(patch->face, mass, part->at.weight),
+        double force = push_point(patch, law, s, at->along, at->weight, at->normal,
+                                  share * wall_mass(patch->face, mass, at->weight),
                                   depth - WALL * patch->radius);
         if (patch->touches)
-            note_point(patch, s, part->at.weight, part->at.normal, force, part->share * depth);
+            note_point(patch, s, at->weight, at->normal, force, part->share * depth);
     }
     return min - (1 - WALL) * patch->radius;
 }
@@ -207,7 +245,7 @@ static double spacing(const lar_tool_contact_patch *patch, int n) {
     for (int a = 0; a < 4; a++) {
         double edge[3];
         lar_minus(patch->x[(a + 1) % 4], patch->x[a], edge);
-        longest = fmax(longest, lar_dot(edge, edge));
+        longest = larger(longest, lar_dot(edge, edge));
     }
     return sqrt(0.5 * longest) / n;
 }
@@ -224,7 +262,7 @@ static double touch_walls(lar_tool_contact_patch *patch, const lar_contact_law *
         double own = distance - between + WALL * patch->radius;
         if (own < 0)
             own = free_share > 0 ? touch_wall(patch, law, mass, s, free_share) : -patch->radius;
-        gap = fmin(gap, own);
+        gap = smaller(gap, own);
     }
     return gap;
 }
@@ -234,19 +272,16 @@ static double touch_walls(lar_tool_contact_patch *patch, const lar_contact_law *
 void lar_tool_contact_push_face(lar_tool_contact_patch *patch, const lar_contact_law *law,
                                 const double *mass, const lar_point_weights *weights) {
     const lar_tool_contact_face *face = patch->face;
-    const lar_tool_body *body = patch->body;
     int n = lar_tool_contact_points(face, patch->radius);
-    lar_segment_axis axis[2];
     patch->mass = lar_tool_contact_point_mass(face, mass, n);
+    patch->covered = patch->depth = patch->squeeze = patch->jaw[0] = patch->jaw[1] = 0;
+    patch->touching = 0;
+    memset(patch->force, 0, sizeof patch->force);
     lar_face_normal((const double(*)[3])patch->x, patch->out);
     double size = lar_length(patch->out);
     for (int i = 0; i < 3; i++) patch->out[i] = size > 0 ? patch->out[i] / size : 0;
-    for (int32_t s = 0; s < body->count; s++) {
-        axis[s] = lar_segment_axis_of(&body->now[s]);
-        patch->min[s] = INFINITY;
-    }
-    for (int i = 0; i < n * n; i++) touch_point(patch, law, axis, weights->of[n][i]);
+    touch_grid(patch, law, &weights->of[n]);
     patch->closest = touch_walls(patch, law, mass, n);
-    for (int32_t s = 0; s < body->count; s++)
-        patch->closest = fmin(patch->closest, sqrt(patch->min[s]) - patch->radius);
+    for (int32_t s = 0; s < patch->body->count; s++)
+        patch->closest = smaller(patch->closest, sqrt(patch->min[s]) - patch->radius);
 }

@@ -5,7 +5,7 @@
  *     | . . . . |      and, of a small tool, the closest point of the face (the wall)
  *     | . . o . |
  *     | . . . . |      most points of most faces are far from most segments: what a point costs
- *     +---------+      then is a squared distance
+ *     +---------+      then is a squared distance, four of them at once (mechanics/face_parts.h)
  *
  * See docs/theory.md, contact with tools.
  */
@@ -20,13 +20,13 @@ typedef struct lar_tool_contact_patch { /* one face before one tool */
     const lar_tool_body *body;
     double radius, mass, rate_of; /* of a point; 1 / time step */
     double x[4][3], v[4][3], out[3];
-    double force[4][3];
-    double min[2];  /* of each segment, squared, from the closest point of the grid [m^2] */
-    double closest; /* distance of the closest point [m] */
-    double covered; /* how many of the points are as deep in the tool as the wall */
-    double depth;   /* the deepest point [m] */
-    double squeeze; /* of the jaws, as a force at their ends [N] */
-    double jaw[2];  /* on each jaw, outwards [N] */
+    double force[3][4]; /* by axis and corner */
+    double min[2];      /* of each segment, squared, from the closest point of the grid [m^2] */
+    double closest;     /* distance of the closest point [m] */
+    double covered;     /* how many of the points are as deep in the tool as the wall */
+    double depth;       /* the deepest point [m] */
+    double squeeze;     /* of the jaws, as a force at their ends [N] */
+    double jaw[2];      /* on each jaw, outwards [N] */
     int32_t touching;
     lar_touch_list *touches; /* of who looks; NULL in steps */
 } lar_tool_contact_patch;

@@ -5,30 +5,40 @@
 
 #include "contact/tool_contact.h"
 
-static double distance_between(const double a[3], const double b[3]) {
+static double square_between(const double a[3], const double b[3]) {
     double square = 0;
+#pragma GCC unroll 3
     for (int i = 0; i < 3; i++) square += (a[i] - b[i]) * (a[i] - b[i]);
-    return sqrt(square);
+    return square;
 }
 
 void lar_tool_contact_corners(const lar_tool_contact_face *face, const lar_state *state,
                               double x[4][3]) {
     for (int a = 0; a < 4; a++)
+#pragma GCC unroll 3
         for (int i = 0; i < 3; i++)
             x[a][i] = face->rest[a][i] + state->u[lar_state_at(state, face->node[a], i)];
 }
 
 double lar_tool_contact_ball_of(const double x[4][3], double center[3]) {
-    double radius = 0;
+    double most = 0;
+#pragma GCC unroll 3
     for (int i = 0; i < 3; i++) center[i] = 0.25 * ((x[0][i] + x[1][i]) + (x[2][i] + x[3][i]));
-    for (int a = 0; a < 4; a++) radius = fmax(radius, distance_between(center, x[a]));
-    return radius;
+    for (int a = 0; a < 4; a++) {
+        double square = square_between(center, x[a]);
+        most = square > most ? square : most; /* no call, and not what is no number */
+    }
+    return sqrt(most);
 }
 
 double lar_tool_contact_distance(const lar_tool_body *body, double radius, const double point[3]) {
-    double deepest = -INFINITY, normal[3], along;
-    for (int32_t s = 0; s < body->count; s++)
-        deepest = fmax(deepest, lar_segment_depth(&body->now[s], radius, point, normal, &along));
+    double deepest = -INFINITY, away[3], along;
+    for (int32_t s = 0; s < body->count; s++) { /* lar_segment_depth, without the normal */
+        const lar_segment_axis axis = lar_segment_axis_of(&body->now[s]);
+        double distance = sqrt(lar_segment_away(&body->now[s], &axis, point, away, &along));
+        double depth = distance > 0 ? radius - distance : -radius;
+        deepest = depth > deepest ? depth : deepest;
+    }
     return -deepest;
 }
 
@@ -101,12 +111,15 @@ static void measure_group(const lar_tool_contact *contact, const lar_tool_contac
         lar_tool_contact_ball_of((const double(*)[3])x, center);
         for (int i = 0; i < 3; i++) ball->center[i] += center[i] / group->count;
     }
-    ball->radius = 0;
+    double most = 0;
     for (int32_t f = group->first; f < group->first + group->count; f++) {
         lar_tool_contact_corners(&face[f], state, x);
-        for (int a = 0; a < 4; a++)
-            ball->radius = fmax(ball->radius, distance_between(ball->center, x[a]));
+        for (int a = 0; a < 4; a++) {
+            double square = square_between(ball->center, x[a]);
+            most = square > most ? square : most;
+        }
     }
+    ball->radius = sqrt(most);
     ball->travel = contact->travel;
 }
 

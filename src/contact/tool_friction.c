@@ -86,10 +86,10 @@ static inline int64_t *press_at(const lar_tool_contact *contact, int32_t node, i
 
 void lar_tool_friction_press(lar_tool_contact *contact, const lar_condition_context *context,
                              double friction, const lar_tool_contact_face *face,
-                             const double force[4][3]) {
+                             const double force[3][4]) {
     for (int a = 0; a < 4; a++)
         for (int i = 0; i < 3; i++) {
-            double units = friction * force[a][i] * context->scale;
+            double units = friction * force[i][a] * context->scale;
             if (fabs(units) < 0x1p56) *press_at(contact, face->node[a], i) += llrint(units);
         }
 }
@@ -234,8 +234,10 @@ static void rub_node(lar_tool_contact *contact, const lar_condition_context *con
     if (contact->touches && contact->touches->tool == tool->tool)
         note_rub(contact->touches, local, x, press, rubbed->force, context->scale);
     double arm[3];
+    lar_tool_push felt = {0};
     lar_minus(x, tool->now.position, arm);
-    lar_tool_sum_add(&tool->felt, 1, arm, rubbed->force);
+    lar_tool_push_add(&felt, arm, rubbed->force);
+    lar_tool_sum_add(&tool->felt, 1, &felt);
 }
 
 /* What a tool has felt of the step, in all shares of it. */

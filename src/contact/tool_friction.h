@@ -48,7 +48,7 @@ void lar_tool_friction_forget(lar_tool_contact *contact);
 /* Adds to the press sums what a tool pushes the corners of a face with [N]. */
 void lar_tool_friction_press(lar_tool_contact *contact, const lar_condition_context *context,
                              double friction, const lar_tool_contact_face *face,
-                             const double force[4][3]);
+                             const double force[3][4]);
 
 /* Press and force sums are complete: adds friction to the force sums of the nodes that the thread
  * moves, and clears the press sums of these. `leapfrog` and `push` are those of the update that

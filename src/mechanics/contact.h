@@ -16,6 +16,8 @@
 #define LAR_MECHANICS_CONTACT_H
 
 #include <math.h>
+#include <stdbool.h>
+#include <string.h>
 
 typedef struct lar_contact_law {
     double stiffness; /* k per mass moved [1/s^2] */
@@ -97,6 +99,11 @@ typedef struct lar_segment {
     double end[2][3];
 } lar_segment;
 
+/* A sphere's. */
+static inline bool lar_segment_is_point(const lar_segment *segment) {
+    return memcmp(segment->end[0], segment->end[1], sizeof segment->end[0]) == 0;
+}
+
 /* What many points need of a segment. */
 typedef struct lar_segment_axis {
     double way[3], square; /* from its first end to the second [m], and its length squared */
@@ -104,6 +111,7 @@ typedef struct lar_segment_axis {
 
 static inline lar_segment_axis lar_segment_axis_of(const lar_segment *segment) {
     lar_segment_axis axis = {.square = 0};
+#pragma GCC unroll 3
     for (int i = 0; i < 3; i++) {
         axis.way[i] = segment->end[1][i] - segment->end[0][i];
         axis.square += axis.way[i] * axis.way[i];
@@ -116,12 +124,14 @@ static inline lar_segment_axis lar_segment_axis_of(const lar_segment *segment) {
 static inline double lar_segment_away(const lar_segment *segment, const lar_segment_axis *axis,
                                       const double point[3], double away[3], double *along) {
     double from[3], dot = 0, square = 0;
+#pragma GCC unroll 3
     for (int i = 0; i < 3; i++) {
         from[i] = point[i] - segment->end[0][i];
         dot += axis->way[i] * from[i];
     }
     double t = dot > 0 ? dot < axis->square ? dot / axis->square : 1 : 0;
     if (!(axis->square > 0)) t = 0;
+#pragma GCC unroll 3
     for (int i = 0; i < 3; i++) {
         away[i] = from[i] - t * axis->way[i];
         square += away[i] * away[i];
@@ -133,6 +143,14 @@ static inline double lar_segment_away(const lar_segment *segment, const lar_segm
 /* How deep a point is inside the tool around a segment [m] (negative: how far outside), the unit
  * normal from the segment to the point, and where on the segment (0 to 1) it starts. A point on the
  * segment itself has no normal, and counts as outside. */
+static inline double lar_segment_depth_by(const lar_segment *segment, const lar_segment_axis *axis,
+                                          double radius, const double point[3], double normal[3],
+                                          double *along) {
+    double distance = sqrt(lar_segment_away(segment, axis, point, normal, along));
+    if (!(distance > 0)) return -radius;
+    for (int i = 0; i < 3; i++) normal[i] /= distance;
+    return radius - distance;
+}
 double lar_segment_depth(const lar_segment *segment, double radius, const double point[3],
                          double normal[3], double *along);
 

@@ -310,9 +310,11 @@ double lar_face_outdone(const double x[3], const double face[4][3], int edge,
 lar_face_finders lar_face_finders_here(void) {
 #if defined(LAR_HAVE_FACE_LANES)
     if (lar_face_lanes())
-        return (lar_face_finders){lar_face_parts_in_lanes, lar_face_before_in_lanes};
+        return (lar_face_finders){lar_face_parts_in_lanes, lar_face_before_in_lanes,
+                                  lar_face_segment_in_lanes, lar_face_grid_in_lanes};
 #endif
-    return (lar_face_finders){lar_face_parts_one_by_one, lar_face_before_one_by_one};
+    return (lar_face_finders){lar_face_parts_one_by_one, lar_face_before_one_by_one,
+                              lar_face_segment_one_by_one, lar_face_grid_one_by_one};
 }
 
 /* ---- segments ------------------------------------------------------------------------------- */
@@ -384,26 +386,68 @@ static void offer_crossing(const lar_segment *segment, const double corner[4][3]
     offer(segment, corner, along, weight, closest);
 }
 
-void lar_face_segment_closest(const lar_segment *segment, const double corner[4][3],
-                              lar_face_segment closest[4]) {
+void lar_face_segment_one_by_one(const lar_segment *segment, const double corner[4][3],
+                                 const double middle[3], lar_face_segment closest[4]) {
     static const double at_corner[4][4] = {{1}, {0, 1}, {0, 0, 1}, {0, 0, 0, 1}},
                         at_middle[4] = {0.25, 0.25, 0.25, 0.25};
-    double middle[3];
-    lar_face_parts parts[2];
-    bool is_point = memcmp(segment->end[0], segment->end[1], sizeof segment->end[0]) == 0;
-    int ends = is_point ? 1 : 2;
-    middle_of(corner, middle);
-    for (int e = 0; e < ends; e++) closest_of_parts(segment->end[e], corner, middle, &parts[e]);
+    bool is_point = lar_segment_is_point(segment);
     for (int t = 0; t < 4; t++) {
         const double *from = at_corner[t], *to = at_corner[(t + 1) % 4];
+        double weight[4];
         closest[t] = (lar_face_segment){.distance = INFINITY};
-        for (int e = 0; e < ends; e++) offer(segment, corner, e, parts[e].weight[t], &closest[t]);
+        for (int e = 0; e < (is_point ? 1 : 2); e++) {
+            closest_of_part(segment->end[e], corner, middle, t, weight);
+            offer(segment, corner, e, weight, &closest[t]);
+        }
         if (is_point) continue;
         offer_edge(segment, corner, from, to, &closest[t]);
         offer_edge(segment, corner, from, at_middle, &closest[t]);
         offer_edge(segment, corner, to, at_middle, &closest[t]);
         offer_crossing(segment, corner, middle, t, &closest[t]);
     }
+}
+
+void lar_face_segment_closest(const lar_segment *segment, const double corner[4][3],
+                              lar_face_segment closest[4]) {
+    double middle[3];
+    middle_of(corner, middle);
+#if defined(LAR_HAVE_FACE_LANES)
+    if (lar_face_lanes()) {
+        lar_face_segment_in_lanes(segment, corner, middle, closest);
+        return;
+    }
+#endif
+    lar_face_segment_one_by_one(segment, corner, middle, closest);
+}
+
+/* ---- grids ---------------------------------------------------------------------------------- */
+
+void lar_face_grid_one_by_one(const lar_segment *segment, const double corner[4][3],
+                              const lar_face_grid *grid, double within, lar_face_near *near) {
+    const lar_segment_axis axis = lar_segment_axis_of(segment);
+    near->points = 0;
+    near->least = INFINITY;
+    for (int p = 0; p < grid->count; p++) {
+        double weight[4], x[3], away[3];
+        for (int a = 0; a < 4; a++) weight[a] = grid->weight[a][p];
+        lar_face_mean(corner, weight, x);
+        double square = lar_segment_away(segment, &axis, x, away, &near->along[p]);
+        for (int i = 0; i < 3; i++) near->away[i][p] = away[i];
+        near->square[p] = square;
+        if (square < near->least) near->least = square;
+        if (square < within) near->points |= UINT64_C(1) << p;
+    }
+}
+
+void lar_face_grid_near(const lar_segment *segment, const double corner[4][3],
+                        const lar_face_grid *grid, double within, lar_face_near *near) {
+#if defined(LAR_HAVE_FACE_LANES)
+    if (lar_face_lanes()) {
+        lar_face_grid_in_lanes(segment, corner, grid, within, near);
+        return;
+    }
+#endif
+    lar_face_grid_one_by_one(segment, corner, grid, within, near);
 }
 
 /* ---- smoothly from face to face ------------------------------------------------------------- */

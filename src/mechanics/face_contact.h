@@ -24,6 +24,7 @@
 #define LAR_MECHANICS_FACE_CONTACT_H
 
 #include <stdbool.h>
+#include <stdint.h>
 
 #include "mechanics/contact.h"
 
@@ -90,6 +91,25 @@ typedef struct lar_face_segment {
 /* To each of its triangles. */
 void lar_face_segment_closest(const lar_segment *segment, const double corner[4][3],
                               lar_face_segment closest[4]);
+
+/* Points of a face by the weights of its corners, component by component. What fills the last four
+ * is the last point again. */
+enum { LAR_FACE_GRID_MAX = 36 };
+typedef struct lar_face_grid {
+    int32_t count, padding;
+    double weight[4][LAR_FACE_GRID_MAX];
+} lar_face_grid;
+
+/* How they stand to a segment. */
+typedef struct lar_face_near {
+    uint64_t points; /* which are near it, a bit each; and of these, as lar_segment_away: */
+    double away[3][LAR_FACE_GRID_MAX], along[LAR_FACE_GRID_MAX], square[LAR_FACE_GRID_MAX];
+    double least; /* square of the least distance of all; INFINITY: there are no numbers [m^2] */
+} lar_face_near;
+
+/* Near: closer than the square root of `within` [m^2]. */
+void lar_face_grid_near(const lar_segment *segment, const double corner[4][3],
+                        const lar_face_grid *grid, double within, lar_face_near *near);
 
 /* A point of the surface that moves smoothly where the closest one jumps: the mean of the closest
  * points of all triangles that are about as close to x as the closest of all, `min` away. Adds

@@ -85,13 +85,18 @@ static inline void closest_of(const triangles *of, four *wb, four *wc) {
     *wc = choose(at_a, all(0), c);
 }
 
-/* Weights of the face's corners, for each triangle. */
-static inline void weights_of(four wb, four wc, four weight[4]) {
-    four rest = 0.25 * wc, next = rest + wb, own = rest + (1 - wb - wc);
+/* Weights of the face's corners, for each triangle, of those of its own one, the next one and both
+ * others. */
+static inline void corners_of(four own, four next, four rest, four weight[4]) {
     weight[0] = MIX(MIX(rest, own, 4, 1, 2, 3), next, 0, 1, 2, 7);
     weight[1] = MIX(MIX(rest, own, 0, 5, 2, 3), next, 4, 1, 2, 3);
     weight[2] = MIX(MIX(rest, own, 0, 1, 6, 3), next, 0, 5, 2, 3);
     weight[3] = MIX(MIX(rest, own, 0, 1, 2, 7), next, 0, 1, 6, 3);
+}
+
+static inline void weights_of(four wb, four wc, four weight[4]) {
+    four rest = 0.25 * wc;
+    corners_of(rest + (1 - wb - wc), rest + wb, rest, weight);
 }
 
 /* A row for each lane. */
@@ -141,4 +146,168 @@ double lar_face_before_in_lanes(const double x[3], const double corner[4][3],
     four areas = la * lb + lb * lc + lc * la, most = volume / areas;
     min = choose(volume > 0, volume / (areas + most * (la + lb + lc + most)), min);
     return fmin(fmin(fmin(INFINITY, min[0]), min[1]), fmin(min[2], min[3]));
+}
+
+/* ---- segments ------------------------------------------------------------------------------- */
+
+/* A point of the segment and one of each triangle: the weights of its own corner and the next one
+ * and, of the others, what each corner has of the middle. */
+typedef struct candidate {
+    four along, own, next, rest;
+} candidate;
+
+/* Not inlined: three of it take room, and no time. */
+static __attribute__((noinline)) candidate candidate_of(const triangles *of, four along) {
+    four wb, wc;
+    closest_of(of, &wb, &wc);
+    four rest = 0.25 * wc;
+    return (candidate){along, rest + (1 - wb - wc), rest + wb, rest};
+}
+
+static inline four clamp(four x) {
+    return choose(x < 0, all(0), choose(x > 1, all(1), x));
+}
+
+/* closest_of_segments (face_contact.c): the segment along `way` and edges along `to`, from the
+ * triangles' own corners; `of` is seen from the segment's first end. `to` is shared with the next
+ * one or with the middle. */
+static inline candidate edge_of(const triangles *of, const four way[3], const four to[3],
+                                bool middle) {
+    four a = dot(way, way), e = dot(to, to), f = dot(to, of->to_x), c = dot(way, of->to_x);
+    four b = dot(way, to), denominator = a * e - b * b;
+    four s = choose(denominator > 0, clamp((b * f - c * e) / denominator), all(0));
+    four t = choose(e > 0, (b * s + f) / e, all(0)), part = clamp(t);
+    s = choose((t < 0) | (t > 1), choose(a > 0, clamp((b * part - c) / a), all(0)), s);
+    four rest = middle ? 0.25 * part : all(0);
+    return (candidate){s, rest + (1 - part), 0 + (middle ? rest : part), rest};
+}
+
+/* The edge to the middle that a triangle shares with the next one. */
+static inline candidate from_next(const candidate *of) {
+    return (candidate){MIX(of->along, of->along, 1, 2, 3, 0), MIX(of->rest, of->rest, 1, 2, 3, 0),
+                       MIX(of->own, of->own, 1, 2, 3, 0), MIX(of->rest, of->rest, 1, 2, 3, 0)};
+}
+
+/* Of x, a point of the segment's line, over the planes. */
+static inline four height_of(const double x[3], const triangles *of, const four normal[3]) {
+    four away[3];
+    for (int i = 0; i < 3; i++) away[i] = x[i] - of->middle[i];
+    return share(dot(away, normal), root(dot(normal, normal)));
+}
+
+/* Where the segment goes through triangles: nowhere of others. Whether it does through a plane;
+ * `of` is seen from there then. */
+static inline bool crossing(const lar_segment *segment, const four way[3], triangles *of,
+                            candidate *out) {
+    four normal[3];
+    cross(of->to_next, of->to_middle, normal);
+    four below = height_of(segment->end[0], of, normal);
+    four above = height_of(segment->end[1], of, normal);
+    four_bits crosses = below * above < 0;
+    if (!__builtin_ia32_movmskpd256((four)crosses)) return false;
+    four along = choose(crosses, below / (below - above), all(NAN));
+    for (int i = 0; i < 3; i++) {
+        of->x[i] = segment->end[0][i] + along * way[i];
+        of->to_x[i] = of->x[i] - of->own[i];
+    }
+    *out = candidate_of(of, along);
+    return true;
+}
+
+/* The closest of the candidates, the first of equals. */
+static inline candidate closest_candidate(const lar_segment *segment, const four way[3],
+                                          const double corner[4][3], const candidate *list,
+                                          int count, four away[3], four *distance) {
+    candidate best = {0};
+    *distance = all(INFINITY);
+    for (int i = 0; i < 3; i++) away[i] = all(0);
+    for (int k = 0; k < count; k++) {
+        const candidate *at = &list[k];
+        four weight[4], to[3];
+        corners_of(at->own, at->next, at->rest, weight);
+        for (int i = 0; i < 3; i++)
+            to[i] = ((weight[0] * corner[0][i] + weight[1] * corner[1][i]) +
+                     (weight[2] * corner[2][i] + weight[3] * corner[3][i])) -
+                    (segment->end[0][i] + at->along * way[i]);
+        four far = root(dot(to, to));
+        four_bits closer = far < *distance;
+        *distance = choose(closer, far, *distance);
+        best.along = choose(closer, at->along, best.along);
+        best.own = choose(closer, at->own, best.own);
+        best.next = choose(closer, at->next, best.next);
+        best.rest = choose(closer, at->rest, best.rest);
+        for (int i = 0; i < 3; i++) away[i] = choose(closer, to[i], away[i]);
+    }
+    return best;
+}
+
+void lar_face_segment_in_lanes(const lar_segment *segment, const double corner[4][3],
+                               const double middle[3], lar_face_segment closest[4]) {
+    triangles of[2];
+    candidate list[6];
+    int count = 0;
+    four way[3], away[3], distance, weight[4];
+    for (int i = 0; i < 3; i++) way[i] = all(segment->end[1][i] - segment->end[0][i]);
+    bool is_point = lar_segment_is_point(segment);
+    for (int e = 0; e < (is_point ? 1 : 2); e++) {
+        look_up(segment->end[e], corner, middle, &of[e]);
+        list[count++] = candidate_of(&of[e], all(e));
+    }
+    if (!is_point) {
+        list[2] = edge_of(&of[0], way, of[0].to_next, false);
+        list[3] = edge_of(&of[0], way, of[0].to_middle, true);
+        list[4] = from_next(&list[3]);
+        count = crossing(segment, way, &of[0], &list[5]) ? 6 : 5;
+    }
+    candidate best = closest_candidate(segment, way, corner, list, count, away, &distance);
+    corners_of(best.own, best.next, best.rest, weight);
+    for (int i = 0; i < 3; i++) away[i] = share(away[i], distance);
+    for (int t = 0; t < 4; t++) {
+        closest[t].distance = distance[t];
+        closest[t].along = best.along[t];
+        for (int a = 0; a < 4; a++) closest[t].weight[a] = weight[a][t];
+        for (int i = 0; i < 3; i++) closest[t].normal[i] = away[i][t];
+    }
+}
+
+/* ---- grids ---------------------------------------------------------------------------------- */
+
+void lar_face_grid_in_lanes(const lar_segment *segment, const double corner[4][3],
+                            const lar_face_grid *grid, double within, lar_face_near *near) {
+    const int count = grid->count;
+    uint64_t points = 0;
+    four x[4][3], from[3], way[3], whole = all(0), min = all(INFINITY);
+    for (int i = 0; i < 3; i++) {
+        for (int a = 0; a < 4; a++) x[a][i] = all(corner[a][i]);
+        from[i] = all(segment->end[0][i]);
+        way[i] = all(segment->end[1][i] - segment->end[0][i]);
+        whole += way[i] * way[i];
+    }
+    for (int p = 0; p < count; p += 4) { /* lar_face_mean, lar_segment_away */
+        four weight[4], away[3], dot = all(0), square = all(0);
+        for (int a = 0; a < 4; a++) weight[a] = *(const four_anywhere *)&grid->weight[a][p];
+        for (int i = 0; i < 3; i++) {
+            away[i] = ((weight[0] * x[0][i] + weight[1] * x[1][i]) +
+                       (weight[2] * x[2][i] + weight[3] * x[3][i])) -
+                      from[i];
+            dot += way[i] * away[i];
+        }
+        four t = choose(dot < whole, dot / whole, all(1));
+        t = choose((dot > 0) & (whole > 0), t, all(0));
+        for (int i = 0; i < 3; i++) {
+            away[i] -= t * way[i];
+            square += away[i] * away[i];
+        }
+        min = choose(square < min, square, min);
+        unsigned some = (unsigned)__builtin_ia32_movmskpd256((four)(square < within));
+        if (!some) continue;
+        points |= (uint64_t)some << p;
+        for (int i = 0; i < 3; i++) *(four_anywhere *)&near->away[i][p] = away[i];
+        *(four_anywhere *)&near->along[p] = t;
+        *(four_anywhere *)&near->square[p] = square;
+    }
+    double least = min[0];
+    for (int t = 1; t < 4; t++) least = min[t] < least ? min[t] : least;
+    near->points = points & ((UINT64_C(1) << count) - 1);
+    near->least = least;
 }

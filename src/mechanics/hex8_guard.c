@@ -275,6 +275,11 @@ double lar_hex8_area_limit(const lar_hex8 *element) {
     return low + 2 / sqrt(low);
 }
 
+/* fmax of hundreds of elements in a step, without a call: `least` as well of what is no number. */
+static inline double above(double x, double least) {
+    return x > least ? x : least;
+}
+
 void lar_hex8_stiff_of(const lar_material *material, const float strain[LAR_STRAIN_NUMBERS],
                        lar_hex8_stiff *stiff) {
     double J = strain[LAR_STRAIN_VOLUME];
@@ -283,7 +288,7 @@ void lar_hex8_stiff_of(const lar_material *material, const float strain[LAR_STRA
     lar_law_strained now = lar_law_table[material->law].strained(
         material->parameter, J, strain[LAR_STRAIN_LENGTH], strain[LAR_STRAIN_AREA]);
     stiff->square = J * J;
-    stiff->slope = fmax(now.slope, 0);
+    stiff->slope = above(now.slope, 0);
     stiff->pressed = fabs(now.pressure) * sqrt(strain[LAR_STRAIN_LENGTH] / 3.0);
     stiff->shear = now.shear;
     stiff->further = now.further;
@@ -298,9 +303,9 @@ void lar_hex8_stiff_of(const lar_material *material, const float strain[LAR_STRA
 double lar_hex8_growth(const lar_hex8_stiff *stiff, double area) {
     if (!(stiff->square > 0)) return INFINITY;
     double volume = stiff->slope * area + stiff->pressed;
-    double shear = stiff->shear * fmax(1, area / stiff->square) + stiff->further;
+    double shear = stiff->shear * above(area / stiff->square, 1) + stiff->further;
     double growth = (stiff->of_volume * volume + stiff->of_shear * shear) / stiff->whole;
     if (!stiff->fibrous) return growth;
     /* Along any direction the element is as stiff as `whole`, and fibres at rest count beside. */
-    return fmax(growth, 1) + stiff->fibres / stiff->whole;
+    return above(growth, 1) + stiff->fibres / stiff->whole;
 }

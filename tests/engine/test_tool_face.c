@@ -23,8 +23,7 @@ static void make(const double corner[4][3], lone_face *f) {
         f->mass[a] = 1e-3;
         memcpy(f->face.rest[a], corner[a], sizeof f->face.rest[a]);
     }
-    for (int n = 2; n <= LAR_POINTS_ALONG_EDGE; n++)
-        for (int i = 0; i < n * n; i++) lar_tool_contact_weights(i, n, f->weights.of[n][i]);
+    for (int n = 2; n <= LAR_POINTS_ALONG_EDGE; n++) lar_tool_contact_grid(n, &f->weights.of[n]);
 }
 
 /* How the face is pushed by a line from `tip` to `end`, along a unit direction [N]. */
@@ -40,7 +39,7 @@ static double pushed(lone_face *f, const double tip[3], const double end[3],
     lar_tool_contact_push_face(&patch, &law, f->mass, &f->weights);
     double sum = 0;
     for (int a = 0; a < 4; a++)
-        for (int i = 0; i < 3; i++) sum += patch.force[a][i] * direction[i];
+        for (int i = 0; i < 3; i++) sum += patch.force[i][a] * direction[i];
     return sum;
 }
 

@@ -294,6 +294,77 @@ static void the_widest_has_the_same_bits(void **unused) {
     }
 }
 
+static void assert_same(double a, double b) {
+    assert_true(a == b || (isnan(a) && isnan(b)));
+}
+
+/* Segments from anywhere to anywhere, points among them, and now and then no number. */
+static void any_segment(int n, double corner[4][3], lar_segment *segment) {
+    double middle[3];
+    lar_face_mean((const double(*)[3])corner, (const double[4]){0.25, 0.25, 0.25, 0.25}, middle);
+    any_place(n / 7, (const double(*)[3])corner, middle, segment->end[0]);
+    any_place(n / 35, (const double(*)[3])corner, middle, segment->end[1]);
+    if (n % 11 == 0) memcpy(segment->end[1], segment->end[0], sizeof segment->end[1]);
+    if (n % 101 == 0) corner[n % 4][n % 3] = n % 2 ? NAN : INFINITY;
+    if (n % 103 == 0) segment->end[n % 2][n % 3] = n % 4 ? NAN : INFINITY;
+}
+
+static void segments_have_the_same_bits(void **unused) {
+    (void)unused;
+    const lar_face_finders here = lar_face_finders_here();
+    if (here.segment == lar_face_segment_one_by_one) skip();
+    int through = 0;
+    for (int n = 0; n < 200000; n++) {
+        double corner[4][3], middle[3];
+        lar_segment segment;
+        lar_face_segment one[4], wide[4];
+        any_face(n, corner);
+        any_segment(n, corner, &segment);
+        lar_face_mean((const double(*)[3])corner, (const double[4]){0.25, 0.25, 0.25, 0.25},
+                      middle);
+        lar_face_segment_one_by_one(&segment, (const double(*)[3])corner, middle, one);
+        here.segment(&segment, (const double(*)[3])corner, middle, wide);
+        for (int t = 0; t < 4; t++) {
+            assert_same(one[t].distance, wide[t].distance);
+            assert_same(one[t].along, wide[t].along);
+            for (int a = 0; a < 4; a++) assert_same(one[t].weight[a], wide[t].weight[a]);
+            for (int i = 0; i < 3; i++) assert_same(one[t].normal[i], wide[t].normal[i]);
+            through += one[t].distance < 1e-12 && one[t].along > 0 && one[t].along < 1;
+        }
+    }
+    assert_true(through > 1000);
+}
+
+static void grids_have_the_same_bits(void **unused) {
+    (void)unused;
+    const lar_face_finders here = lar_face_finders_here();
+    if (here.grid == lar_face_grid_one_by_one) skip();
+    int seen = 0;
+    for (int n = 0; n < 100000; n++) {
+        double corner[4][3], within = fabs(noise());
+        lar_segment segment;
+        lar_face_near one, wide;
+        lar_face_grid grid = {.count = n % LAR_FACE_GRID_MAX + 1};
+        for (int i = 0; i < LAR_FACE_GRID_MAX; i++) {
+            double weight[4];
+            if (i < grid.count) lar_face_weights(noise(), noise(), weight);
+            for (int a = 0; a < 4; a++) grid.weight[a][i] = weight[a];
+        }
+        any_face(n, corner);
+        any_segment(n, corner, &segment);
+        lar_face_grid_one_by_one(&segment, (const double(*)[3])corner, &grid, within, &one);
+        here.grid(&segment, (const double(*)[3])corner, &grid, within, &wide);
+        assert_true(one.points == wide.points && one.least == wide.least);
+        for (int p = 0; p < grid.count; p++) {
+            if (!(one.points >> p & 1)) continue;
+            assert_true(one.square[p] == wide.square[p] && one.along[p] == wide.along[p]);
+            for (int i = 0; i < 3; i++) assert_true(one.away[i][p] == wide.away[i][p]);
+        }
+        seen += one.points != 0;
+    }
+    assert_true(seen > 1000);
+}
+
 /* Over a flat row of two squares, one corner row on a sharp edge: no kink from face to face, nor
  * between triangles, and the slope is that of the number. */
 static void springs_fade_without_kinks(void **unused) {
@@ -335,6 +406,8 @@ int main(void) {
         cmocka_unit_test(what_has_no_size_makes_no_trouble),
         cmocka_unit_test(springs_fade_without_kinks),
         cmocka_unit_test(the_widest_has_the_same_bits),
+        cmocka_unit_test(segments_have_the_same_bits),
+        cmocka_unit_test(grids_have_the_same_bits),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
