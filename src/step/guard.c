@@ -251,13 +251,26 @@ static bool is_among(lar_gid e, const int32_t *list, int32_t count) {
     return false;
 }
 
+/* Into the list of lanes with a corner below twice START, which ascends. */
+static void put_near(lar_strained *strained, size_t first, int32_t *count, int32_t lane,
+                     double stiffness) {
+    int32_t *near = strained->near + first, k = (*count)++;
+    double *stiff = strained->stiffness + first;
+    for (; k > 0 && near[k - 1] > lane; k--) {
+        near[k] = near[k - 1];
+        stiff[k] = stiff[k - 1];
+    }
+    near[k] = lane;
+    stiff[k] = stiffness;
+}
+
 /* Looks at the corners of a group, which is empty then: adds the forces of their barriers. With
  * `lists` the lanes with a corner below twice START are listed. */
 static void apply_group(const lar_domain *domain, int32_t r, bool lists, lar_strained_group *group,
                         lar_state *state) {
     lar_strained *strained = state->strained;
     size_t first = LAR_BLOCK * (size_t)domain->run_first[r];
-    int32_t *count = &strained->count[r], *damped = &strained->damped_count[r];
+    int32_t *count = strained->count + r, *damped = strained->damped_count + r;
     const lar_hex8_places places = {.stride = state->stride, .rest = domain->rest, .u = state->u};
     lar_hex8_corner_look look;
     unsigned below = domain->kernels->corners(&group->hex8, lar_group_fill(group), &places,
@@ -275,26 +288,33 @@ static void apply_group(const lar_domain *domain, int32_t r, bool lists, lar_str
                              &strained->damped[first + (size_t)*damped], state, &stiffness);
         }
         if (!lists || !(below >> (k + LAR_BLOCK) & 1)) continue;
-        strained->near[first + (size_t)*count] = group->lane[k];
-        bool far = may_go(look.over[k], look.longest[k]) > way;
-        strained->stiffness[first + (size_t)(*count)++] = far ? LAR_BARRIER_FAR : stiffness;
+        double far = may_go(look.over[k], look.longest[k]);
+        put_near(strained, first, count, group->lane[k], far > way ? LAR_BARRIER_FAR : stiffness);
+        strained->steady[place].far =
+            strained->travel + fmin(far, may_go(-look.above[k], look.longest[k]));
     }
     group->count = 0;
 }
 
 /* The same of all that are listed, but not for being flat alone: their corners are far from the
  * barrier. Where it is known how far nodes can have gone, corners that cannot be near one are not
- * looked at. */
+ * looked at, nor those of which it is known that they are near one and come no nearer. */
 static void apply_list(const lar_domain *domain, int32_t r, const int32_t *list, int32_t count,
                        lar_state *state) {
     lar_strained *strained = state->strained;
-    const double *sound = strained->sound + LAR_BLOCK * (size_t)domain->run_first[r];
+    size_t first = LAR_BLOCK * (size_t)domain->run_first[r];
+    const double *sound = strained->sound + first;
     double travel = strained->follows ? strained->travel : INFINITY;
+    double then = travel + lar_way_ahead(domain, state);
     lar_strained_group group = {.count = 0};
     strained->count[r] = 0;
     for (int32_t i = 0; i < count; i++) {
         int32_t lane = list[i];
         if (lane & LAR_LANE_FLAT || travel < sound[lane] || !is_there(domain, r, lane)) continue;
+        if (then < strained->steady[first + (size_t)lane].far) {
+            put_near(strained, first, &strained->count[r], lane, LAR_BARRIER_FAR);
+            continue;
+        }
         lar_group_add(domain, r, lane, i, &group);
         if (group.count == LAR_BLOCK) apply_group(domain, r, true, &group, state);
     }

@@ -164,8 +164,9 @@ static void look_at_motion(const measured_list *list, unsigned lanes, lar_hex8_m
     for (; lanes; lanes &= lanes - 1) {
         int k = __builtin_ctz(lanes);
         double way = lar_hex8_steady_way(motion->areas[k], motion->longest[k]);
-        state->strained->steady[list->first + (size_t)group->lanes.lane[k]] =
-            (lar_steady){LAR_HEX8_STEADY * motion->areas[k], state->strained->travel + way};
+        lar_steady *steady = &state->strained->steady[list->first + (size_t)group->lanes.lane[k]];
+        steady->areas = LAR_HEX8_STEADY * motion->areas[k];
+        steady->until = state->strained->travel + way;
     }
 }
 

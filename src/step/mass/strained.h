@@ -18,10 +18,10 @@ typedef struct lar_damped {
     bool gone;       /* there were no barriers */
 } lar_damped;
 
-/* An element's lar_hex8_areas are not more than that [m^4] while lar_strained.travel is below
- * `until`. */
+/* While lar_strained.travel is below `until` an element's lar_hex8_areas are not more than that
+ * [m^4]; while it is below `far` one of its corners is below twice START, and none below START. */
 typedef struct lar_steady {
-    double areas, until;
+    double areas, until, far;
 } lar_steady;
 
 /* The strained elements of a domain's runs, beside the state: each run has the places of its
@@ -35,7 +35,7 @@ struct lar_strained {
     bool follows;       /* one thread moves all nodes: it is known how far they can have gone */
     double travel;      /* that is, along any way [m] */
     double *sound;      /* [8 for each block] `travel` until which no corner is below twice START */
-    lar_steady *steady; /* [8 for each block] of those whose areas have been looked at */
+    lar_steady *steady; /* [8 for each block] of those that have been looked at */
     lar_damped *damped; /* [8 for each block] with half of their work to come */
     int32_t *damped_count; /* [run_count] of these, as above */
     int32_t *lacked;       /* [8 for each block] scratch: elements whose barriers were softer than
