@@ -187,16 +187,22 @@ static inline int32_t lar_lean_node(const lar_lean_block *lean, int a, int lane)
  * larger by a kilobyte. */
 void lar_lean_head(const lar_block_run *run, const lar_lean_block *lean, lar_block_head *head);
 
-/* The local nodes at the corners of a lane of block b. */
-static inline void lar_run_nodes(const lar_block_run *run, int32_t b, int lane, int32_t node[8]) {
+/* The local nodes at the corners of a lane of block b, each `step` behind the one before. */
+static inline void lar_run_nodes_apart(const lar_block_run *run, int32_t b, int lane, int step,
+                                       int32_t *node) {
     const void *block = lar_run_block(run, b);
     if (run->rest && run->rows != LAR_ROWS_NONE) {
-        for (int a = 0; a < 8; a++) node[a] = lar_lean_node(block, a, lane);
+        for (int a = 0; a < 8; a++) node[a * step] = lar_lean_node(block, a, lane);
         return;
     }
     const int32_t(*nodes)[LAR_BLOCK] =
         run->rest ? ((const lar_loose_block *)block)->node : ((const lar_block_head *)block)->node;
-    for (int a = 0; a < 8; a++) node[a] = nodes[a][lane];
+#pragma GCC unroll 8
+    for (int a = 0; a < 8; a++) node[a * step] = nodes[a][lane];
+}
+
+static inline void lar_run_nodes(const lar_block_run *run, int32_t b, int lane, int32_t node[8]) {
+    lar_run_nodes_apart(run, b, lane, 1, node);
 }
 
 /* How much of a run's active stress is there now. */
@@ -276,8 +282,9 @@ typedef struct lar_hex8_places {
 typedef struct lar_hex8_corner_look {
     double above[LAR_BLOCK] __attribute__((aligned(64))); /* of none less than this more than
                                                              share[1] of that at rest [m^3] */
-    double longest[LAR_BLOCK];                            /* square of an edge [m^2] */
-    uint8_t at[LAR_BLOCK]; /* a bit for each corner that has not more than share[0] */
+    double over[LAR_BLOCK];    /* the same of share[0], of lanes with a bit for share[1] */
+    double longest[LAR_BLOCK]; /* square of an edge [m^2] */
+    uint8_t at[LAR_BLOCK];     /* a bit for each corner that has not more than share[0] */
 } lar_hex8_corner_look;
 
 /* Looks at the corners of those of a group that have a bit in `lanes`. Returns a bit for each lane
@@ -287,10 +294,11 @@ typedef unsigned (*lar_hex8_corners)(const lar_hex8_group *group, unsigned lanes
                                      const lar_hex8_places *places, const double share[2],
                                      lar_hex8_corner_look *look);
 
-/* How such elements are and move: lar_hex8_areas [m^4], and the largest square of a corner's speed
- * beside the first one [m^2/s^2]. */
+/* How such elements are and move: lar_hex8_areas [m^4], the square of the longest edge [m^2], and
+ * the largest square of a corner's speed beside the first one [m^2/s^2]. */
 typedef struct lar_hex8_motion {
     double areas[LAR_BLOCK] __attribute__((aligned(64)));
+    double longest[LAR_BLOCK];
     double parting[LAR_BLOCK];
 } lar_hex8_motion;
 

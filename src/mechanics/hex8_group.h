@@ -121,7 +121,7 @@ LAR_INLINE lar_lane least_above(const lar_lane now[8], const lar_lane at_rest[8]
 }
 
 /* The square of the longest edge. */
-LAR_INLINE lar_lane longest_edge(const lar_lane x[8][3]) {
+GROUP_CALL lar_lane longest_edge(const lar_lane x[8][3]) {
     static const int8_t end[12][2] = {{0, 1}, {3, 2}, {4, 5}, {7, 6}, {0, 3}, {1, 2},
                                       {4, 7}, {5, 6}, {0, 4}, {1, 5}, {2, 6}, {3, 7}};
     lar_lane longest = lar_lane_set(0);
@@ -151,6 +151,7 @@ static unsigned corners(const lar_hex8_group *group, unsigned lanes, const lar_h
             corner_volumes((const lar_lane(*)[3])rest, at_rest);
             below[0] |= look_below(now, at_rest, part, share[0], look->at + lane) << lane;
             below[1] |= look_below(now, at_rest, part, share[1], NULL) << lane;
+            lar_lane_store(&look->over[lane], least_above(now, at_rest, share[0]));
         }
         lar_lane_store(&look->above[lane], least_above(now, at_rest, share[1]));
     }
@@ -165,6 +166,7 @@ static void motion(const lar_hex8_group *group, unsigned lanes, const lar_hex8_p
         gather_corners(group, lane, places->rest, places->stride, rest);
         displace(group, lane, places, rest, x);
         lar_lane_store(&out->areas[lane], areas_of((const lar_lane(*)[3])x));
+        lar_lane_store(&out->longest[lane], longest_edge((const lar_lane(*)[3])x));
         if (!v) continue;
         gather_corners(group, lane, v, places->stride, x);
         lar_lane_store(&out->parting[lane], parting_of((const lar_lane(*)[3])x));

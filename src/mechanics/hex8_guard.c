@@ -119,16 +119,22 @@ void lar_hex8_guard_force(const double rest[8][3], const double now[8][3], const
                           const lar_material *material, lar_guard_lead lead, unsigned corners,
                           double force[8][3], lar_guard *guard) {
     double modulus = KAPPA * wave_modulus(material) / 8;
-    *guard = (lar_guard){.min = INFINITY};
+    guard->min = INFINITY;
+    guard->energy = guard->stiffness = 0;
+    memset(guard->slope, 0, sizeof guard->slope);
+    memset(guard->damper, 0, sizeof guard->damper);
     for (; corners; corners &= corners - 1) {
         int a = __builtin_ctz(corners);
-        corner_span c = {0};
+        corner_span c;
         span_corner(rest, now, a, &c);
         if (!(c.j >= guard->min)) guard->min = c.j;
         if (!(c.j < LAR_GUARD_START) || !(c.volume > 0)) continue;
         double energy, slope, curvature, weight = modulus * c.volume * c.share, rate = 0;
         barrier(c.j, &energy, &slope, &curvature);
-        for (int k = 0; k < 4 && v; k++) rate += lar_dot(c.grad[k], v[node_of(a, k)]);
+        for (int k = 0; k < 4 && v; k++) {
+            guard->opening[a][k] = lar_dot(c.grad[k], v[node_of(a, k)]);
+            rate += guard->opening[a][k];
+        }
         guard->energy += weight * energy;
         guard->stiffness += weight * curvature * c.square;
         if (!force) continue;
@@ -230,9 +236,9 @@ double lar_fibre_limit(const lar_material *material) {
            PART * modulus / lar_fibre_families(&material->fibre);
 }
 
-/* What fibres have become stiffer than where tension begins [Pa]. Stiffness of a pair grows with
- * the number, so the other family's is not above the one that is known. */
-static double fibre_growth(const lar_fibre *fibre, const float strain[LAR_STRAIN_NUMBERS]) {
+/* Stiffness of a pair grows with the number, so the other family's is not above the one that is
+ * known. */
+double lar_hex8_fibre_growth(const lar_fibre *fibre, const float strain[LAR_STRAIN_NUMBERS]) {
     double p[LAR_FIBRE_PARAMETERS], J = strain[LAR_STRAIN_VOLUME], area = strain[LAR_STRAIN_AREA];
     double length = strain[LAR_STRAIN_FIBRE];
     int kind = lar_fibre_kind_single(fibre);
@@ -275,37 +281,19 @@ double lar_hex8_area_limit(const lar_hex8 *element) {
     return low + 2 / sqrt(low);
 }
 
-/* fmax of hundreds of elements in a step, without a call: `least` as well of what is no number. */
-static inline double above(double x, double least) {
-    return x > least ? x : least;
+/* Areas are the square of the volume's gradient by the corners, |dV/dx|^2. With edges of L at most
+ * the second derivative of V is nowhere more than 3 L, so while no corner goes farther than d,
+ * which is not above L / 10, the gradient changes by no more than 3 (1.2 L) sqrt(8) d. */
+double lar_hex8_steady_way(double areas, double longest) {
+    static const double MORE = 0.12; /* of the gradient: 1.2544 of its square */
+    double edge = sqrt(longest);
+    return areas > 0 ? fmin(0.1 * edge, MORE * sqrt(areas) / (10.3 * edge)) : 0;
 }
 
-void lar_hex8_stiff_of(const lar_material *material, const float strain[LAR_STRAIN_NUMBERS],
-                       lar_hex8_stiff *stiff) {
-    double J = strain[LAR_STRAIN_VOLUME];
-    stiff->square = 0;
-    if (!(J > 0)) return;
-    lar_law_strained now = lar_law_table[material->law].strained(
-        material->parameter, J, strain[LAR_STRAIN_LENGTH], strain[LAR_STRAIN_AREA]);
-    stiff->square = J * J;
-    stiff->slope = above(now.slope, 0);
-    stiff->pressed = fabs(now.pressure) * sqrt(strain[LAR_STRAIN_LENGTH] / 3.0);
-    stiff->shear = now.shear;
-    stiff->further = now.further;
+void lar_hex8_stiff_begin(const lar_material *material, lar_hex8_stiff *stiff) {
     stiff->of_volume = lar_viscosity_volume_instant(&material->viscosity);
     stiff->of_shear = lar_viscosity_instant(&material->viscosity);
     stiff->whole =
         lar_material_instant_bulk(material) + 4 * lar_material_instant_shear(material) / 3;
     stiff->fibrous = material->fibre.law != LAR_FIBRE_NONE;
-    if (stiff->fibrous) stiff->fibres = stiff->of_shear * fibre_growth(&material->fibre, strain);
-}
-
-double lar_hex8_growth(const lar_hex8_stiff *stiff, double area) {
-    if (!(stiff->square > 0)) return INFINITY;
-    double volume = stiff->slope * area + stiff->pressed;
-    double shear = stiff->shear * above(area / stiff->square, 1) + stiff->further;
-    double growth = (stiff->of_volume * volume + stiff->of_shear * shear) / stiff->whole;
-    if (!stiff->fibrous) return growth;
-    /* Along any direction the element is as stiff as `whole`, and fibres at rest count beside. */
-    return above(growth, 1) + stiff->fibres / stiff->whole;
 }

@@ -26,6 +26,7 @@
 #ifndef LAR_MECHANICS_HEX8_GUARD_H
 #define LAR_MECHANICS_HEX8_GUARD_H
 
+#include <math.h>
 #include <stdbool.h>
 
 #include "mechanics/hex8.h"
@@ -39,6 +40,8 @@ typedef struct lar_guard {
     double stiffness; /* the largest eigenvalue of its second derivative is not above this [N/m] */
     double slope[8];  /* dw/dj of each corner [J] */
     double damper[8]; /* the same of what damps [J] */
+    double opening[8][4]; /* how fast j grows with the corner and with its neighbours [1/s]: where
+                             velocities are known, of corners with a barrier that damps */
 } lar_guard;
 
 /* Looks at an element with corners `rest` and `now` [m]. */
@@ -75,26 +78,65 @@ double lar_hex8_largest_corner(const double rest[8][3]);
  * a flat one. */
 double lar_hex8_area_limit(const lar_hex8 *element);
 
+/* While its corners go no farther than lar_hex8_steady_way [m] an element's lar_hex8_areas do not
+ * become more than that many times as large. `longest`: the square of its longest edge. */
+#define LAR_HEX8_STEADY 1.26
+double lar_hex8_steady_way(double areas, double longest);
+
 /* What the stiffness of a strained element is made of [Pa]. */
 typedef struct lar_hex8_stiff {
-    double square;              /* (det F)^2; 0 where the gradient is turned over */
-    double slope, pressed;      /* of the volume term: what goes with its areas, and what does not */
-    double shear, further;      /* of shear likewise */
+    double square;         /* (det F)^2; 0 where the gradient is turned over */
+    double slope, pressed; /* of the volume term: what goes with its areas, and what does not */
+    double shear, further; /* of shear likewise */
     double of_volume, of_shear; /* how much stiffer both are at once, in parts */
     double fibres;              /* what they have become stiffer */
     double whole;               /* all of it at rest */
     bool fibrous;
 } lar_hex8_stiff;
 
-/* `strain`: what a monitor says (hex8_block.h), of the mean gradient. */
-void lar_hex8_stiff_of(const lar_material *material, const float strain[LAR_STRAIN_NUMBERS],
-                       lar_hex8_stiff *stiff);
+/* What of it is the material's alone. */
+void lar_hex8_stiff_begin(const lar_material *material, lar_hex8_stiff *stiff);
+
+/* What fibres have become stiffer than where tension begins [Pa]. */
+double lar_hex8_fibre_growth(const lar_fibre *fibre, const float strain[LAR_STRAIN_NUMBERS]);
+
+/* fmax(), which is a call. */
+static inline double lar_hex8_larger(double a, double b) {
+    return a > b ? a : b;
+}
+
+/* Then, for any number of its elements, what comes with `strain`: what a monitor says
+ * (hex8_block.h), of the mean gradient. */
+static inline void lar_hex8_stiff_of(const lar_material *material,
+                                     const float strain[LAR_STRAIN_NUMBERS],
+                                     lar_hex8_stiff *stiff) {
+    double J = strain[LAR_STRAIN_VOLUME];
+    stiff->square = 0;
+    if (!(J > 0)) return;
+    lar_law_strained now = lar_law_table[material->law].strained(
+        material->parameter, J, strain[LAR_STRAIN_LENGTH], strain[LAR_STRAIN_AREA]);
+    stiff->square = J * J;
+    stiff->slope = lar_hex8_larger(now.slope, 0);
+    stiff->pressed = fabs(now.pressure) * sqrt(strain[LAR_STRAIN_LENGTH] / 3.0);
+    stiff->shear = now.shear;
+    stiff->further = now.further;
+    if (stiff->fibrous)
+        stiff->fibres = stiff->of_shear * lar_hex8_fibre_growth(&material->fibre, strain);
+}
 
 /* How the square of such an element's highest frequency has grown with its strain, barrier apart:
  * the volume term goes with the squares of its areas and the law's own slope, shear with |F^-1|^2.
  * `area`: what lar_hex8_areas has become, in parts of that at rest; |cof F|^2 / 3 for one that is
  * as long as wide. Infinite where the gradient is turned over. */
-double lar_hex8_growth(const lar_hex8_stiff *stiff, double area);
+static inline double lar_hex8_growth(const lar_hex8_stiff *stiff, double area) {
+    if (!(stiff->square > 0)) return INFINITY;
+    double volume = stiff->slope * area + stiff->pressed;
+    double shear = stiff->shear * lar_hex8_larger(area / stiff->square, 1) + stiff->further;
+    double growth = (stiff->of_volume * volume + stiff->of_shear * shear) / stiff->whole;
+    if (!stiff->fibrous) return growth;
+    /* Along any direction the element is as stiff as `whole`, and fibres at rest count beside. */
+    return lar_hex8_larger(growth, 1) + stiff->fibres / stiff->whole;
+}
 
 /* How stiff a family of an element's fibres may be before it is listed [Pa]. */
 double lar_fibre_limit(const lar_material *material);

@@ -369,16 +369,21 @@ LAR_INLINE unsigned flat_lanes(const double *area, size_t parts, const lane_stra
  * `flat` for their strain. */
 static void list_strained(lar_hex8_monitor *monitor, int32_t b, unsigned strained, unsigned flat,
                           const lane_strain *strain) {
-    for (unsigned all = strained | flat; all; all &= all - 1, monitor->count++) {
+    int32_t count = monitor->count, *listed = monitor->lane;
+    float(*to)[LAR_STRAIN_NUMBERS] = monitor->strain;
+    for (unsigned all = strained | flat; all; all &= all - 1, count++) {
         int lane = __builtin_ctz(all);
-        double values[LAR_LANES] __attribute__((aligned(64)));
-        for (int k = 0; k < LAR_STRAIN_NUMBERS; k++) {
-            lar_lane_store(values, strain[lane / LAR_LANES].number[k]);
-            monitor->strain[monitor->count][k] = (float)values[lane % LAR_LANES];
+        const lar_lane *number = strain[lane / LAR_LANES].number;
+        UNROLL4 for (int k = 0; k < LAR_STRAIN_NUMBERS; k++) {
+            double value; /* of one lane: no need to load the others */
+            memcpy(&value, (const double *)(const void *)&number[k] + lane % LAR_LANES,
+                   sizeof value);
+            to[count][k] = (float)value;
         }
         int32_t mark = strained >> lane & 1 ? 0 : LAR_LANE_FLAT;
-        monitor->lane[monitor->count] = (b * LAR_BLOCK + lane) | mark;
+        listed[count] = (b * LAR_BLOCK + lane) | mark;
     }
+    monitor->count = count;
 }
 
 #ifdef LAR_KERNEL_ELASTIC

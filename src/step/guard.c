@@ -1,182 +1,23 @@
 #include "step/guard.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/vector.h"
 #include "mechanics/hex8_guard.h"
 #include "step/mass/heavier.h"
-#include "step/mass/pressed.h"
-
-/* Elements are listed when a corner is no farther from its barrier than twice START. That no corner
- * comes there before the next list is made is no theorem: in fast pushes with tools at 1.6 m/s the
- * least corner that was not listed stood at 0.48. */
-static const double SHARES[2] = {LAR_GUARD_START, 2 * LAR_GUARD_START};
-
-/* Part of the step by which the damping leads; it counts twice beside the spring (theory.md 10). */
-static const double LEAD = 0.5;
-
-lar_status lar_strained_create(const lar_domain *domain, lar_strained *strained, lar_error *error) {
-    size_t lanes = LAR_BLOCK * (size_t)domain->layout.block_count;
-    size_t runs = (size_t)domain->run_count;
-    *strained = (lar_strained){.lane = lar_calloc(lanes, sizeof *strained->lane),
-                               .count = lar_calloc(runs, sizeof *strained->count),
-                               .listed_count = lar_calloc(runs, sizeof *strained->count),
-                               .strain = lar_calloc(lanes, sizeof *strained->strain),
-                               .near = lar_calloc(lanes, sizeof *strained->near),
-                               .stiffness = lar_calloc(lanes, sizeof *strained->stiffness),
-                               .sound = lar_calloc(lanes, sizeof *strained->sound),
-                               .damped = lar_calloc(lanes, sizeof *strained->damped),
-                               .damped_count = lar_calloc(runs, sizeof *strained->damped_count),
-                               .lacked = lar_calloc(lanes, sizeof *strained->lacked),
-                               .lacked_count = lar_calloc(runs, sizeof *strained->lacked_count)};
-    strained->follows = domain->layout.thread_count == 1;
-    bool active = lar_model_active(domain->model) != NULL;
-    size_t elements = (size_t)domain->model->mesh.element_count;
-    strained->pressed = lar_calloc(elements, sizeof *strained->pressed);
-    strained->beyond = lar_calloc(lanes / LAR_BLOCK, sizeof *strained->beyond);
-    if (active) {
-        strained->activation = lar_calloc_aligned(lanes, sizeof *strained->activation);
-        strained->active_energy = lar_calloc_aligned(lanes, sizeof *strained->active_energy);
-    }
-    if (strained->lane && strained->count && strained->listed_count && strained->strain &&
-        strained->near && strained->stiffness && strained->sound && strained->damped &&
-        strained->damped_count && strained->lacked && strained->lacked_count && strained->pressed &&
-        strained->beyond && (!active || (strained->activation && strained->active_energy)))
-        return LAR_OK;
-    lar_strained_destroy(strained);
-    size_t each = 3 * sizeof *strained->lane + sizeof *strained->strain +
-                  2 * sizeof *strained->sound + sizeof *strained->damped;
-    return lar_fail_memory(error, lanes * each, "the strained elements");
-}
-
-void lar_strained_destroy(lar_strained *strained) {
-    free(strained->lane);
-    free(strained->count);
-    free(strained->listed_count);
-    free(strained->strain);
-    free(strained->near);
-    free(strained->stiffness);
-    free(strained->sound);
-    free(strained->damped);
-    free(strained->damped_count);
-    free(strained->lacked);
-    free(strained->lacked_count);
-    free(strained->activation);
-    free(strained->active_energy);
-    free(strained->pressed);
-    free(strained->beyond);
-    *strained = (lar_strained){0};
-}
-
-/* Where the corners of an element are at rest and now, and how fast they are (`v` may be NULL). */
-static void corners_of(const lar_domain *domain, const lar_state *state, lar_gid e,
-                       double rest[8][3], double now[8][3], double v[8][3]) {
-    const lar_mesh *mesh = &domain->model->mesh;
-    for (int a = 0; a < 8; a++) {
-        lar_gid node = mesh->element[e][a];
-        lar_lid local = domain->layout.local[node];
-        for (int i = 0; i < 3; i++) {
-            size_t at = lar_state_at(state, local, i);
-            rest[a][i] = mesh->position[node][i];
-            now[a][i] = state->u[at] + rest[a][i];
-            if (v) v[a][i] = state->v[at];
-        }
-    }
-}
-
-/* Strained elements of a run that are looked at side by side. */
-typedef struct strained_group {
-    lar_hex8_group hex8;
-    int count;
-    int32_t lane[LAR_BLOCK];  /* block * 8 + lane */
-    int32_t entry[LAR_BLOCK]; /* of a list */
-    lar_gid element[LAR_BLOCK];
-} strained_group;
-
-static lar_gid element_of(const lar_domain *domain, int32_t r, int32_t lane) {
-    const lar_lanes *block = domain->layout.block + domain->run_first[r] + lane / LAR_BLOCK;
-    return block->element[lane % LAR_BLOCK];
-}
+#include "step/mass/measured.h"
 
 static bool is_there(const lar_domain *domain, int32_t r, int32_t lane) {
-    return element_of(domain, r, lane) >= 0;
-}
-
-static void add_lane(const lar_domain *domain, int32_t r, int32_t lane, int32_t entry,
-                     strained_group *group) {
-    const lar_block_run *run = &domain->run[r];
-    int32_t block = lane / LAR_BLOCK, at = group->count++;
-    size_t first = LAR_BLOCK * (size_t)domain->run_first[r];
-    int32_t node[8];
-    lar_run_nodes(run, block, lane % LAR_BLOCK, node);
-    for (int a = 0; a < 8; a++) group->hex8.node[a][at] = node[a];
-    group->hex8.largest[at] = domain->base[first + (size_t)lane].largest;
-    group->lane[at] = lane;
-    group->entry[at] = entry;
-    group->element[at] = element_of(domain, r, lane);
-}
-
-/* All lanes are computed with. */
-static unsigned fill_up(strained_group *group) {
-    for (int at = group->count; at < LAR_BLOCK; at++) {
-        for (int a = 0; a < 8; a++) group->hex8.node[a][at] = group->hex8.node[a][0];
-        group->hex8.largest[at] = 0;
-    }
-    return (1U << group->count) - 1;
-}
-
-/* Corners of a lane of run r as the mesh counts them: forces of several are added in that order. */
-static unsigned corners_in_mesh(const lar_domain *domain, int32_t r, int32_t lane, unsigned at) {
-    uint32_t corner = domain->base[LAR_BLOCK * domain->run_first[r] + lane].corner;
-    unsigned in_mesh = 0;
-    for (; at; at &= at - 1) in_mesh |= 1u << (corner >> 4 * __builtin_ctz(at) & 7);
-    return in_mesh;
-}
-
-/* What is found in a step counts from the next one on, until that is over or, where steps are not
- * divided and nothing is close to it, until the next interval is. */
-enum { SEEN_IN_STEPS = 3 };
-
-static double steps_ahead(const lar_domain *domain, const lar_state *state) {
-    return state->close ? SEEN_IN_STEPS : fmax(SEEN_IN_STEPS, (double)domain->interval + 1);
-}
-
-/* Whether nodes of an element move against each other by more than a tenth of its size in that
- * time: what springs back when it is let go comes to its barriers from where nobody looks. */
-static bool is_thrown(const lar_domain *domain, const lar_state *state, double parting,
-                      double volume) {
-    double ahead = steps_ahead(domain, state) * domain->time_step;
-    double square = 100 * parting * ahead * ahead;
-    return square * square * square > volume * volume;
-}
-
-/* How stiff an element's barriers will be in `ahead` seconds if nothing stops these corners. */
-static double barriers_ahead(const lar_domain *domain, const lar_state *state, lar_gid e,
-                             double ahead, unsigned corners) {
-    double rest[8][3], now[8][3], v[8][3];
-    lar_guard then;
-    corners_of(domain, state, e, rest, now, v);
-    for (int a = 0; a < 8; a++)
-        for (int i = 0; i < 3; i++) now[a][i] += ahead * v[a][i];
-    lar_hex8_guard_force((const double(*)[3])rest, (const double(*)[3])now, NULL,
-                         lar_domain_material(domain, e), (lar_guard_lead){0}, corners, NULL, &then);
-    return then.stiffness;
-}
-
-/* How the square of a flat element's frequency has grown, with what its neighbours leave of it: its
- * areas as they are, not as those of a cube would be with such a strain. 0 for others. */
-static double growth_of_flat(const lar_domain *domain, lar_gid e, size_t place, double areas,
-                             const lar_hex8_stiff *stiff) {
-    if (!domain->area_limit || !(domain->area_limit[place] < LAR_STRAINED_AREA)) return 0;
-    return domain->rate[e].share * lar_hex8_growth(stiff, areas / domain->base[place].areas);
+    return lar_lane_element(domain, r, (uint32_t)lane) >= 0;
 }
 
 /* In whole units, which sum to nothing. */
 static void add(const lar_domain *domain, lar_gid e, const double force[8][3], lar_state *state) {
     int64_t whole[8][3], sum[3] = {0};
+    size_t stride = state->stride;
     for (int a = 0; a < 7; a++)
+#pragma GCC unroll 3
         for (int i = 0; i < 3; i++) {
             double units = force[a][i] * domain->scale;
             if (!(fabs(units) < 0x1p56)) return; /* a run that is about to break */
@@ -186,10 +27,10 @@ static void add(const lar_domain *domain, lar_gid e, const double force[8][3], l
     for (int i = 0; i < 3; i++) whole[7][i] = -sum[i];
     for (int a = 0; a < 8; a++) {
         lar_lid node = domain->layout.local[domain->model->mesh.element[e][a]];
-        for (int i = 0; i < 3; i++) {
-            int64_t *to = &state->force[lar_state_at(state, node, i)];
-            *to = (int64_t)((uint64_t)*to + (uint64_t)whole[a][i]);
-        }
+        int64_t *to = &state->force[lar_state_at(state, node, 0)];
+#pragma GCC unroll 3
+        for (size_t i = 0; i < 3; i++)
+            to[i * stride] = (int64_t)((uint64_t)to[i * stride] + (uint64_t)whole[a][i]);
     }
 }
 
@@ -199,8 +40,8 @@ static void add(const lar_domain *domain, lar_gid e, const double force[8][3], l
 static double soften(const lar_domain *domain, lar_gid e, double stiffness, double step,
                      double mean, double force[8][3]) {
     static const double ROOM = 1; /* of (omega dt / 2)^2 */
-    double rate =
-        (1 + 2 * LEAD) * stiffness / (domain->rate[e].mass * lar_burden_factor(domain, e));
+    double rate = (1 + 2 * LAR_BARRIER_LEAD) * stiffness /
+                  (domain->rate[e].mass * lar_burden_factor(domain, e));
     double takes = 0.25 * mean * fmax(mean, step) * rate;
     if (!(takes > ROOM)) return 1;
     for (int a = 0; a < 8; a++)
@@ -208,10 +49,21 @@ static double soften(const lar_domain *domain, lar_gid e, double stiffness, doub
     return ROOM / takes;
 }
 
+/* lar_hex8_guard_power, where it is known how fast corners open. */
+static double power_of(const double opening[8][4], const double damper[8]) {
+    double power = 0;
+    for (int a = 0; a < 8; a++) {
+        if (damper[a] == 0) continue;
+        for (int k = 0; k < 4; k++) power += damper[a] * opening[a][k];
+    }
+    return power;
+}
+
 /* Half of the work of what an element was damped with: contact takes it. What a barrier lacks that
- * is softer than its energy says is done to the body from outside. */
+ * is softer than its energy says is done to the body from outside. `opening`: as of lar_guard, or
+ * NULL. */
 static bool add_half_work(const double rest[8][3], const double now[8][3], const double v[8][3],
-                          const lar_damped *damped, lar_state *state) {
+                          const double opening[8][4], const lar_damped *damped, lar_state *state) {
     double damper[8], lack[8];
     bool lacks = false;
     for (int a = 0; a < 8; a++) {
@@ -219,9 +71,12 @@ static bool add_half_work(const double rest[8][3], const double now[8][3], const
         lack[a] = (double)damped->lack[a];
         lacks = lacks || lack[a] != 0;
     }
-    state->contact += (double)damped->half_mean * lar_hex8_guard_power(rest, now, v, damper);
+    double half = (double)damped->half_mean;
+    state->contact +=
+        half * (opening ? power_of(opening, damper) : lar_hex8_guard_power(rest, now, v, damper));
     if (lacks)
-        state->external += (double)damped->half_mean * lar_hex8_guard_power(rest, now, v, lack);
+        state->external +=
+            half * (opening ? power_of(opening, lack) : lar_hex8_guard_power(rest, now, v, lack));
     return lacks;
 }
 
@@ -278,9 +133,10 @@ static bool apply(const lar_domain *domain, lar_gid e, unsigned corners, bool la
     double rest[8][3], now[8][3], v[8][3], force[8][3] = {{0}};
     double step = domain->time_step / state->parts;
     double mean = mean_step(domain, state);
-    const lar_guard_lead lead = {.closing = LEAD * step, .opening = LEAD * domain->time_step};
+    const lar_guard_lead lead = {.closing = LAR_BARRIER_LEAD * step,
+                                 .opening = LAR_BARRIER_LEAD * domain->time_step};
     lar_guard guard;
-    corners_of(domain, state, e, rest, now, v);
+    lar_strained_corners(domain, state, e, rest, now, v);
     lar_hex8_guard_force((const double(*)[3])rest, (const double(*)[3])now, (const double(*)[3])v,
                          lar_domain_material(domain, e), lead, corners, force, &guard);
     if (stiffness) *stiffness = guard.stiffness;
@@ -297,8 +153,8 @@ static bool apply(const lar_domain *domain, lar_gid e, unsigned corners, bool la
         damped->damper[a] = (float)(part * guard.damper[a]);
         damped->lack[a] = (float)((1 - part) * guard.slope[a]);
     }
-    add_half_work((const double(*)[3])rest, (const double(*)[3])now, (const double(*)[3])v, damped,
-                  state);
+    add_half_work((const double(*)[3])rest, (const double(*)[3])now, (const double(*)[3])v,
+                  (const double(*)[4])guard.opening, damped, state);
     if (part < 1 && !lacked && state->past > 0)
         add_first_rise(lar_domain_material(domain, e), (const double(*)[3])rest,
                        (const double(*)[3])now, (const double(*)[3])v, mean, state);
@@ -323,10 +179,10 @@ typedef struct step_back {
 
 static void look_back(const lar_domain *domain, const lar_damped *damped, const lar_state *state,
                       step_back *back) {
-    corners_of(domain, state, damped->element, back->rest, back->now, back->v);
-    for (int a = 0; a < 8; a++)
-        for (int k = 0; k < 3; k++)
-            back->then[a][k] = back->now[a][k] - (double)damped->step * back->v[a][k];
+    lar_strained_corners(domain, state, damped->element, back->rest, back->now, back->v);
+    const double *now = back->now[0], *v = back->v[0];
+    double *then = back->then[0], step = (double)damped->step;
+    for (int i = 0; i < 24; i++) then[i] = now[i] - step * v[i];
 }
 
 /* The other half of the work of what damped an element, now that its nodes have moved. Returns
@@ -335,7 +191,8 @@ static bool finish(const lar_domain *domain, const lar_damped *damped, const ste
                    lar_state *state) {
     const double(*rest)[3] = (const double(*)[3])back->rest,
           (*then)[3] = (const double(*)[3])back->then;
-    if (!damped->gone) return add_half_work(rest, then, (const double(*)[3])back->v, damped, state);
+    if (!damped->gone)
+        return add_half_work(rest, then, (const double(*)[3])back->v, NULL, damped, state);
     add_difference(lar_domain_material(domain, damped->element), rest, then,
                    (const double(*)[3])back->now, state);
     return false;
@@ -394,184 +251,100 @@ static bool is_among(lar_gid e, const int32_t *list, int32_t count) {
     return false;
 }
 
+/* Into the list of lanes with a corner below twice START, which ascends. */
+static void put_near(lar_strained *strained, size_t first, int32_t *count, int32_t lane,
+                     double stiffness) {
+    int32_t *near = strained->near + first, k = (*count)++;
+    double *stiff = strained->stiffness + first;
+    for (; k > 0 && near[k - 1] > lane; k--) {
+        near[k] = near[k - 1];
+        stiff[k] = stiff[k - 1];
+    }
+    near[k] = lane;
+    stiff[k] = stiffness;
+}
+
 /* Looks at the corners of a group, which is empty then: adds the forces of their barriers. With
  * `lists` the lanes with a corner below twice START are listed. */
-static void apply_group(const lar_domain *domain, int32_t r, bool lists, strained_group *group,
+static void apply_group(const lar_domain *domain, int32_t r, bool lists, lar_strained_group *group,
                         lar_state *state) {
     lar_strained *strained = state->strained;
     size_t first = LAR_BLOCK * (size_t)domain->run_first[r];
-    int32_t *count = &strained->count[r], *damped = &strained->damped_count[r];
+    int32_t *count = strained->count + r, *damped = strained->damped_count + r;
     const lar_hex8_places places = {.stride = state->stride, .rest = domain->rest, .u = state->u};
     lar_hex8_corner_look look;
-    unsigned below = domain->kernels->corners(&group->hex8, fill_up(group), &places, SHARES, &look);
+    unsigned below = domain->kernels->corners(&group->hex8, lar_group_fill(group), &places,
+                                              LAR_GUARD_SHARES, &look);
+    double way = lar_way_ahead(domain, state);
     for (int k = 0; k < group->count; k++) {
         size_t place = first + (size_t)group->lane[k];
         double stiffness = 0;
         strained->sound[place] = strained->travel + may_go(look.above[k], look.longest[k]);
         if (below >> k & 1) {
-            unsigned corners = corners_in_mesh(domain, r, group->lane[k], look.at[k]);
+            unsigned corners = lar_corners_in_mesh(domain, r, group->lane[k], look.at[k]);
             bool lacked =
                 is_among(group->element[k], strained->lacked + first, strained->lacked_count[r]);
             *damped += apply(domain, group->element[k], corners, lacked,
                              &strained->damped[first + (size_t)*damped], state, &stiffness);
         }
         if (!lists || !(below >> (k + LAR_BLOCK) & 1)) continue;
-        strained->near[first + (size_t)*count] = group->lane[k];
-        strained->stiffness[first + (size_t)(*count)++] = stiffness;
+        double far = may_go(look.over[k], look.longest[k]);
+        put_near(strained, first, count, group->lane[k], far > way ? LAR_BARRIER_FAR : stiffness);
+        strained->steady[place].far =
+            strained->travel + fmin(far, may_go(-look.above[k], look.longest[k]));
     }
     group->count = 0;
 }
 
 /* The same of all that are listed, but not for being flat alone: their corners are far from the
  * barrier. Where it is known how far nodes can have gone, corners that cannot be near one are not
- * looked at. */
+ * looked at, nor those of which it is known that they are near one and come no nearer. */
 static void apply_list(const lar_domain *domain, int32_t r, const int32_t *list, int32_t count,
                        lar_state *state) {
     lar_strained *strained = state->strained;
-    const double *sound = strained->sound + LAR_BLOCK * (size_t)domain->run_first[r];
-    strained_group group = {.count = 0};
+    size_t first = LAR_BLOCK * (size_t)domain->run_first[r];
+    const double *sound = strained->sound + first;
+    double travel = strained->follows ? strained->travel : INFINITY;
+    double then = travel + lar_way_ahead(domain, state);
+    lar_strained_group group = {.count = 0};
     strained->count[r] = 0;
     for (int32_t i = 0; i < count; i++) {
         int32_t lane = list[i];
-        if (lane & LAR_LANE_FLAT || !is_there(domain, r, lane)) continue;
-        if (strained->follows && strained->travel < sound[lane]) continue;
-        add_lane(domain, r, lane, i, &group);
+        if (lane & LAR_LANE_FLAT || travel < sound[lane] || !is_there(domain, r, lane)) continue;
+        if (then < strained->steady[first + (size_t)lane].far) {
+            put_near(strained, first, &strained->count[r], lane, LAR_BARRIER_FAR);
+            continue;
+        }
+        lar_group_add(domain, r, lane, i, &group);
         if (group.count == LAR_BLOCK) apply_group(domain, r, true, &group, state);
     }
     if (group.count > 0) apply_group(domain, r, true, &group, state);
 }
 
-/* How stiff the barriers are that lanes of a group with a bit in `coming` are coming to in `ahead`
- * seconds; no less than they are now. */
-static void look_ahead(const lar_domain *domain, const lar_state *state, int32_t r,
-                       const strained_group *group, unsigned coming, const double ahead[LAR_BLOCK],
-                       double stiffness[LAR_BLOCK]) {
-    const lar_hex8_places places = {.stride = state->stride,
-                                    .rest = domain->rest,
-                                    .u = state->u,
-                                    .v = state->v,
-                                    .ahead = ahead};
-    lar_hex8_corner_look look;
-    coming &= domain->kernels->corners(&group->hex8, coming, &places, SHARES, &look);
-    for (; coming; coming &= coming - 1) {
-        int k = __builtin_ctz(coming);
-        unsigned corners = corners_in_mesh(domain, r, group->lane[k], look.at[k]);
-        stiffness[k] =
-            fmax(stiffness[k], barriers_ahead(domain, state, group->element[k], ahead[k], corners));
-    }
-}
-
-/* How fast a strained element has become: (omega dt / 2)^2, if it is not heavier for a while. */
-static void measure(const lar_domain *domain, lar_gid e, size_t place, double stiffness,
-                    double areas, const float strain[LAR_STRAIN_NUMBERS], lar_state *state) {
-    double faster = domain->faster[lar_factor_of(domain->model->element_material[e])];
-    double rate = faster * domain->rate[e].square;
-    lar_hex8_stiff stiff;
-    lar_hex8_stiff_of(lar_domain_material(domain, e), strain, &stiff);
-    double square = rate * lar_hex8_growth(&stiff, strain[LAR_STRAIN_AREA] / 3.0);
-    square += (1 + 2 * LEAD) * stiffness / domain->rate[e].mass;
-    double flat = rate * growth_of_flat(domain, e, place, areas, &stiff);
-    if (flat > square) square = flat;
-    double need = 0.25 * domain->time_step * domain->time_step * square;
-    if (!(need >= 0)) need = INFINITY; /* a corner that is a point has no number */
-    if (!(need <= state->need)) state->need = need;
-    if (state->needs) lar_pressed_need(domain, e, need, state);
-}
-
-/* Elements of which more than their strain counts, and what is known of them. */
-typedef struct measured_group {
-    strained_group lanes;
-    unsigned moves, near, may_fold; /* bits: areas and speeds are asked for; a corner is below
-                                       twice START; corners may come near a barrier */
-    double stiffness[LAR_BLOCK];    /* of barriers that are at work [N/m] */
-} measured_group;
-
-static void measure_group(const lar_domain *domain, const lar_hex8_monitor *monitor, int32_t r,
-                          measured_group *group, lar_state *state) {
-    strained_group *lanes = &group->lanes;
-    const lar_hex8_places places = {.stride = state->stride, .rest = domain->rest, .u = state->u};
+/* The state has been put elsewhere: corners may be anywhere. */
+static void forget_places(const lar_domain *domain, int32_t r, lar_strained *strained) {
     size_t first = LAR_BLOCK * (size_t)domain->run_first[r];
-    double ahead[LAR_BLOCK] __attribute__((aligned(64))) = {0};
-    lar_hex8_motion motion = {{0}, {0}};
-    unsigned coming = 0;
-    fill_up(lanes);
-    if (group->moves)
-        domain->kernels->motion(&lanes->hex8, group->moves, &places,
-                                group->may_fold ? state->v : NULL, &motion);
-    for (int k = 0; k < lanes->count; k++) {
-        double volume = domain->base[first + (size_t)lanes->lane[k]].volume;
-        if (group->near >> k & 1)
-            ahead[k] = SEEN_IN_STEPS * domain->time_step;
-        else if (group->may_fold >> k & 1 && is_thrown(domain, state, motion.parting[k], volume))
-            ahead[k] = steps_ahead(domain, state) * domain->time_step;
-        if (ahead[k] > 0) coming |= 1U << k;
-    }
-    if (coming) look_ahead(domain, state, r, lanes, coming, ahead, group->stiffness);
-    for (int k = 0; k < lanes->count; k++)
-        measure(domain, lanes->element[k], first + (size_t)lanes->lane[k], group->stiffness[k],
-                motion.areas[k], monitor->strain[lanes->entry[k]], state);
-    lanes->count = 0;
-    group->moves = group->near = group->may_fold = 0;
-}
-
-/* No corners part faster than this, where it is known [m^2/s^2]. */
-static double parting_max(const lar_state *state) {
-    return state->strained->follows && state->listed ? 12.0001 * state->fastest * state->fastest
-                                                     : INFINITY;
-}
-
-/* Measures all that are listed: most by their strain alone. Those near a barrier are looked at
- * beside each other, and so are the others, of which less is asked. */
-static void measure_list(const lar_domain *domain, const lar_hex8_monitor *monitor, int32_t r,
-                         lar_state *state) {
-    const lar_strained *strained = state->strained;
-    size_t first = LAR_BLOCK * (size_t)domain->run_first[r];
-    double parting = parting_max(state);
-    measured_group groups[2] = {{.lanes = {.count = 0}}, {.lanes = {.count = 0}}};
-    int32_t met = 0; /* of strained->near */
-    for (int32_t i = 0; i < monitor->count; i++) {
-        int32_t lane = monitor->lane[i] & ~LAR_LANE_FLAT;
-        size_t place = first + (size_t)lane;
-        if (!is_there(domain, r, lane)) continue;
-        bool near = met < strained->count[r] && strained->near[first + (size_t)met] == lane;
-        bool may_fold = !near && lane == monitor->lane[i] &&
-                        is_thrown(domain, state, parting, domain->base[place].volume);
-        bool flat = domain->area_limit && domain->area_limit[place] < LAR_STRAINED_AREA;
-        if (!near && !may_fold && !flat) {
-            measure(domain, element_of(domain, r, lane), place, 0, 0, monitor->strain[i], state);
-            continue;
-        }
-        measured_group *group = &groups[near];
-        int k = group->lanes.count;
-        group->stiffness[k] = near ? strained->stiffness[first + (size_t)met++] : 0;
-        group->near |= (unsigned)near << k;
-        group->may_fold |= (unsigned)may_fold << k;
-        group->moves |= (unsigned)(may_fold || flat) << k;
-        add_lane(domain, r, lane, i, &group->lanes);
-        if (group->lanes.count == LAR_BLOCK) measure_group(domain, monitor, r, group, state);
-    }
-    for (int k = 0; k < 2; k++)
-        if (groups[k].lanes.count > 0) measure_group(domain, monitor, r, &groups[k], state);
+    size_t lanes = LAR_BLOCK * (size_t)domain->run[r].count;
+    memset(strained->sound + first, 0, lanes * sizeof *strained->sound);
+    memset(strained->steady + first, 0, lanes * sizeof *strained->steady);
 }
 
 void lar_guard_select_and_apply(const lar_domain *domain, int32_t r,
                                 const lar_hex8_monitor *monitor, bool measures, lar_state *state) {
     lar_strained *strained = state->strained;
     finish_damping(domain, r, state);
-    if (!state->listed && strained->travel > 0)
-        memset(strained->sound + LAR_BLOCK * (size_t)domain->run_first[r], 0,
-               LAR_BLOCK * (size_t)domain->run[r].count * sizeof *strained->sound);
+    if (strained->follows && !state->listed) forget_places(domain, r, strained);
     apply_list(domain, r, monitor->lane, monitor->count, state);
-    if (measures) measure_list(domain, monitor, r, state);
+    if (measures) lar_measure_strained(domain, monitor, r, state);
 }
 
 void lar_guard_apply(const lar_domain *domain, int32_t r, lar_state *state) {
     const lar_strained *strained = state->strained;
     const int32_t *near = strained->near + LAR_BLOCK * (size_t)domain->run_first[r];
-    strained_group group = {.count = 0};
+    lar_strained_group group = {.count = 0};
     finish_damping(domain, r, state);
     for (int32_t i = 0; i < strained->count[r]; i++) {
-        add_lane(domain, r, near[i], i, &group);
+        lar_group_add(domain, r, near[i], i, &group);
         if (group.count == LAR_BLOCK) apply_group(domain, r, false, &group, state);
     }
     if (group.count > 0) apply_group(domain, r, false, &group, state);
@@ -591,7 +364,7 @@ void lar_guard_half_work(const lar_domain *domain, lar_state *state) {
 double lar_guard_energy(const lar_domain *domain, const lar_state *state, lar_gid e) {
     double rest[8][3], now[8][3];
     lar_guard guard;
-    corners_of(domain, state, e, rest, now, NULL);
+    lar_strained_corners(domain, state, e, rest, now, NULL);
     lar_hex8_guard((const double(*)[3])rest, (const double(*)[3])now,
                    lar_domain_material(domain, e), &guard);
     return guard.energy;

@@ -10,44 +10,7 @@
 #ifndef LAR_STEP_GUARD_H
 #define LAR_STEP_GUARD_H
 
-#include "step/domain.h"
-#include "layout/state.h"
-
-/* What damped an element in the step before, and what its barriers should have pushed with. */
-typedef struct lar_damped {
-    lar_gid element;
-    float step;      /* that its nodes then moved [s] */
-    float half_mean; /* of the time that the force acted [s] */
-    float damper[8]; /* of each corner: what takes energy [J] */
-    float lack[8];   /* what a softened barrier lacks [J] */
-    bool gone;       /* there were no barriers */
-} lar_damped;
-
-/* The strained elements of a domain's runs, beside the state: each run has the places of its
- * blocks, and is one thread's. */
-struct lar_strained {
-    int32_t *lane;         /* [8 for each block] what is looked at in every step */
-    int32_t *count;        /* [run_count] of these, from the first of a run's places on */
-    int32_t *listed_count; /* [run_count] strained elements of the last list (redivide.c) */
-    float (*strain)[LAR_STRAIN_NUMBERS]; /* [8 for each block] scratch of a monitor */
-    int32_t *near;                       /* [8 for each block] scratch: lanes with a corner below */
-    double *stiffness;                   /* twice START, and of their barriers, likewise [N/m] */
-    bool follows;       /* one thread moves all nodes: it is known how far they can have gone */
-    double travel;      /* that is, along any way [m] */
-    double *sound;      /* [8 for each block] `travel` until which no corner is below twice START */
-    lar_damped *damped; /* [8 for each block] with half of their work to come */
-    int32_t *damped_count; /* [run_count] of these, as above */
-    int32_t *lacked;       /* [8 for each block] scratch: elements whose barriers were softer than
-                              their energy says in the step before */
-    int32_t *lacked_count; /* [run_count] of these, as above */
-    double *activation;    /* [8 for each block] scratch (step/activation.h), */
-    double *active_energy; /* likewise; NULL where nothing is active */
-    uint8_t *pressed;      /* [elements of the model] step/mass/pressed.h; NULL: none is heavier */
-    uint8_t *beyond;       /* [blocks] of lar_viscous_step, zero but in a step that fails */
-};
-
-lar_status lar_strained_create(const lar_domain *domain, lar_strained *strained, lar_error *error);
-void lar_strained_destroy(lar_strained *strained); /* idempotent */
+#include "step/mass/strained.h"
 
 /* Adds the barriers' forces of run r to state->force. */
 void lar_guard_apply(const lar_domain *domain, int32_t r, lar_state *state);

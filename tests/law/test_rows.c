@@ -192,6 +192,7 @@ static void strained_is_as_stiff_as_it_says(void **state) {
             double growth = stiffest(&material, (rows)F) / stiffest(&material, rest);
             if (J < 0.5 || J > 1.3 || strain[LAR_STRAIN_AREA] > 20 || growth < 1.5) continue;
             lar_hex8_stiff stiff;
+            lar_hex8_stiff_begin(&material, &stiff);
             lar_hex8_stiff_of(&material, strain, &stiff);
             double ratio = lar_hex8_growth(&stiff, strain[LAR_STRAIN_AREA] / 3.0) / growth;
             min = fmin(min, ratio);

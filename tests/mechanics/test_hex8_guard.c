@@ -214,6 +214,54 @@ static void corners_are(const lar_hex8_group *group, const block_nodes *nodes, u
     }
 }
 
+static double longest_edge(const double x[8][3]) {
+    static const int end[12][2] = {{0, 1}, {3, 2}, {4, 5}, {7, 6}, {0, 3}, {1, 2},
+                                   {4, 7}, {5, 6}, {0, 4}, {1, 5}, {2, 6}, {3, 7}};
+    double longest = 0;
+    for (int e = 0; e < 12; e++) {
+        double d[3];
+        lar_minus(x[end[e][1]], x[end[e][0]], d);
+        longest = fmax(longest, lar_dot(d, d));
+    }
+    return longest;
+}
+
+/* However flat or folded it is, and whichever way its corners go. */
+static void areas_stay_while_corners_go_little(void **state) {
+    (void)state;
+    uint64_t seed = 29;
+    double most = 0;
+    for (int k = 0; k < 2000; k++) {
+        double at[8][3], then[8][3], worst = 0;
+        box_corners(size, size * (k % 3 ? 1 : 0.1), size * (k % 5 ? 0.2 : 1), at);
+        for (int a = 0; a < 8; a++)
+            for (int i = 0; i < 3; i++) at[a][i] += 0.1 * (k % 10) * size * random_value(&seed);
+        double areas = lar_hex8_areas((rows)at);
+        double way = lar_hex8_steady_way(areas, longest_edge((rows)at));
+        assert_true(way > 0);
+        for (int n = 0; n < 40; n++) { /* uphill, from anywhere */
+            for (int a = 0; a < 8; a++) {
+                double d[3], length;
+                for (int i = 0; i < 3; i++) d[i] = random_value(&seed);
+                length = sqrt(lar_dot(d, d));
+                for (int i = 0; i < 3; i++) then[a][i] = at[a][i] + way * d[i] / length;
+            }
+            worst = fmax(worst, lar_hex8_areas((rows)then));
+        }
+        for (int i = 0; i < 3; i++) { /* and as it becomes larger most */
+            double middle = 0;
+            for (int a = 0; a < 8; a++) middle += at[a][i] / 8;
+            for (int a = 0; a < 8; a++)
+                then[a][i] = at[a][i] + (at[a][i] > middle ? way : -way) / sqrt(3);
+        }
+        worst = fmax(worst, lar_hex8_areas((rows)then));
+        assert_true(worst <= LAR_HEX8_STEADY * areas);
+        most = fmax(most, worst / areas);
+    }
+    print_message("areas grew to %.3f times at most, %.3f is said\n", most, LAR_HEX8_STEADY);
+    assert_true(most > 1.05);
+}
+
 /* Areas and the largest square of a speed beside the first corner, to the bit. */
 static void motion_is(const lar_hex8_group *group, const block_nodes *nodes, unsigned lanes,
                       const lar_hex8_motion *motion) {
@@ -230,6 +278,7 @@ static void motion_is(const lar_hex8_group *group, const block_nodes *nodes, uns
         if (!(lanes >> lane & 1)) continue;
         assert_true(motion->areas[lane] == lar_hex8_areas((rows)now));
         assert_true(motion->parting[lane] == most);
+        assert_true(motion->longest[lane] == longest_edge((rows)now));
     }
 }
 
@@ -266,6 +315,9 @@ static void kernels_see_the_same_corners(void **state) {
             unsigned lanes = 0xffu >> k % 8 << k % 3 & 0xff, both = lanes | lanes << LAR_BLOCK;
             const lar_hex8_places now = {.stride = TEST_STRIDE, .rest = rest, .u = u};
             assert_int_equal(kernels->corners(&group, lanes, &now, share, &look), expected & both);
+            for (int lane = 0; lane < LAR_BLOCK; lane++)
+                if (lanes >> lane & 1 && expected >> (lane + LAR_BLOCK) & 1)
+                    assert_true((look.over[lane] > 0) == !(expected >> lane & 1));
             corners_are(&group, &nodes, lanes, NULL, look.at);
             kernels->motion(&group, lanes, &now, v, &motion);
             motion_is(&group, &nodes, lanes, &motion);
@@ -310,6 +362,7 @@ static void fill_deformed(uint64_t *seed, const lar_material *material, lar_hex8
 /* Of an element that is as long as wide. */
 static double growth_of(const lar_material *material, const float strain[LAR_STRAIN_NUMBERS]) {
     lar_hex8_stiff stiff;
+    lar_hex8_stiff_begin(material, &stiff);
     lar_hex8_stiff_of(material, strain, &stiff);
     return lar_hex8_growth(&stiff, strain[LAR_STRAIN_AREA] / 3.0);
 }
@@ -385,6 +438,7 @@ int main(void) {
                                        cmocka_unit_test(long_edges_have_slopes),
                                        cmocka_unit_test(damping_only_takes),
                                        cmocka_unit_test(kernels_see_the_same_corners),
+                                       cmocka_unit_test(areas_stay_while_corners_go_little),
                                        cmocka_unit_test(what_stiffens_is_listed),
                                        cmocka_unit_test(frequency_grows_from_one)};
     return cmocka_run_group_tests(tests, NULL, NULL);
