@@ -70,7 +70,10 @@ void lar_face_normal(const double x[4][3], double normal[3]) {
 double lar_segment_depth(const lar_segment *segment, double radius, const double point[3],
                          double normal[3], double *along) {
     const lar_segment_axis axis = lar_segment_axis_of(segment);
-    return lar_segment_depth_by(segment, &axis, radius, point, normal, along);
+    double distance = sqrt(lar_segment_away(segment, &axis, point, normal, along));
+    if (!(distance > 0)) return -radius;
+    for (int i = 0; i < 3; i++) normal[i] /= distance;
+    return radius - distance;
 }
 
 /* Series for an eighth of the angle, then doubled three times: 1 - cos is carried along, so that

@@ -143,14 +143,6 @@ static inline double lar_segment_away(const lar_segment *segment, const lar_segm
 /* How deep a point is inside the tool around a segment [m] (negative: how far outside), the unit
  * normal from the segment to the point, and where on the segment (0 to 1) it starts. A point on the
  * segment itself has no normal, and counts as outside. */
-static inline double lar_segment_depth_by(const lar_segment *segment, const lar_segment_axis *axis,
-                                          double radius, const double point[3], double normal[3],
-                                          double *along) {
-    double distance = sqrt(lar_segment_away(segment, axis, point, normal, along));
-    if (!(distance > 0)) return -radius;
-    for (int i = 0; i < 3; i++) normal[i] /= distance;
-    return radius - distance;
-}
 double lar_segment_depth(const lar_segment *segment, double radius, const double point[3],
                          double normal[3], double *along);
 
