@@ -31,7 +31,7 @@ static const double WORTH = 0.1;
 /* What an element costs besides, in elements at rest: where it is listed as strained, where its
  * barriers are at work, and for a face of it that a tool pushes. From samples of the demonstration
  * organ with both instruments deep; what is measured corrects all three together. */
-static const float LISTED = 3, BARRIER = 50, PUSHED = 70;
+static const float LISTED = 1, BARRIER = 18, PUSHED = 25;
 
 lar_status lar_balance_create(lar_balance *balance, int32_t processors, lar_error *error) {
     balance->busy = lar_calloc((size_t)processors, sizeof *balance->busy);
@@ -102,7 +102,7 @@ static void add_up(const lar_computer *computer, const int32_t *processor, const
 /* By how much `more` must be corrected so that the busy seconds are those of elements that cost the
  * same: least squares in the cost of an element at rest and in that. */
 static double measured_correction(const lar_computer *computer, const double (*has)[2]) {
-    static const double MIN = 0.2, MAX = 2;
+    static const double MIN = 0.3, MAX = 3;
     double nn = 0, nm = 0, mm = 0, nb = 0, mb = 0;
     for (int32_t p = 0; p < computer->division.grid.count; p++) {
         double n = has[p][0], m = has[p][1], busy = computer->balance.busy[p];
