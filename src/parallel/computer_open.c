@@ -86,9 +86,10 @@ static void keep_options(lar_computer *computer) {
     computer->kept.distribution = computer->kept.schedules = computer->kept.comm = NULL;
     computer->kept.master = NULL;
     computer->kept.listener = -1;
-    int32_t count = computer->division.grid.count;
+    int32_t count = computer->division.grid.count, cores = lar_pin_cores();
+    if (lar_usable_cores() > cores) cores = lar_usable_cores(); /* this thread may be bound */
     computer->balance.adapts = cuts && computer->team && count > 1 && computer->threads == 1 &&
-                               count <= lar_usable_cores() && !computer->checking;
+                               count <= cores && !computer->checking;
     computer->balance.corrected = 1;
 }
 
@@ -127,6 +128,7 @@ static lar_status prepare(lar_computer *computer, const lar_distribution *distri
     if (!computer->processor || !computer->result)
         return lar_fail_memory(error, (size_t)lar_all_threads(computer) * sizeof *computer->result,
                                "the processors");
+    if (!distribution) keep_options(computer);
     status = lar_balance_create(&computer->balance, count, error);
     if (status || computer->pool) return status;
     return lar_thread_pool_create(lar_all_threads(computer),
@@ -156,7 +158,6 @@ static lar_status open_computer(lar_computer *computer, const lar_distribution *
     computer->process = getpid();
     lar_status status = prepare(computer, distribution, error);
     if (!status) status = open_processors(computer, met, error);
-    if (!distribution) keep_options(computer);
     lar_schedule_set_clear(&computer->division.schedules);
     computer->options = NULL;
     lar_balance_begin(computer, lar_clock_seconds() - begin);

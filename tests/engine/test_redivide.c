@@ -163,6 +163,7 @@ static lar_simulation *press_one_end(const lar_model *model, const char *distrib
     lar_options options = lar_options_default();
     options.grid = "2x1x1";
     options.distribution = distribution;
+    options.pin = 2; /* as commands do */
     lar_simulation *simulation = start_with(model, options);
     for (int tick = 0; tick < TICKS; tick++) {
         place_tool(simulation, TEST_BALL, 0.012, 0.025, 0.0485 - 0.0006 * tick, 1, TICK_STEPS);
@@ -174,11 +175,11 @@ static lar_simulation *press_one_end(const lar_model *model, const char *distrib
 /* Clocks say that one has more to do, and what is known of elements which these are. */
 static void times_and_elements_decide(void **unused) {
     (void)unused;
+    bool adapts = lar_usable_cores() >= 2; /* before this thread is bound to one */
     lar_model *model = tool_model_of(&fine_tool_brick);
     lar_simulation *simulation = press_one_end(model, NULL);
     uint64_t wanted = elements_of_first(simulation), fixed;
     lar_simulation *kept = press_one_end(model, "cut");
-    bool adapts = lar_usable_cores() >= 2;
     pretend(simulation, 1); /* nobody waits */
     advance(simulation, 1);
     assert_int_equal(lar_simulation_redivisions(simulation), 0);
