@@ -86,10 +86,11 @@ static void keep_options(lar_computer *computer) {
     computer->kept.distribution = computer->kept.schedules = computer->kept.comm = NULL;
     computer->kept.master = NULL;
     computer->kept.listener = -1;
-    int32_t count = computer->division.grid.count, cores = lar_pin_cores();
-    if (lar_usable_cores() > cores) cores = lar_usable_cores(); /* this thread may be bound */
+    /* This thread may be bound, by another simulation. Who binds none does not look for cores. */
+    int32_t count = computer->division.grid.count, cores = lar_usable_cores(),
+            bound = options->pin ? lar_pin_cores() : 0;
     computer->balance.adapts = cuts && computer->team && count > 1 && computer->threads == 1 &&
-                               count <= cores && !computer->checking;
+                               (count <= cores || count <= bound) && !computer->checking;
     computer->balance.corrected = 1;
 }
 
