@@ -1,5 +1,6 @@
 /* Contact of bodies on all processors: processor zero looks and searches between two stretches, and
  * everyone takes the same list (contact_exchange.h). */
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -230,10 +231,26 @@ static double skin_for(const lar_computer *computer, double way) {
     return 2 * (reserve(computer, way) + room);
 }
 
+/* No node is farther from its place at the search than that. Processes do not have all nodes. */
+static void check_moved(const lar_computer *computer, double moved) {
+#ifndef NDEBUG
+    const lar_contact_surface *surface = computer->contact.map.surface;
+    for (int32_t n = 0; n < surface->node_count && !computer->control; n++) {
+        double u[3], v[3];
+        values_of(computer, n, u, v);
+        for (int i = 0; i < 3; i++)
+            assert(fabs(surface->rest[n][i] + u[i] - computer->contact.x[n][i]) <= moved);
+    }
+#else
+    (void)computer, (void)moved;
+#endif
+}
+
 /* A search is done, of places since which nodes have `moved`: everyone takes its list. */
 static lar_status take_found(lar_computer *computer, double moved, lar_error *error) {
     lar_computer_contact *contact = &computer->contact;
     const lar_contact_list *list = &contact->search->list;
+    check_moved(computer, moved);
     memcpy(contact->searched, contact->x,
            (size_t)contact->map.surface->node_count * sizeof *contact->x);
     contact->skin = list->skin;
@@ -302,14 +319,15 @@ static lar_status look_ahead(lar_computer *computer, lar_error *error) {
     lar_computer_contact *contact = &computer->contact;
     double reserved = reserve(computer, contact->way), left;
     if (!contact->searching) {
-        double way, moved, before = contact->moved, good = left_of(computer, 0, reserved);
-        if (contact->too_many_pairs || !(before > BEGIN_AT * good)) return LAR_OK;
+        double way, moved, good = left_of(computer, 0, reserved);
+        if (contact->too_many_pairs || !(contact->moved > BEGIN_AT * good)) return LAR_OK;
         lar_status status = fetch_places(computer, &moved, &way, error);
         if (status) return status;
-        contact->moved = moved;
-        if (moved < 0.5 * BEGIN_AT * good) return hand_out(computer, NULL, moved, error);
-        contact->since = before;
-        contact->moved = before;
+        /* All count from the same place now: what is added to the largest of their ways would be no
+         * bound for who had a shorter one. */
+        contact->moved = contact->since = moved;
+        status = hand_out(computer, NULL, moved, error);
+        if (status || moved < 0.5 * BEGIN_AT * good) return status;
         lar_contact_search_begin(contact->search, (const double(*)[3])contact->x,
                                  skin_for(computer, way));
         contact->searching = true;
