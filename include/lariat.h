@@ -90,9 +90,8 @@ LAR_API const char *lar_version(void);
 LAR_API int32_t lar_version_number(void);
 
 /* Cores that the calling thread may use, second threads of cores included: those that it may run
- * on, and no more than the time of whole cores that control groups leave it, as those of a
- * container do (Linux); at least 1. What is chosen by itself, a grid or the workers of a batch,
- * keeps to it. */
+ * on, and no more than the time of whole cores that control groups leave it, as those of a container
+ * do (Linux); at least 1. What is chosen by itself, a grid or the workers of a batch, keeps to it. */
 LAR_API int32_t lar_usable_cores(void);
 
 /* Functions for memory, from any thread; NULL says that there is none. `alignment` is a power of 2
@@ -399,17 +398,17 @@ LAR_SIZED lar_status lar_model_tool(const lar_model *model, int32_t index, lar_t
 
 /* What the tissue does to a tool. */
 typedef struct lar_tool_force {
-    double force[3];  /* [N], the mean over the steps of the last advance */
-    double torque[3]; /* about the tip [N m], likewise */
-    int32_t touching; /* surface points that it touched in the last step */
-    int32_t held;     /* surface points that it has hold of */
-    double limit;     /* beyond it stays behind its hand [N]; 0 for hands: none. It may do so with
-                         less, too: half its radius deep, or where elements need shorter steps */
-    double depth;     /* the deepest tissue point in it in the last advance [m]; 0: none */
-    double apart;     /* from its tip to where its hand asks the tip to be, now [m]; 0 where tissue
-                         keeps it from turning or closing only, of which `limited` tells */
-    int32_t limited;  /* 1 while tissue keeps it from following its hand, which includes its way
-                         back to it; else 0 */
+    double force[3];    /* [N], the mean over the steps of the last advance */
+    double torque[3];   /* about the tip [N m], likewise */
+    int32_t touching;   /* surface points that it touched in the last step */
+    int32_t held;       /* surface points that it has hold of */
+    double limit;       /* beyond it stays behind its hand [N]; 0 for hands: none. It may do so with
+                           less, too: half its radius deep, or where elements need shorter steps */
+    double depth;       /* the deepest tissue point in it in the last advance [m]; 0: none */
+    double apart;       /* from its tip to where its hand asks the tip to be, now [m]; 0 where tissue
+                           keeps it from turning or closing only, of which `limited` tells */
+    int32_t limited;    /* 1 while tissue keeps it from following its hand, which includes its way
+                           back to it; else 0 */
     double grasp_force; /* what both jaws of a grasper press with on the tissue between them [N],
                      the mean over the last advance: the smaller of what each is pushed outwards
                      with; 0 when a jaw is not, and for other tools */
@@ -1129,12 +1128,12 @@ typedef struct lar_rest {
                        after `since` */
     int reached;    /* 1: the body is at rest */
     int looked;     /* not 0: `left` is known; 2: most of it is what viscous terms still relax */
-    double since; /* no load or prescribed value changes after that time [s]; infinite where a wave
-                     or a curve comes again and again: then there is no rest, and `limit` is 0 */
+    double since;   /* no load or prescribed value changes after that time [s]; infinite where a wave or
+                       a curve comes again and again: then there is no rest, and `limit` is 0 */
     double kinetic, strain; /* when last looked, strain with the hourglass energy [J] */
     double left;            /* largest kinetic energy lately, what damping will still take and what
-                               viscous terms store that will have relaxed, as a share of the strain energy;
-                               where that is next to nothing, of one            at which this share is rounding */
+                               viscous terms store that will have relaxed, as a share of the strain energy; where that is next to nothing, of one
+                               at which this share is rounding */
     double share;           /* at rest `left` is at most that */
     /* The rest is its own. */
     uint64_t since_step, every;
@@ -1346,8 +1345,7 @@ typedef struct lar_device_status {
     int port;          /* where it listens */
     int connected;     /* not 0: a client is connected now */
     uint64_t received; /* positions taken */
-    uint64_t
-        answered; /* of these, with a force; what is sent besides while it fades is not counted */
+    uint64_t answered; /* of these, with a force; what is sent besides while it fades is not counted */
     uint64_t refused;  /* malformed packets, or packets from another sender */
     uint64_t late;     /* packets that came after a newer one, or twice */
     uint64_t lost;     /* sequence numbers that never came */

@@ -16,6 +16,7 @@
 #include "base/clock.h"
 #include "parallel/computer.h"
 #include "step/mass/heavier.h"
+#include "step/mass/strained.h"
 
 /* One stretch of so many is timed; a decision takes so many timed ones. */
 enum { SAMPLE = 4, TIMED_MIN = 40 };
@@ -63,10 +64,6 @@ void lar_balance_note(lar_computer *computer, const lar_processor *p, double sec
 
 /* ---- what elements cost ---------------------------------------------------------------------- */
 
-static lar_gid element_of(const lar_domain *domain, int32_t r, int32_t lane) {
-    return domain->layout.block[domain->run_first[r] + lane / LAR_BLOCK].element[lane % LAR_BLOCK];
-}
-
 static void weigh_strained(const lar_processor *p, float *more) {
     const lar_domain *domain = &p->domain;
     for (int32_t r = 0; r < domain->run_count; r++) {
@@ -74,7 +71,7 @@ static void weigh_strained(const lar_processor *p, float *more) {
         const int32_t *lane = p->strained.lane + first;
         const lar_damped *damped = p->strained.damped + first;
         for (int32_t i = 0; i < p->strained.listed_count[r]; i++) {
-            lar_gid e = element_of(domain, r, lane[i] & ~LAR_LANE_FLAT);
+            lar_gid e = lar_lane_element(domain, r, (uint32_t)(lane[i] & ~LAR_LANE_FLAT));
             if (e >= 0) more[e] += LISTED;
         }
         for (int32_t i = 0; i < p->strained.damped_count[r]; i++)
