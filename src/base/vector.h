@@ -1,8 +1,16 @@
-/* Vectors of three numbers. */
+/* Vectors of three numbers, and which of two numbers is less. */
 #ifndef LAR_BASE_VECTOR_H
 #define LAR_BASE_VECTOR_H
 
 #include <math.h>
+
+/* fmin and fmax of a number `a`, without a call: what is no number in `b` is not taken. */
+static inline double lar_lesser(double a, double b) {
+    return b < a ? b : a;
+}
+static inline double lar_greater(double a, double b) {
+    return b > a ? b : a;
+}
 
 static inline double lar_dot(const double a[3], const double b[3]) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/vector.h"
 #include "contact/history/flush.h"
 #include "mechanics/face_contact.h"
 #include "model/contact_check.h"
@@ -83,19 +84,10 @@ static lar_status build_tree(lar_contact_tree *tree, lar_error *error) {
 
 /* ---- boxes ---------------------------------------------------------------------------------- */
 
-/* fmin and fmax without a call; what is not a number is passed over as by them. */
-static inline double lesser(double a, double b) {
-    return b < a ? b : a;
-}
-
-static inline double greater(double a, double b) {
-    return b > a ? b : a;
-}
-
 static void join_box(lar_box *box, const lar_box *other) {
     for (int i = 0; i < 3; i++) {
-        box->lower[i] = lesser(box->lower[i], other->lower[i]);
-        box->upper[i] = greater(box->upper[i], other->upper[i]);
+        box->lower[i] = lar_lesser(box->lower[i], other->lower[i]);
+        box->upper[i] = lar_greater(box->upper[i], other->upper[i]);
     }
 }
 
@@ -108,8 +100,8 @@ static lar_box box_of(const lar_contact_surface *s, const lar_contact_face *face
     double reach = s->body[face->body].reach[s->body_count > 1];
     for (int a = 0; a < 4; a++)
         for (int i = 0; i < 3; i++) {
-            box.lower[i] = lesser(box.lower[i], x[face->corner[a]][i] - reach - skin);
-            box.upper[i] = greater(box.upper[i], x[face->corner[a]][i] + reach + skin);
+            box.lower[i] = lar_lesser(box.lower[i], x[face->corner[a]][i] - reach - skin);
+            box.upper[i] = lar_greater(box.upper[i], x[face->corner[a]][i] + reach + skin);
         }
     return box;
 }
@@ -200,7 +192,8 @@ static int32_t find_faces(const lar_contact_search *search, int32_t node, const 
 static double outside(const lar_box *box, double skin, const double x[3]) {
     double max = -INFINITY;
     for (int i = 0; i < 3; i++)
-        max = greater(max, greater(box->lower[i] + skin - x[i], x[i] - (box->upper[i] - skin)));
+        max = lar_greater(max,
+                          lar_greater(box->lower[i] + skin - x[i], x[i] - (box->upper[i] - skin)));
     return max;
 }
 
@@ -215,7 +208,7 @@ static bool add_groups(lar_contact_search *search, int32_t node, const double x[
         double gap = INFINITY;
         for (to = from; to < count && s->face[face[to]].body == s->face[face[from]].body; to++) {
             active = active || lar_contact_active(&s->node[node], &s->face[face[to]]);
-            gap = lesser(gap, outside(&search->face_box[tree->place[face[to]]], list->skin, x));
+            gap = lar_lesser(gap, outside(&search->face_box[tree->place[face[to]]], list->skin, x));
         }
         if (!active) continue;
         if (list->group_count == list->group_room || to - from > LAR_GROUP_FACES_MAX) return false;
@@ -338,7 +331,7 @@ static void find_overlap(const lar_contact_surface *s, const lar_contact_list *l
     int32_t at = -1;
     for (int32_t i = 0; i < group->count; i++) {
         stand_at_rest(s, group->node, face[i], &point);
-        min = lesser(min, point.distance);
+        min = lar_lesser(min, point.distance);
     }
     for (int32_t i = 0; i < group->count; i++) {
         stand_at_rest(s, group->node, face[i], &point);
@@ -365,8 +358,8 @@ static void measure_clearance(lar_contact_surface *s, const lar_contact_list *li
             lar_face_point point;
             stand_at_rest(s, group->node, list->face[group->first + i], &point);
             double clear = point.distance > rounding ? 0.999 * point.distance : 0;
-            s->body[own].clear = lesser(s->body[own].clear, clear);
-            s->body[other].clear = lesser(s->body[other].clear, clear);
+            s->body[own].clear = lar_lesser(s->body[own].clear, clear);
+            s->body[other].clear = lar_lesser(s->body[other].clear, clear);
         }
     }
 }

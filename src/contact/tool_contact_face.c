@@ -6,15 +6,6 @@
 #include "base/vector.h"
 #include "mechanics/face_contact.h"
 
-/* fmin and fmax without a call, of a number `a`: what is no number is not taken. */
-static inline double smaller(double a, double b) {
-    return b < a ? b : a;
-}
-
-static inline double larger(double a, double b) {
-    return b > a ? b : a;
-}
-
 /* ---- points -------------------------------------------------------------------------------- */
 
 int lar_tool_contact_points(const lar_tool_contact_face *face, double radius) {
@@ -37,7 +28,7 @@ LAR_SETUP void lar_tool_contact_grid(int n, lar_face_grid *grid) {
 
 double lar_tool_contact_point_mass(const lar_tool_contact_face *face, const double *mass, int n) {
     double min = INFINITY;
-    for (int a = 0; a < 4; a++) min = smaller(min, mass[face->node[a]] * face->share[a]);
+    for (int a = 0; a < 4; a++) min = lar_lesser(min, mass[face->node[a]] * face->share[a]);
     return 4 * min / (n * n);
 }
 
@@ -78,7 +69,7 @@ __attribute__((noinline)) static double against_of(const lar_tool_contact_patch 
                                                    int triangle, const double weight[4]) {
     double local[3];
     normal_of(patch, triangle < 0 ? triangle_at(weight) : triangle, local);
-    return larger(against, -lar_dot(normal, local));
+    return lar_greater(against, -lar_dot(normal, local));
 }
 
 /* A point that has been passed by the middle of the tool sees a normal that would push it on, out
@@ -99,7 +90,7 @@ static const double LEAVES = 0.5, THROWN = 1.5;
 
 static double not_thrown(double rate) {
     double away = -rate - LEAVES;
-    return away <= 0 ? 1 : larger(0, 1 - away / (THROWN - LEAVES));
+    return away <= 0 ? 1 : lar_greater(0, 1 - away / (THROWN - LEAVES));
 }
 
 /* For who looks. `deep`: how deep the point counts as. */
@@ -153,8 +144,8 @@ static void touch_point(lar_tool_contact_patch *patch, const lar_contact_law *la
     for (int a = 0; a < 4; a++) weight[a] = grid->weight[a][p];
     double share = facing(patch, normal, -1, weight);
     if (share == 0) return;
-    patch->depth = larger(patch->depth, share * depth);
-    patch->covered += smaller(1, depth / (WALL * patch->radius));
+    patch->depth = lar_greater(patch->depth, share * depth);
+    patch->covered += lar_lesser(1, depth / (WALL * patch->radius));
     double force =
         push_point(patch, law, s, near->along[p], weight, normal, share * patch->mass, depth);
     if (patch->touches) note_point(patch, s, weight, normal, force, share * depth);
@@ -187,7 +178,7 @@ static double wall_mass(const lar_tool_contact_face *face, const double *mass,
                         const double weight[4]) {
     double max = INFINITY;
     for (int a = 0; a < 4; a++)
-        if (weight[a] > 0) max = smaller(max, mass[face->node[a]] * face->share[a] / weight[a]);
+        if (weight[a] > 0) max = lar_lesser(max, mass[face->node[a]] * face->share[a] / weight[a]);
     return max;
 }
 
@@ -220,14 +211,14 @@ static double touch_wall(lar_tool_contact_patch *patch, const lar_contact_law *l
     for (int t = 0; t < 4; t++) {
         parts[t] = part_of(patch, t, &closest[t]);
         all += parts[t].count;
-        min = smaller(min, closest[t].distance);
+        min = lar_lesser(min, closest[t].distance);
     }
     for (int t = 0; t < 4; t++) {
         const wall_part *part = &parts[t];
         const lar_face_segment *at = &closest[t];
         const double depth = patch->radius - at->distance;
         if (!(part->count > 0)) continue;
-        patch->depth = larger(patch->depth, part->share * depth);
+        patch->depth = lar_greater(patch->depth, part->share * depth);
         double share = free_share * part->share * part->count / all;
         double force = push_point(patch, law, s, at->along, at->weight, at->normal,
                                   share * wall_mass(patch->face, mass, at->weight),
@@ -245,7 +236,7 @@ static double spacing(const lar_tool_contact_patch *patch, int n) {
     for (int a = 0; a < 4; a++) {
         double edge[3];
         lar_minus(patch->x[(a + 1) % 4], patch->x[a], edge);
-        longest = larger(longest, lar_dot(edge, edge));
+        longest = lar_greater(longest, lar_dot(edge, edge));
     }
     return sqrt(0.5 * longest) / n;
 }
@@ -262,7 +253,7 @@ static double touch_walls(lar_tool_contact_patch *patch, const lar_contact_law *
         double own = distance - between + WALL * patch->radius;
         if (own < 0)
             own = free_share > 0 ? touch_wall(patch, law, mass, s, free_share) : -patch->radius;
-        gap = smaller(gap, own);
+        gap = lar_lesser(gap, own);
     }
     return gap;
 }
@@ -283,5 +274,5 @@ void lar_tool_contact_push_face(lar_tool_contact_patch *patch, const lar_contact
     touch_grid(patch, law, &weights->of[n]);
     patch->closest = touch_walls(patch, law, mass, n);
     for (int32_t s = 0; s < patch->body->count; s++)
-        patch->closest = smaller(patch->closest, sqrt(patch->min[s]) - patch->radius);
+        patch->closest = lar_lesser(patch->closest, sqrt(patch->min[s]) - patch->radius);
 }

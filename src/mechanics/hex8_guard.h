@@ -29,6 +29,7 @@
 #include <math.h>
 #include <stdbool.h>
 
+#include "base/vector.h"
 #include "mechanics/hex8.h"
 #include "mechanics/hex8_block.h"
 
@@ -100,11 +101,6 @@ void lar_hex8_stiff_begin(const lar_material *material, lar_hex8_stiff *stiff);
 /* What fibres have become stiffer than where tension begins [Pa]. */
 double lar_hex8_fibre_growth(const lar_fibre *fibre, const float strain[LAR_STRAIN_NUMBERS]);
 
-/* fmax(), which is a call. */
-static inline double lar_hex8_larger(double a, double b) {
-    return a > b ? a : b;
-}
-
 /* Then, for any number of its elements, what comes with `strain`: what a monitor says
  * (hex8_block.h), of the mean gradient. */
 static inline void lar_hex8_stiff_of(const lar_material *material,
@@ -116,7 +112,7 @@ static inline void lar_hex8_stiff_of(const lar_material *material,
     lar_law_strained now = lar_law_table[material->law].strained(
         material->parameter, J, strain[LAR_STRAIN_LENGTH], strain[LAR_STRAIN_AREA]);
     stiff->square = J * J;
-    stiff->slope = lar_hex8_larger(now.slope, 0);
+    stiff->slope = lar_greater(0, now.slope);
     stiff->pressed = fabs(now.pressure) * sqrt(strain[LAR_STRAIN_LENGTH] / 3.0);
     stiff->shear = now.shear;
     stiff->further = now.further;
@@ -131,11 +127,11 @@ static inline void lar_hex8_stiff_of(const lar_material *material,
 static inline double lar_hex8_growth(const lar_hex8_stiff *stiff, double area) {
     if (!(stiff->square > 0)) return INFINITY;
     double volume = stiff->slope * area + stiff->pressed;
-    double shear = stiff->shear * lar_hex8_larger(area / stiff->square, 1) + stiff->further;
+    double shear = stiff->shear * lar_greater(1, area / stiff->square) + stiff->further;
     double growth = (stiff->of_volume * volume + stiff->of_shear * shear) / stiff->whole;
     if (!stiff->fibrous) return growth;
     /* Along any direction the element is as stiff as `whole`, and fibres at rest count beside. */
-    return lar_hex8_larger(growth, 1) + stiff->fibres / stiff->whole;
+    return lar_greater(1, growth) + stiff->fibres / stiff->whole;
 }
 
 /* How stiff a family of an element's fibres may be before it is listed [Pa]. */

@@ -144,7 +144,7 @@ static inline bool asks_for_little(measured_list *list, lar_gid e, size_t place,
     take_material(list, domain->model->element_material[e]);
     lar_hex8_stiff_of(&domain->material[list->material], strain, &list->stiff);
     double area = strain[LAR_STRAIN_AREA] / 3.0;
-    if (flat) area = lar_hex8_larger(areas / domain->base[place].areas, area);
+    if (flat) area = lar_greater(area, areas / domain->base[place].areas);
     double rate = list->faster * domain->rate[e].square;
     double square = rate * lar_hex8_growth(stiff, area);
     double need = 0.25 * domain->time_step * domain->time_step * square;
