@@ -38,8 +38,8 @@ extern const char *const cli_scheme_names[], *const cli_channel_names[], *const 
                    "ucx, mpi or tcp; they are started\nhere, or by mpirun or srun",                \
                    &(p).comm, cli_comm_names),                                                     \
         CLI_TEXT("--distribution", "FILE",                                                         \
-                 "which processor has which element: a file of lariat\npartition, or cut "         \
-                 "(default), genetic, metis, random",                                              \
+                 "which processor has which element: a file of lariat\npartition, or cut, "        \
+                 "genetic, metis, random; without: cut,\nand anew where that becomes faster",      \
                  &(p).distribution),                                                               \
         CLI_TEXT("--schedules", "DIR",                                                             \
                  "the schedule files of lariat partition, instead of\nall of these but --comm",    \

@@ -73,7 +73,8 @@ static lar_options options_of(const lar_bench_scaling_options *o,
     options.threads = row->threads;
     options.comm = row->comm;
     options.scheme = o->scheme;
-    if (row->processors > 1) options.distribution = o->distribution;
+    /* What is measured stays one division. */
+    if (row->processors > 1) options.distribution = o->distribution ? o->distribution : "cut";
     options.pin = o->pin;
     return options;
 }
