@@ -94,7 +94,7 @@ void lar_tool_faces_destroy(lar_tool_faces *faces) {
     free(faces->face_of);
     free(faces->weights);
     free(faces->rub);
-    free(faces->rub_node);
+    free(faces->rub_at);
     *faces = (lar_tool_faces){0};
 }
 
@@ -244,16 +244,9 @@ static void give(lar_tool_contact *contact, const lar_condition_context *context
     int32_t *at = &contact->loaded_at[f];
     lar_touch_list *touches = touches_of(contact, tool);
     lar_tool_push push = {0};
-    double units[4][3];
-    int64_t whole[4][3];
-    bool breaks = false;
-    for (int a = 0; a < 4; a++)
-#pragma GCC unroll 3
-        for (int i = 0; i < 3; i++) {
-            units[a][i] = force[i][a] * context->scale;
-            breaks |= !(fabs(units[a][i]) < 0x1p56);
-        }
-    if (breaks) { /* a run that is about to break; the element says why */
+    lar_tool_pushes pushes;
+    /* A run that is about to break: the element says why. */
+    if (!lar_tool_push_lanes(context->scale, force, x, tip, &pushes)) {
         if (touches) touches->pending = 0;
         return;
     }
@@ -262,21 +255,25 @@ static void give(lar_tool_contact *contact, const lar_condition_context *context
         contact->loaded[*at] = (lar_tool_contact_force){.face = f};
     }
     lar_tool_contact_force *loaded = &contact->loaded[*at];
-    for (int a = 0; a < 4; a++) {
-        double arm[3];
+#pragma GCC unroll 4
+    for (int a = 0; a < 4; a++)
 #pragma GCC unroll 3
         for (int i = 0; i < 3; i++) {
-            whole[a][i] = llrint(units[a][i]);
-            loaded->force[a][i] += whole[a][i];
-            arm[i] = x[a][i] - tip[i];
+            int64_t whole = (int64_t)pushes.force[i][a];
+            loaded->force[a][i] += whole;
+            push.force[i] -= whole;
+            push.torque[i] += (int64_t)pushes.torque[i][a];
+            push.rest[i] += (int64_t)pushes.rest[i][a];
         }
-        lar_tool_push_add(&push, arm, whole[a]);
-    }
     lar_tool_sum_add(&contact->sum[tool], context->shares, &push);
     if (!touches) return;
     const int64_t total[3] = {-push.force[0], -push.force[1], -push.force[2]};
     lar_touch_settle(touches, total, context->scale);
-    for (int a = 0; a < 4; a++) lar_touch_push(touches, contact->faces->face[f].node[a], whole[a]);
+    for (int a = 0; a < 4; a++) {
+        const int64_t whole[3] = {(int64_t)pushes.force[0][a], (int64_t)pushes.force[1][a],
+                                  (int64_t)pushes.force[2][a]};
+        lar_touch_push(touches, contact->faces->face[f].node[a], whole);
+    }
 }
 
 /* Nothing of a run that is about to break. */

@@ -28,6 +28,7 @@
 #include "contact/spares.h"
 #include "contact/touch_list.h"
 #include "mechanics/face_contact.h"
+#include "mechanics/tool_lanes.h"
 
 /* An advance may have any number of steps, and a force of one of them nearly 2^63 units. */
 __extension__ typedef __int128 lar_wide;
@@ -45,8 +46,6 @@ typedef struct lar_tool_sum {
                                      farther from where it is held than jaws reach: 1 */
     int32_t padding;
 } lar_tool_sum;
-
-static const double LAR_TORQUE_REST = 0x1p-20;
 
 /* A face of the surface. */
 typedef struct lar_tool_contact_face {
@@ -84,9 +83,9 @@ typedef struct lar_tool_faces {
     int32_t *foreign;              /* [foreign_count] local nodes: corners that others move */
     lar_point_weights *weights;    /* NULL: no faces */
     int32_t rub_count, local_count;
-    int32_t *rub_node;      /* [rub_count] local, ascending */
     lar_tool_rub_node *rub; /* [rub_count] moved by the thread; NULL: no tool has friction. Of all
                                nodes of the processor there are `local_count` */
+    int32_t *rub_at;        /* [local_count] index into `rub`; -1: none */
 } lar_tool_faces;
 
 /* The ball around a group. */
@@ -141,6 +140,7 @@ typedef struct lar_tool_contact {
     lar_tool_contact_ball *ball;    /* [faces->group_count] */
     int64_t *press;                 /* [3][faces->local_count] sums of mu times what tools push, in
                                        force units, empty between steps; NULL: without friction */
+    uint64_t *pressed; /* [(faces->local_count + 63) / 64] a bit for each node that may have any */
     int32_t rubbed_count;
     lar_tool_rubbed *rubbed; /* [rubbed_count] of [faces->rub_count] */
     lar_tool_vicinity vicinity[LAR_TOOLS_MAX];
@@ -198,31 +198,11 @@ void lar_tool_contact_grid(int n, lar_face_grid *grid);
 void lar_tool_contact_corners(const lar_tool_contact_face *face, const lar_state *state,
                               double x[4][3]);
 double lar_tool_contact_ball_of(const double x[4][3], double center[3]);
-/* Forces on the corners of a face, each below 2^56 units, and what they turn about the tip, as sums
- * of a tool count it. */
+/* Sums of at most 64 forces on nodes, each below 2^56 units, and what they turn about the tip, as a
+ * tool feels both. */
 typedef struct lar_tool_push {
     int64_t force[3], torque[3], rest[3];
 } lar_tool_push;
-/* Adds a force on the tissue [force units], `arm` from the tip. */
-static inline void lar_tool_push_add(lar_tool_push *push, const double arm[3],
-                                     const int64_t force[3]) {
-    double units[3];
-#pragma GCC unroll 3
-    for (int i = 0; i < 3; i++) {
-        push->force[i] -= force[i];
-        units[i] = (double)force[i];
-    }
-#pragma GCC unroll 3
-    for (int i = 0; i < 3; i++) {
-        int j = (i + 1) % 3, k = (i + 2) % 3;
-        double torque = -(arm[j] * units[k] - arm[k] * units[j]);
-        if (!(fabs(torque) < 0x1p56)) continue; /* an arm beyond all places */
-        int64_t whole = (int64_t)torque;
-        whole -= (double)whole > torque; /* floor() without a call */
-        push->torque[i] += whole;
-        push->rest[i] += llrint((torque - (double)whole) / LAR_TORQUE_REST);
-    }
-}
 /* To what the tool feels. */
 static inline void lar_tool_sum_add(lar_tool_sum *sum, int32_t shares, const lar_tool_push *push) {
     for (int i = 0; i < 3; i++) {

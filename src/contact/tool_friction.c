@@ -31,28 +31,30 @@ LAR_SETUP lar_status lar_tool_friction_list(const lar_model *model, const int32_
     for (int32_t n = 0; n < model->mesh.node_count; n++)
         if (local[n] >= faces->local_count) faces->local_count = local[n] + 1;
     size_t nodes = (size_t)model->surface.node_count, all = (size_t)faces->local_count;
-    int32_t *node = lar_calloc(all, sizeof *node), *place = lar_calloc(all, sizeof *place);
+    int32_t *node = lar_calloc(all, sizeof *node);
     faces->rub = lar_calloc(nodes, sizeof *faces->rub);
-    faces->rub_node = lar_calloc(nodes, sizeof *faces->rub_node);
+    faces->rub_at = lar_calloc(all, sizeof *faces->rub_at);
     lar_status status = LAR_OK;
-    if (!node || !place || !faces->rub || !faces->rub_node)
+    if (!node || !faces->rub || !faces->rub_at)
         status = lar_fail_memory(error, nodes * sizeof *faces->rub, "the nodes before tools");
-    for (size_t n = 0; n < all && !status; n++) node[n] = place[n] = -1;
+    for (size_t n = 0; n < all && !status; n++) node[n] = faces->rub_at[n] = -1;
     if (!status) find_nodes(model, local, share, node);
     for (int32_t n = 0; n < faces->local_count && !status; n++) {
         if (node[n] < 0) continue;
-        place[n] = faces->rub_count++;
-        faces->rub_node[place[n]] = n;
-        faces->rub[place[n]].node = node[n];
-        memcpy(faces->rub[place[n]].rest, model->mesh.position[node[n]], sizeof faces->rub->rest);
+        lar_tool_rub_node *rub = &faces->rub[faces->rub_at[n] = faces->rub_count++];
+        rub->node = node[n];
+        memcpy(rub->rest, model->mesh.position[node[n]], sizeof rub->rest);
     }
     for (int32_t i = 0; i < conditions->constraint_count && !status; i++) {
-        int32_t at = place[conditions->constraint[i].node];
+        int32_t at = faces->rub_at[conditions->constraint[i].node];
         if (at >= 0) faces->rub[at].held = true;
     }
     free(node);
-    free(place);
     return status;
+}
+
+static inline int32_t words_of(const lar_tool_contact *contact) {
+    return (contact->faces->local_count + 63) / 64;
 }
 
 LAR_SETUP lar_status lar_tool_friction_create(lar_tool_contact *contact, lar_error *error) {
@@ -60,16 +62,19 @@ LAR_SETUP lar_status lar_tool_friction_create(lar_tool_contact *contact, lar_err
     size_t values = 3 * (size_t)contact->faces->local_count;
     size_t nodes = (size_t)contact->faces->rub_count;
     contact->press = lar_calloc(values, sizeof *contact->press);
+    contact->pressed = lar_calloc((size_t)words_of(contact), sizeof *contact->pressed);
     contact->rubbed = lar_calloc(nodes, sizeof *contact->rubbed);
-    if (contact->press && contact->rubbed) return LAR_OK;
+    if (contact->press && contact->pressed && contact->rubbed) return LAR_OK;
     return lar_fail_memory(error, values * sizeof *contact->press + nodes * sizeof *contact->rubbed,
                            "friction of tools");
 }
 
 void lar_tool_friction_destroy(lar_tool_contact *contact) {
     free(contact->press);
+    free(contact->pressed);
     free(contact->rubbed);
     contact->press = NULL;
+    contact->pressed = NULL;
     contact->rubbed = NULL;
 }
 
@@ -87,11 +92,19 @@ static inline int64_t *press_at(const lar_tool_contact *contact, int32_t node, i
 void lar_tool_friction_press(lar_tool_contact *contact, const lar_condition_context *context,
                              double friction, const lar_tool_contact_face *face,
                              const double force[3][4]) {
-    for (int a = 0; a < 4; a++)
-        for (int i = 0; i < 3; i++) {
-            double units = friction * force[i][a] * context->scale;
-            if (fabs(units) < 0x1p56) *press_at(contact, face->node[a], i) += llrint(units);
+    const double times = friction * context->scale; /* a power of 2 */
+    const size_t axis = (size_t)contact->faces->local_count;
+    int64_t *const press = contact->press;
+#pragma GCC unroll 4
+    for (int a = 0; a < 4; a++) {
+        int64_t *at = press + face->node[a];
+        lar_tool_friction_mark(contact->pressed, face->node[a]);
+#pragma GCC unroll 3
+        for (size_t i = 0; i < 3; i++) {
+            double units = times * force[i][a];
+            if (fabs(units) < 0x1p56) at[i * axis] += llrint(units);
         }
+    }
 }
 
 /* A tool with friction in the step under way. */
@@ -101,9 +114,9 @@ typedef struct rough_tool {
     lar_tool_pose now, next;
     lar_tool_body body;
     bool turns;
-    double speed[3];   /* of the tip [m/s] */
-    double turn[3][3]; /* from the way from the tip to a point: what its speed is more [1/s] */
-    lar_tool_sum felt; /* as of one share of a step: the sums of many take 128 bits */
+    double speed[3];    /* of the tip [m/s] */
+    double turn[3][3];  /* from the way from the tip to a point: what its speed is more [1/s] */
+    lar_tool_push felt; /* since it was told, as of one share of a step */
 } rough_tool;
 
 /* How fast what is fixed to the tool goes: as fast as takes it to its next place. */
@@ -128,7 +141,7 @@ static int32_t place_tools(const lar_tool_contact *contact, const lar_condition_
         const lar_tool_motion *motion = &contact->tools->motion[t];
         r->tool = t;
         r->radius = tool->radius;
-        r->felt = (lar_tool_sum){0};
+        r->felt = (lar_tool_push){0};
         lar_tool_pose_now(motion, state, 0, context->whole_step, &r->now);
         lar_tool_pose_now(motion, state, 1, context->whole_step, &r->next);
         lar_tool_place(tool, &r->now, &r->body, r->body.now);
@@ -175,122 +188,147 @@ static void add_opening(const rough_tool *tool, const double x[3], double dt, do
     for (int i = 0; i < 3; i++) velocity[i] += along * ((next[i] - now[i]) / dt - end[i]);
 }
 
-/* The force on a node whose press sum is `press`, in whole units. */
-static inline void rub(const double press[3], const double velocity[3], double unit,
-                       const lar_leapfrog *leapfrog, const double *v, const int64_t *force,
-                       int64_t units[3]) {
-    double square = lar_dot(press, press), along[3], before[3];
-    for (int i = 0; i < 3; i++) {
-        double ahead = leapfrog->keep * v[i] + leapfrog->drift[i] - unit * (double)force[i];
-        before[i] = v[i] - velocity[i];
-        along[i] = ahead - velocity[i];
-    }
-    double across = lar_dot(press, along) / square;
-    for (int i = 0; i < 3; i++) along[i] -= press[i] * across;
-    double part =
-        lar_friction_part(unit * sqrt(square), lar_dot(along, along), lar_dot(along, before));
-    double times = -part / unit;
-    for (int i = 0; i < 3; i++) {
-        double wanted = times * along[i];
-        units[i] = fabs(wanted) < 0x1p56 ? llrint(wanted) : 0;
-    }
-}
-
 /* For who looks. */
-__attribute__((noinline, cold)) static void note_rub(lar_touch_list *touches, int32_t local,
+__attribute__((noinline, cold)) static void note_rub(lar_touch_list *touches,
+                                                     const lar_tool_rubbed *rubbed,
                                                      const double x[3], const double press[3],
-                                                     const int64_t force[3], double scale) {
-    lar_touch touch = {.kind = LAR_TOUCH_RUBBED, .face = -1, .node = {local}, .weight = {1}};
+                                                     double scale) {
+    lar_touch touch = {.kind = LAR_TOUCH_RUBBED, .face = -1, .node = {rubbed->node}, .weight = {1}};
     double size = lar_length(press);
     for (int i = 0; i < 3; i++) {
         touch.place[i] = x[i];
         touch.normal[i] = press[i] / size;
     }
     lar_touch_note(touches, &touch);
-    lar_touch_settle(touches, force, scale);
-    lar_touch_push(touches, local, force);
-}
-
-static void rub_node(lar_tool_contact *contact, const lar_condition_context *context,
-                     const lar_leapfrog *leapfrog, double push, rough_tool *rough, int32_t count,
-                     const lar_tool_rub_node *node, lar_tool_rubbed *rubbed, const int64_t sum[3],
-                     lar_state *state) {
-    const double press[3] = {(double)sum[0], (double)sum[1], (double)sum[2]};
-    const int32_t local = rubbed->node;
-    double x[3], v[3], velocity[3];
-    int64_t force[3];
-    for (int i = 0; i < 3; i++) {
-        x[i] = node->rest[i] + state->u[lar_state_at(state, local, i)];
-        force[i] = state->force[lar_state_at(state, local, i)];
-    }
-    lar_state_velocity(state, local, v);
-    rough_tool *tool = nearest(rough, count, x);
-    rigid_velocity(tool, x, velocity);
-    if (tool->body.count > 1) add_opening(tool, x, context->time_step, velocity);
-    rub(press, velocity, leapfrog->push * push, leapfrog, v, force, rubbed->force);
-    for (int i = 0; i < 3; i++)
-        state->force[lar_state_at(state, local, i)] = force[i] - rubbed->force[i];
-    if (!(context->weight[local] > 0)) return; /* another processor tells the tool */
-    if (contact->touches && contact->touches->tool == tool->tool)
-        note_rub(contact->touches, local, x, press, rubbed->force, context->scale);
-    double arm[3];
-    lar_tool_push felt = {0};
-    lar_minus(x, tool->now.position, arm);
-    lar_tool_push_add(&felt, arm, rubbed->force);
-    lar_tool_sum_add(&tool->felt, 1, &felt);
-}
-
-/* What a tool has felt of the step, in all shares of it. */
-static void tell_tool(const rough_tool *rough, int32_t shares, lar_tool_sum *sum) {
-    for (int i = 0; i < 3; i++) {
-        sum->force[i] += shares * rough->felt.force[i];
-        sum->torque[i] += shares * rough->felt.torque[i];
-        sum->rest[i] += shares * rough->felt.rest[i];
-    }
+    lar_touch_settle(touches, rubbed->force, scale);
+    lar_touch_push(touches, rubbed->node, rubbed->force);
 }
 
 static inline bool is_held(const lar_tool_rub_node *node, const lar_condition_context *context) {
     return context->held ? context->held[node->node] & LAR_AXIS_ALL : node->held;
 }
 
-/* Lists the nodes that are pressed. Nearly all of the surface is not, so what is done for each of
- * its nodes is kept short, and has no branch. */
-static int32_t list_pressed(const lar_tool_contact *contact) {
-    const int32_t *node = contact->faces->rub_node, all = contact->faces->rub_count;
-    const int64_t *press = contact->press;
-    const size_t axis = (size_t)contact->faces->local_count;
-    lar_tool_rubbed *rubbed = contact->rubbed;
-    int32_t count = 0;
-    for (int32_t i = 0; i < all; i++) {
-        const int64_t *at = press + node[i];
-        rubbed[count].node = i;
-        count += (at[0] | at[axis] | at[2 * axis]) != 0;
+/* Whether the node is one that rubs. */
+static inline bool rubs_at(const lar_tool_contact *contact, const lar_condition_context *context,
+                           int32_t local) {
+    const int32_t at = contact->faces->rub_at[local];
+    if (at < 0) return false; /* another thread moves it */
+    if (!is_held(&contact->faces->rub[at], context))
+        return (*press_at(contact, local, 0) | *press_at(contact, local, 1) |
+                *press_at(contact, local, 2)) != 0;
+    for (int i = 0; i < 3; i++) *press_at(contact, local, i) = 0;
+    return false;
+}
+
+/* Lists the nodes that rub, ascending, which are few: of the others not one is looked at. */
+static void list_rubbed(lar_tool_contact *contact, const lar_condition_context *context) {
+    const int32_t words = words_of(contact);
+    contact->rubbed_count = 0;
+    for (int32_t w = 0; w < words; w++) {
+        for (uint64_t left = contact->pressed[w]; left; left &= left - 1) {
+            int32_t local = 64 * w + __builtin_ctzll(left);
+            if (rubs_at(contact, context, local))
+                contact->rubbed[contact->rubbed_count++].node = local;
+        }
+        contact->pressed[w] = 0;
     }
-    return count;
+}
+
+static inline void place_of(const lar_tool_contact *contact, const lar_state *state, int32_t local,
+                            double x[3]) {
+    const lar_tool_rub_node *node = &contact->faces->rub[contact->faces->rub_at[local]];
+#pragma GCC unroll 3
+    for (int i = 0; i < 3; i++) x[i] = node->rest[i] + state->u[lar_state_at(state, local, i)];
+}
+
+/* Puts a node into lane t, and takes its press sum. Returns the tool that it rubs on. */
+static inline rough_tool *take_up(const lar_tool_contact *contact,
+                                  const lar_condition_context *context, rough_tool *rough,
+                                  int32_t count, int32_t local, const lar_state *state,
+                                  lar_tool_rubs *rubs, int32_t t) {
+    double x[3], velocity[3];
+    place_of(contact, state, local, x);
+    rough_tool *tool = nearest(rough, count, x);
+    rigid_velocity(tool, x, velocity);
+    if (tool->body.count > 1) add_opening(tool, x, context->time_step, velocity);
+#pragma GCC unroll 3
+    for (int i = 0; i < 3; i++) {
+        const size_t at = lar_state_at(state, local, i);
+        rubs->press[i][t] = (double)*press_at(contact, local, i);
+        *press_at(contact, local, i) = 0;
+        rubs->force[i][t] = (double)state->force[at];
+        rubs->v[i][t] = state->v[at];
+        rubs->velocity[i][t] = velocity[i];
+        rubs->arm[i][t] = x[i] - tool->now.position[i];
+    }
+    return tool;
+}
+
+/* The node and its tool get what lane t has found. */
+static inline void hand_over(const lar_tool_contact *contact, const lar_condition_context *context,
+                             lar_tool_rubbed *rubbed, rough_tool *tool, const lar_tool_rubs *rubs,
+                             int32_t t, lar_state *state) {
+#pragma GCC unroll 3
+    for (int i = 0; i < 3; i++) {
+        rubbed->force[i] = (int64_t)rubs->friction.force[i][t];
+        state->force[lar_state_at(state, rubbed->node, i)] -= rubbed->force[i];
+    }
+    if (!(context->weight[rubbed->node] > 0)) return; /* another processor tells the tool */
+#pragma GCC unroll 3
+    for (int i = 0; i < 3; i++) {
+        tool->felt.force[i] -= rubbed->force[i];
+        tool->felt.torque[i] += (int64_t)rubs->friction.torque[i][t];
+        tool->felt.rest[i] += (int64_t)rubs->friction.rest[i][t];
+    }
+    if (!contact->touches || contact->touches->tool != tool->tool) return;
+    double x[3], press[3];
+    place_of(contact, state, rubbed->node, x);
+    for (int i = 0; i < 3; i++) press[i] = rubs->press[i][t];
+    note_rub(contact->touches, rubbed, x, press, context->scale);
+}
+
+static void tell_tools(lar_tool_contact *contact, int32_t shares, rough_tool *rough,
+                       int32_t count) {
+    for (int32_t i = 0; i < count; i++) {
+        lar_tool_sum_add(&contact->sum[rough[i].tool], shares, &rough[i].felt);
+        rough[i].felt = (lar_tool_push){0};
+    }
+}
+
+/* So many nodes that rub at a time: 64 bits hold what a tool feels of them, for none has more than
+ * 2^56. */
+enum { TOGETHER = 64 };
+
+static void rub_nodes(lar_tool_contact *contact, const lar_condition_context *context,
+                      const lar_leapfrog *leapfrog, const double *push, rough_tool *rough,
+                      int32_t count, lar_tool_rubbed *rubbed, int32_t nodes, lar_state *state) {
+    lar_tool_rubs rubs[TOGETHER / LAR_TOOL_LANES];
+    rough_tool *tool[TOGETHER];
+    const int32_t groups = (nodes + LAR_TOOL_LANES - 1) / LAR_TOOL_LANES;
+    memset(&rubs[groups - 1], 0, sizeof *rubs); /* not all of its lanes may be used */
+    for (int32_t i = 0; i < nodes; i++) {
+        lar_tool_rubs *group = &rubs[i / LAR_TOOL_LANES];
+        group->unit[i % LAR_TOOL_LANES] = leapfrog->push * push[rubbed[i].node];
+        tool[i] = take_up(contact, context, rough, count, rubbed[i].node, state, group,
+                          i % LAR_TOOL_LANES);
+    }
+    lar_tool_rub_lanes(leapfrog, rubs, groups);
+    for (int32_t i = 0; i < nodes; i++)
+        hand_over(contact, context, &rubbed[i], tool[i], &rubs[i / LAR_TOOL_LANES],
+                  i % LAR_TOOL_LANES, state);
+    tell_tools(contact, context->shares, rough, count);
 }
 
 void lar_tool_friction_add(lar_tool_contact *contact, const lar_condition_context *context,
                            const lar_leapfrog *leapfrog, const double *push, lar_state *state) {
-    const int32_t pressed = list_pressed(contact);
+    list_rubbed(contact, context);
+    const int32_t all = contact->rubbed_count;
+    if (all == 0) return;
     rough_tool rough[LAR_TOOLS_MAX];
-    contact->rubbed_count = 0;
-    if (pressed == 0) return;
-    int32_t count = place_tools(contact, context, state, rough);
-    for (int32_t i = 0; i < pressed; i++) {
-        const lar_tool_rub_node *node = &contact->faces->rub[contact->rubbed[i].node];
-        const int32_t local = contact->faces->rub_node[contact->rubbed[i].node];
-        int64_t sum[3];
-        for (int k = 0; k < 3; k++) {
-            sum[k] = *press_at(contact, local, k);
-            *press_at(contact, local, k) = 0;
-        }
-        if (is_held(node, context)) continue;
-        lar_tool_rubbed *rubbed = &contact->rubbed[contact->rubbed_count++];
-        rubbed->node = local;
-        rub_node(contact, context, leapfrog, push[local], rough, count, node, rubbed, sum, state);
-    }
-    for (int32_t i = 0; i < count; i++)
-        tell_tool(&rough[i], context->shares, &contact->sum[rough[i].tool]);
+    const int32_t count = place_tools(contact, context, state, rough);
+    for (int32_t i = 0; i < all; i += TOGETHER)
+        rub_nodes(contact, context, leapfrog, push, rough, count, &contact->rubbed[i],
+                  all - i < TOGETHER ? all - i : TOGETHER, state);
 }
 
 void lar_tool_friction_half_work(const lar_tool_contact *contact,
@@ -300,6 +338,7 @@ void lar_tool_friction_half_work(const lar_tool_contact *contact,
         const lar_tool_rubbed *rubbed = &contact->rubbed[i];
         /* A node that several processors have is accounted for by one. */
         if (!(context->weight[rubbed->node] > 0)) continue;
+#pragma GCC unroll 3
         for (int k = 0; k < 3; k++)
             work += (double)rubbed->force[k] * state->v[lar_state_at(state, rubbed->node, k)];
     }

@@ -42,6 +42,11 @@ lar_status lar_tool_friction_list(const lar_model *model, const int32_t *local,
 lar_status lar_tool_friction_create(lar_tool_contact *contact, lar_error *error);
 void lar_tool_friction_destroy(lar_tool_contact *contact); /* idempotent */
 
+/* Whoever adds to the press sums of a local node, or replaces them, says so. */
+static inline void lar_tool_friction_mark(uint64_t *pressed, int32_t node) {
+    pressed[(uint32_t)node / 64] |= (uint64_t)1 << (uint32_t)node % 64;
+}
+
 /* Empties press sums of a step that was never finished. */
 void lar_tool_friction_forget(lar_tool_contact *contact);
 

@@ -4,6 +4,7 @@
 #include <string.h>
 #include <time.h>
 
+#include "contact/tool_friction.h"
 #include "parallel/contact_exchange.h"
 
 /* ---- force sums, or lists of elements ------------------------------------------------------ */
@@ -12,20 +13,24 @@
 typedef struct sums {
     int64_t *value;
     size_t stride;
+    uint64_t *pressed; /* of what tools press: the nodes where there is any (tool_friction.h) */
 } sums;
 
 /* Forces, and with friction of tools what these press (contact/tool_friction.h). They travel in the
  * same packets, one layer behind the other. */
 static inline sums sums_of(const lar_worker *worker, int32_t layer) {
     const lar_tool_contact *contact = &worker->interactions.tool_contact;
-    return layer == 0 ? (sums){worker->state.force, worker->state.stride}
-                      : (sums){contact->press, (size_t)contact->faces->local_count};
+    return layer == 0
+               ? (sums){worker->state.force, worker->state.stride, NULL}
+               : (sums){contact->press, (size_t)contact->faces->local_count, contact->pressed};
 }
 
 static inline void take_vector(sums of, int32_t node, int64_t *vector) {
     for (int i = 0; i < 3; i++) vector[i] = of.value[(size_t)node + (size_t)i * of.stride];
 }
 static inline void put_vector(sums of, int32_t node, const int64_t *vector) {
+    if (of.pressed && (vector[0] | vector[1] | vector[2]) != 0)
+        lar_tool_friction_mark(of.pressed, node);
     for (int i = 0; i < 3; i++) of.value[(size_t)node + (size_t)i * of.stride] = vector[i];
 }
 static inline void clear_vector(sums of, int32_t node) {
