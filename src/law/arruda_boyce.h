@@ -120,15 +120,17 @@ static void lar_arruda_boyce_from_moduli(double shear, double bulk, double *p) {
     p[2] = bulk;
 }
 
-static void lar_arruda_boyce_tangent(const double *p, const double F[9], double A[9][9]) {
-    lar_law_invariants is = lar_law_invariants_of(F);
-    double y2 = pow(is.J, -2.0 / 3), z = is.I1 * y2 / p[1];
+static lar_law_slopes lar_arruda_boyce_slopes(const double *p, const lar_law_invariants *is) {
+    double y2 = lar_law_reduced(is->J), z = is->I1 * y2 / p[1];
     double s = p[0] * lar_arruda_boyce_slope(z), rise = p[0] / p[1] * lar_arruda_boyce_rise(z);
     lar_law_slopes w = {0};
-    lar_law_add_rise(&w, rise, &is);
-    lar_law_add_reduced(&w, s, is.I1, is.J, -2.0 / 3, &w.w1, &w.w1J);
-    lar_law_add_logarithmic(&w, p[2], is.J);
-    lar_isotropic_tangent(&w, &is, F, A);
+    lar_law_add_rise(&w, rise, is);
+    lar_law_add_reduced(&w, s, is->I1, is->J, 1, &w.w1, &w.w1J);
+    lar_law_add_logarithmic(&w, p[2], is->J);
+    return w;
+}
+static void lar_arruda_boyce_tangent(const double *p, const double F[9], double A[9][9]) {
+    lar_isotropic_tangent_of(lar_arruda_boyce_slopes, p, F, A);
 }
 
 static lar_law_strained lar_arruda_boyce_strained(const double *p, double J, double I1,

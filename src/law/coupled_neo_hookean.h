@@ -66,11 +66,14 @@ static void lar_coupled_neo_hookean_from_moduli(double shear, double bulk, doubl
     p[1] = bulk - 2.0 * shear / 3.0;
 }
 
+static lar_law_slopes lar_coupled_neo_hookean_slopes(const double *p,
+                                                     const lar_law_invariants *is) {
+    lar_law_slopes w = {.w1 = p[0] / 2, .wJ = -p[0] / is->J, .wJJ = p[0] / (is->J * is->J)};
+    lar_law_add_logarithmic(&w, p[1], is->J);
+    return w;
+}
 static void lar_coupled_neo_hookean_tangent(const double *p, const double F[9], double A[9][9]) {
-    lar_law_invariants is = lar_law_invariants_of(F);
-    lar_law_slopes w = {.w1 = p[0] / 2, .wJ = -p[0] / is.J, .wJJ = p[0] / (is.J * is.J)};
-    lar_law_add_logarithmic(&w, p[1], is.J);
-    lar_isotropic_tangent(&w, &is, F, A);
+    lar_isotropic_tangent_of(lar_coupled_neo_hookean_slopes, p, F, A);
 }
 
 /* The volume term is lambda/2 (ln J)^2 - mu ln J, and of its pressure I1 holds the second part. */

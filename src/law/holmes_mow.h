@@ -85,6 +85,7 @@ LAR_INLINE unsigned lar_holmes_mow_stiffened(lar_lane J, lar_lane I1, lar_lane a
 static const char lar_holmes_mow_name[] = "holmes-mow", lar_holmes_mow_title[] = "Holmes-Mow";
 static const lar_law_parameter lar_holmes_mow_parameter[] = {
     {"mu", LAR_VALUE_MODULUS}, {"lambda", LAR_VALUE_CONSTANT}, {"beta", LAR_VALUE_NUMBER}};
+#define lar_holmes_mow_slopes NULL
 enum { lar_holmes_mow_history = 0, lar_holmes_mow_fibres = 0, lar_holmes_mow_uncoupled = 0 };
 static const lar_law_dialect lar_holmes_mow_abaqus = LAR_LAW_NO_DIALECT;
 
@@ -116,8 +117,8 @@ static void lar_holmes_mow_from_moduli(double shear, double bulk, double *p) {
 static void lar_holmes_mow_tangent(const double *p, const double F[9], double A[9][9]) {
     lar_law_invariants is = lar_law_invariants_of(F);
     double M = p[1] + 2 * p[0], P[9];
-    double R = (2 * p[0] - p[1]) * (is.I1 - 3) + p[1] * (is.I2 - 3) - 2 * M * log(is.J);
-    double quarter = exp(p[2] * R / M) / 4;
+    double R = (2 * p[0] - p[1]) * (is.I1 - 3) + p[1] * (is.I2 - 3) - 2 * M * lar_lane_log(is.J);
+    double quarter = lar_lane_exp(p[2] * R / M) / 4;
     lar_law_slopes w = {.w1 = quarter * (2 * p[0] - p[1]),
                         .w2 = quarter * p[1],
                         .wJ = -2 * quarter * M / is.J,

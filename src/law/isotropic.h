@@ -1,5 +1,6 @@
 /* The tangent of an isotropic law, from its derivatives by the invariants. In plain numbers, for
- * the rows of the laws (law/law.c): implicit solvers use it, the engine never builds a matrix.
+ * the rows of the laws (law/law.c): implicit solvers use it, and the engine where it must know how
+ * fast strained elements of compressible tissue are (step/mass/compressible.h).
  *
  * A law is w(I1, I2, J) with I1 = |F|^2, I2 = |cof F|^2, and P = dw/dF. I2 stands in it linearly
  * and not in products with I1, thus
@@ -7,7 +8,7 @@
  *     dP/dF = 2 w_1 1 + 4 w_11 F (x) F + w_2 I2'' + w_J cof' + w_JJ C (x) C
  *             + w_1J (2F (x) C + C (x) 2F) + w_2J (I2' (x) C + C (x) I2'),      C = cof F
  *
- * and a law is seven numbers. libm: the bits may differ between machines.
+ * and a law is seven numbers. No libm: the same bits everywhere.
  */
 #ifndef LAR_LAW_ISOTROPIC_H
 #define LAR_LAW_ISOTROPIC_H
@@ -16,11 +17,8 @@
 #include <string.h>
 
 #include "law/kinematics.h"
-
-/* The invariants of a state. */
-typedef struct lar_law_invariants {
-    double I1, I2, J, cof[9];
-} lar_law_invariants;
+#include "law/lane_math.h"
+#include "law/law.h"
 
 static inline lar_law_invariants lar_law_invariants_of(const double F[9]) {
     lar_law_invariants is = {0};
@@ -30,15 +28,18 @@ static inline lar_law_invariants lar_law_invariants_of(const double F[9]) {
     return is;
 }
 
-/* Derivatives of w(I1, I2, J). */
-typedef struct lar_law_slopes {
-    double w1, w2, wJ, w11, w1J, w2J, wJJ;
-} lar_law_slopes;
+/* J^(-2/3), with the same bits everywhere. */
+static inline double lar_law_reduced(double J) {
+    double y = lar_lane_rcbrt(J);
+    return y * y;
+}
 
-/* Adds c I_n J^power, n = 1 or 2: the value of I_n is `invariant`; *first, *mixed are w_n, w_nJ. */
+/* Adds c I_n J^(-2n/3), n = 1 or 2: the value of I_n is `invariant`; *first, *mixed are w_n, w_nJ.
+ */
 static inline void lar_law_add_reduced(lar_law_slopes *w, double c, double invariant, double J,
-                                       double power, double *first, double *mixed) {
-    double value = c * pow(J, power);
+                                       int n, double *first, double *mixed) {
+    double y2 = lar_law_reduced(J), power = -2.0 / 3 * n;
+    double value = c * (n == 1 ? y2 : y2 * y2);
     *first += value;
     *mixed += power * value / J;
     w->wJ += power * invariant * value / J;
@@ -47,7 +48,7 @@ static inline void lar_law_add_reduced(lar_law_slopes *w, double c, double invar
 
 /* Adds what a law that is curved in x = I1 J^(-2/3) - 3 has beyond its slope: `rise` = w''(x). */
 static inline void lar_law_add_rise(lar_law_slopes *w, double rise, const lar_law_invariants *is) {
-    double y2 = pow(is->J, -2.0 / 3), by_J = -2.0 / 3 * is->I1 * y2 / is->J; /* dx/dJ */
+    double y2 = lar_law_reduced(is->J), by_J = -2.0 / 3 * is->I1 * y2 / is->J; /* dx/dJ */
     w->w11 += rise * y2 * y2;
     w->w1J += rise * y2 * by_J;
     w->wJJ += rise * by_J * by_J;
@@ -55,8 +56,9 @@ static inline void lar_law_add_rise(lar_law_slopes *w, double rise, const lar_la
 
 /* Adds modulus/2 (ln J)^2. */
 static inline void lar_law_add_logarithmic(lar_law_slopes *w, double modulus, double J) {
-    w->wJ += modulus * log(J) / J;
-    w->wJJ += modulus * (1 - log(J)) / (J * J);
+    double log_J = lar_lane_log(J);
+    w->wJ += modulus * log_J / J;
+    w->wJJ += modulus * (1 - log_J) / (J * J);
 }
 
 /* cof'_ij,kl = eps_ikm eps_jln F_mn, times `factor`. */
@@ -112,6 +114,14 @@ static inline void lar_isotropic_tangent(const lar_law_slopes *w, const lar_law_
             A[r][s] += 4 * w->w11 * F[r] * F[s] + row * C[s] + w->wJJ * C[r] * C[s] +
                        C[r] * (2 * w->w1J * F[s] + w->w2J * slope[s]);
     }
+}
+
+static inline void lar_isotropic_tangent_of(lar_law_slopes (*slopes)(const double *p,
+                                                                     const lar_law_invariants *is),
+                                            const double *p, const double F[9], double A[9][9]) {
+    lar_law_invariants is = lar_law_invariants_of(F);
+    lar_law_slopes w = slopes(p, &is);
+    lar_isotropic_tangent(&w, &is, F, A);
 }
 
 #endif

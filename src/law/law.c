@@ -21,6 +21,7 @@
                        .energy = lar_##law##_energy,                                               \
                        .stress = lar_##law##_stress,                                               \
                        .tangent = lar_##law##_tangent,                                             \
+                       .slopes = lar_##law##_slopes,                                               \
                        .strained = lar_##law##_strained},
 const lar_law_row lar_law_table[LAR_LAW_COUNT] = {LAR_LAWS(ROW)};
 

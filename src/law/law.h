@@ -99,6 +99,16 @@ typedef struct lar_law_strained {
     double further;  /* what shear has in one direction besides, because the law stiffens [Pa] */
 } lar_law_strained;
 
+/* The invariants of a state. */
+typedef struct lar_law_invariants {
+    double I1, I2, J, cof[9];
+} lar_law_invariants;
+
+/* Derivatives of a law by them: w(I1, I2, J), I1 = |F|^2, I2 = |cof F|^2 (law/isotropic.h). */
+typedef struct lar_law_slopes {
+    double w1, w2, wJ, w11, w1J, w2J, wJJ;
+} lar_law_slopes;
+
 /* F row by row, J = det F > 0, I1 = |F|^2; p: the parameters [Pa]. */
 typedef struct lar_law_row {
     const char *name;                   /* in scenes */
@@ -119,6 +129,8 @@ typedef struct lar_law_row {
     double (*energy)(const double F[9], double J, double I1, const double *p);
     double (*stress)(const double F[9], double P[9], double J, double I1, const double *p);
     void (*tangent)(const double *p, const double F[9], double A[9][9]);
+    /* The same by invariants, whose `cof` is not looked at. NULL: there are more. */
+    lar_law_slopes (*slopes)(const double *p, const lar_law_invariants *is);
     /* `area` = |cof F|^2. */
     lar_law_strained (*strained)(const double *p, double J, double I1, double area);
 } lar_law_row;

@@ -97,13 +97,15 @@ static void lar_mooney_rivlin_from_moduli(double shear, double bulk, double *p) 
     p[2] = bulk;
 }
 
-static void lar_mooney_rivlin_tangent(const double *p, const double F[9], double A[9][9]) {
-    lar_law_invariants is = lar_law_invariants_of(F);
+static lar_law_slopes lar_mooney_rivlin_slopes(const double *p, const lar_law_invariants *is) {
     lar_law_slopes w = {0};
-    lar_law_add_reduced(&w, p[0], is.I1, is.J, -2.0 / 3, &w.w1, &w.w1J);
-    lar_law_add_reduced(&w, p[1], is.I2, is.J, -4.0 / 3, &w.w2, &w.w2J);
-    lar_law_add_logarithmic(&w, p[2], is.J);
-    lar_isotropic_tangent(&w, &is, F, A);
+    lar_law_add_reduced(&w, p[0], is->I1, is->J, 1, &w.w1, &w.w1J);
+    lar_law_add_reduced(&w, p[1], is->I2, is->J, 2, &w.w2, &w.w2J);
+    lar_law_add_logarithmic(&w, p[2], is->J);
+    return w;
+}
+static void lar_mooney_rivlin_tangent(const double *p, const double F[9], double A[9][9]) {
+    lar_isotropic_tangent_of(lar_mooney_rivlin_slopes, p, F, A);
 }
 
 static lar_law_strained lar_mooney_rivlin_strained(const double *p, double J, double I1,

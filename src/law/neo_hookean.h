@@ -65,13 +65,15 @@ static void lar_neo_hookean_from_moduli(double shear, double bulk, double *p) {
     p[1] = bulk;
 }
 
-static void lar_neo_hookean_tangent(const double *p, const double F[9], double A[9][9]) {
-    lar_law_invariants is = lar_law_invariants_of(F);
+static lar_law_slopes lar_neo_hookean_slopes(const double *p, const lar_law_invariants *is) {
     lar_law_slopes w = {0};
-    lar_law_add_reduced(&w, p[0] / 2, is.I1, is.J, -2.0 / 3, &w.w1, &w.w1J);
-    w.wJ += p[1] * (is.J - 1);
+    lar_law_add_reduced(&w, p[0] / 2, is->I1, is->J, 1, &w.w1, &w.w1J);
+    w.wJ += p[1] * (is->J - 1);
     w.wJJ += p[1];
-    lar_isotropic_tangent(&w, &is, F, A);
+    return w;
+}
+static void lar_neo_hookean_tangent(const double *p, const double F[9], double A[9][9]) {
+    lar_isotropic_tangent_of(lar_neo_hookean_slopes, p, F, A);
 }
 
 static lar_law_strained lar_neo_hookean_strained(const double *p, double J, double I1,

@@ -140,6 +140,7 @@ static const lar_law_parameter lar_ogden_parameter[] = {
     {"c2", LAR_VALUE_OPTIONAL},         {"m2", LAR_VALUE_POWER},
     {"c3", LAR_VALUE_OPTIONAL},         {"m3", LAR_VALUE_POWER},
     {"bulk_modulus", LAR_VALUE_MODULUS}};
+#define lar_ogden_slopes NULL
 enum { lar_ogden_history = 0, lar_ogden_fibres = 0, lar_ogden_uncoupled = 1 };
 
 static const lar_law_parameter lar_ogden_febio_parameter[] = {
@@ -195,7 +196,7 @@ static void lar_ogden_tangent(const double *p, const double F[9], double A[9][9]
     lar_isotropic_tangent(&volume, &is, F, A);
     lar_principal_frame(F, N, stretch);
     for (int a = 0; a < 3; a++) c[a] = stretch[a] * stretch[a];
-    lar_ogden_principal(c, log(is.J), p, &w);
+    lar_ogden_principal(c, lar_lane_log(is.J), p, &w);
     lar_principal_tangent(&w, F, (const double(*)[3])N, A);
 }
 

@@ -95,15 +95,17 @@ static void lar_veronda_westmann_from_moduli(double shear, double bulk, double *
     p[2] = bulk;
 }
 
-static void lar_veronda_westmann_tangent(const double *p, const double F[9], double A[9][9]) {
-    lar_law_invariants is = lar_law_invariants_of(F);
-    double s = p[0] * p[1] * exp(p[1] * (is.I1 * pow(is.J, -2.0 / 3) - 3));
+static lar_law_slopes lar_veronda_westmann_slopes(const double *p, const lar_law_invariants *is) {
+    double s = p[0] * p[1] * lar_lane_exp(p[1] * (is->I1 * lar_law_reduced(is->J) - 3));
     lar_law_slopes w = {0};
-    lar_law_add_rise(&w, p[1] * s, &is);
-    lar_law_add_reduced(&w, s, is.I1, is.J, -2.0 / 3, &w.w1, &w.w1J);
-    lar_law_add_reduced(&w, -p[0] * p[1] / 2, is.I2, is.J, -4.0 / 3, &w.w2, &w.w2J);
-    lar_law_add_logarithmic(&w, p[2], is.J);
-    lar_isotropic_tangent(&w, &is, F, A);
+    lar_law_add_rise(&w, p[1] * s, is);
+    lar_law_add_reduced(&w, s, is->I1, is->J, 1, &w.w1, &w.w1J);
+    lar_law_add_reduced(&w, -p[0] * p[1] / 2, is->I2, is->J, 2, &w.w2, &w.w2J);
+    lar_law_add_logarithmic(&w, p[2], is->J);
+    return w;
+}
+static void lar_veronda_westmann_tangent(const double *p, const double F[9], double A[9][9]) {
+    lar_isotropic_tangent_of(lar_veronda_westmann_slopes, p, F, A);
 }
 
 static lar_law_strained lar_veronda_westmann_strained(const double *p, double J, double I1,

@@ -96,15 +96,17 @@ static void lar_yeoh_from_moduli(double shear, double bulk, double *p) {
     p[3] = bulk;
 }
 
-static void lar_yeoh_tangent(const double *p, const double F[9], double A[9][9]) {
-    lar_law_invariants is = lar_law_invariants_of(F);
-    double y2 = pow(is.J, -2.0 / 3), x = is.I1 * y2 - 3;
+static lar_law_slopes lar_yeoh_slopes(const double *p, const lar_law_invariants *is) {
+    double y2 = lar_law_reduced(is->J), x = is->I1 * y2 - 3;
     double s = p[0] + 2 * p[1] * x + 3 * p[2] * x * x, rise = 2 * p[1] + 6 * p[2] * x;
-    double by_J = -2.0 / 3 * is.I1 * y2 / is.J; /* dx/dJ */
+    double by_J = -2.0 / 3 * is->I1 * y2 / is->J; /* dx/dJ */
     lar_law_slopes w = {.w11 = rise * y2 * y2, .w1J = rise * y2 * by_J, .wJJ = rise * by_J * by_J};
-    lar_law_add_reduced(&w, s, is.I1, is.J, -2.0 / 3, &w.w1, &w.w1J);
-    lar_law_add_logarithmic(&w, p[3], is.J);
-    lar_isotropic_tangent(&w, &is, F, A);
+    lar_law_add_reduced(&w, s, is->I1, is->J, 1, &w.w1, &w.w1J);
+    lar_law_add_logarithmic(&w, p[3], is->J);
+    return w;
+}
+static void lar_yeoh_tangent(const double *p, const double F[9], double A[9][9]) {
+    lar_isotropic_tangent_of(lar_yeoh_slopes, p, F, A);
 }
 
 static lar_law_strained lar_yeoh_strained(const double *p, double J, double I1, double area) {

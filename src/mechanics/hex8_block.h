@@ -240,7 +240,8 @@ enum { LAR_LANE_FLAT = 1 << 30 };
 typedef struct lar_hex8_monitor {
     const double *limit; /* [8 for each block of the run] of lar_hex8_corner_limit, squared units of
                             force */
-    const double *area;  /* [likewise] lar_hex8_area_limit; NULL: no element is flat */
+    const double *area;  /* [likewise] lar_hex8_area_limit; below 0: minus what |F^-1|^2 must not
+                            come to either; NULL: for no element */
     int32_t count;
     int32_t *lane; /* [8 for each block of the run] block * 8 + lane, ascending; with LAR_LANE_FLAT
                       where `area` alone says so */

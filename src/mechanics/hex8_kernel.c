@@ -355,13 +355,17 @@ static const stress_phase stress_table[LAR_LAW_COUNT] = {LAR_LAWS(LAW_ROW)};
 
 _Static_assert(CHUNK *LAR_BLOCK <= 32, "one bit per element of a chunk");
 
-/* Flat elements of a chunk that are strained too much for their shape. */
+/* Elements of a chunk that are strained too much for their shape or their tissue. */
 LAR_INLINE unsigned flat_lanes(const double *area, size_t parts, const lane_strain *strain) {
     unsigned found = 0;
-    for (size_t i = 0; i < parts; i++)
-        found |= lar_lane_not_greater(lar_lane_load(area + i * LAR_LANES),
-                                      strain[i].number[LAR_STRAIN_AREA])
-                 << i * LAR_LANES;
+    for (size_t i = 0; i < parts; i++) {
+        lar_lane limit = lar_lane_load(area + i * LAR_LANES), J = strain[i].number[0];
+        lar_lane now = strain[i].number[LAR_STRAIN_AREA], less = lar_lane_set(0) - limit;
+        unsigned by_area = lar_lane_not_greater(lar_lane_max(limit, less), now);
+        by_area |= lar_lane_not_greater(less, now / (J * J)) &
+                   lar_lane_not_greater(limit, lar_lane_set(0));
+        found |= by_area << i * LAR_LANES;
+    }
     return found;
 }
 

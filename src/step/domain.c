@@ -12,6 +12,7 @@
 #include "mechanics/hex8_full.h"
 #include "mechanics/hex8_guard.h"
 #include "step/activation.h"
+#include "step/mass/compressible.h"
 #include "step/mass_scaling.h"
 #include "step/materials.h"
 #include "step/viscous_history.h"
@@ -119,7 +120,9 @@ static void fill_lane(const lar_domain *domain, const lar_block_run *run, void *
     base->largest = lar_hex8_largest_corner((const double(*)[3])corner);
     base->areas = lar_hex8_areas((const double(*)[3])corner);
     base->corner = lar_layout_turn(&domain->layout, mesh, e);
-    domain->area_limit[base - domain->base] = lar_hex8_area_limit(&hex8);
+    double limit = lar_hex8_area_limit(&hex8);
+    bool compressible = lar_material_compressible(lar_model_material_of(domain->model, e));
+    domain->area_limit[base - domain->base] = compressible ? lar_compressible_limit(limit) : limit;
 }
 
 /* How many bytes of blocks caches hold, beside nodes and other programs: of the second level, from
@@ -258,7 +261,7 @@ static bool fill_block(lar_domain *domain, int32_t r, int32_t b, void *memory, d
     return !run->rest || same_numbers(domain, run, b, lanes, whole);
 }
 
-/* Where no element is flat nobody looks. */
+/* Where no element is flat or compressible nobody looks. */
 static void keep_area_limits(lar_domain *domain) {
     for (int32_t i = 0; i < LAR_BLOCK * domain->layout.block_count; i++)
         if (domain->area_limit[i] < LAR_STRAINED_AREA) return;

@@ -58,7 +58,8 @@ typedef struct lar_domain {
     double fastest[LAR_FACTORS_MAX];    /* square of the highest frequency at rest among the
                                             elements of these materials [1/s^2]; a whole's */
     double *corner_limit;   /* [8 for each block] lar_hex8_corner_limit, in squared force units */
-    double *area_limit;     /* [8 for each block] lar_hex8_area_limit; NULL: no element is flat */
+    double *area_limit;     /* [8 for each block] lar_hex8_area_limit, of compressible tissue below 0
+                               (mass/compressible.h); NULL: all are of neither kind */
     double *rest;           /* [3][layout.axis_stride] where nodes are at rest [m] */
     lar_element_rate *rate; /* [elements of the model] */
     bool rate_lent;         /* `rate` belongs to the whole */

@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "mechanics/hex8_guard.h"
+#include "step/mass/compressible.h"
 #include "step/mass/pressed.h"
 #include "step/mass/strained.h"
 
@@ -93,6 +94,18 @@ static bool is_flat(const lar_domain *domain, size_t place) {
     return domain->area_limit && domain->area_limit[place] < LAR_STRAINED_AREA;
 }
 
+/* How the square of an element's frequency has grown by its mean gradient. */
+static double growth_of(const measured_list *list, size_t place,
+                        const float strain[LAR_STRAIN_NUMBERS]) {
+    const lar_domain *domain = list->domain;
+    double growth = lar_hex8_growth(&list->stiff, strain[LAR_STRAIN_AREA] / 3.0);
+    if (!domain->area_limit || !(domain->area_limit[place] < 0)) return growth;
+    double exact = lar_compressible_growth(&domain->material[list->material],
+                                           domain->area_limit[place], strain);
+    if (list->stiff.fibrous) exact += list->stiff.fibres / list->stiff.whole;
+    return lar_greater(growth, exact);
+}
+
 /* How the square of a flat element's frequency has grown, with what its neighbours leave of it: its
  * areas as they are, not as those of a cube would be with such a strain. */
 static double growth_of_flat(const measured_list *list, lar_gid e, size_t place, double areas) {
@@ -117,7 +130,7 @@ static bool measure(measured_list *list, lar_gid e, size_t place, double stiffne
     take_material(list, domain->model->element_material[e]);
     lar_hex8_stiff_of(&domain->material[list->material], strain, &list->stiff);
     double rate = list->faster * at_rest->square, flat = 0;
-    double square = rate * lar_hex8_growth(&list->stiff, strain[LAR_STRAIN_AREA] / 3.0);
+    double square = rate * growth_of(list, place, strain);
     if (stiffness != 0) square += (1 + 2 * LAR_BARRIER_LEAD) * stiffness / at_rest->mass;
     if (is_flat(domain, place)) {
         if (most && !grows(&list->stiff)) return false;
@@ -144,6 +157,7 @@ static inline bool asks_for_little(measured_list *list, lar_gid e, size_t place,
     take_material(list, domain->model->element_material[e]);
     lar_hex8_stiff_of(&domain->material[list->material], strain, &list->stiff);
     double area = strain[LAR_STRAIN_AREA] / 3.0;
+    if (domain->area_limit && domain->area_limit[place] < 0) return false;
     if (flat) area = lar_greater(area, areas / domain->base[place].areas);
     double rate = list->faster * domain->rate[e].square;
     double square = rate * lar_hex8_growth(stiff, area);
