@@ -359,11 +359,15 @@ _Static_assert(CHUNK *LAR_BLOCK <= 32, "one bit per element of a chunk");
 LAR_INLINE unsigned flat_lanes(const double *area, size_t parts, const lane_strain *strain) {
     unsigned found = 0;
     for (size_t i = 0; i < parts; i++) {
-        lar_lane limit = lar_lane_load(area + i * LAR_LANES), J = strain[i].number[0];
-        lar_lane now = strain[i].number[LAR_STRAIN_AREA], less = lar_lane_set(0) - limit;
-        unsigned by_area = lar_lane_not_greater(lar_lane_max(limit, less), now);
-        by_area |= lar_lane_not_greater(less, now / (J * J)) &
-                   lar_lane_not_greater(limit, lar_lane_set(0));
+        lar_lane limit = lar_lane_load(area + i * LAR_LANES);
+        lar_lane now = strain[i].number[LAR_STRAIN_AREA], J = strain[i].number[LAR_STRAIN_VOLUME];
+        unsigned by_area = lar_lane_not_greater(limit, now);
+        if (by_area) {
+            unsigned tissue = by_area & lar_lane_not_greater(limit, lar_lane_set(0));
+            lar_lane most = lar_lane_set(0) - limit;
+            by_area &= ~tissue | lar_lane_not_greater(most, now) |
+                       lar_lane_not_greater(most, now / (J * J));
+        }
         found |= by_area << i * LAR_LANES;
     }
     return found;

@@ -90,8 +90,12 @@ static void take_material(measured_list *list, int32_t material) {
     lar_hex8_stiff_begin(&list->domain->material[material], &list->stiff);
 }
 
-static bool is_flat(const lar_domain *domain, size_t place) {
-    return domain->area_limit && domain->area_limit[place] < LAR_STRAINED_AREA;
+/* lar_domain.area_limit: below LAR_STRAINED_AREA its areas count, and below 0 its tissue. */
+static inline double limit_at(const lar_domain *domain, size_t place) {
+    return domain->area_limit ? domain->area_limit[place] : LAR_STRAINED_AREA;
+}
+static inline bool is_flat(const lar_domain *domain, size_t place) {
+    return limit_at(domain, place) < LAR_STRAINED_AREA;
 }
 
 /* How the square of an element's frequency has grown by its mean gradient. */
@@ -99,9 +103,9 @@ static double growth_of(const measured_list *list, size_t place,
                         const float strain[LAR_STRAIN_NUMBERS]) {
     const lar_domain *domain = list->domain;
     double growth = lar_hex8_growth(&list->stiff, strain[LAR_STRAIN_AREA] / 3.0);
-    if (!domain->area_limit || !(domain->area_limit[place] < 0)) return growth;
-    double exact = lar_compressible_growth(&domain->material[list->material],
-                                           domain->area_limit[place], strain);
+    const double limit = limit_at(domain, place);
+    if (!(limit < 0)) return growth;
+    double exact = lar_compressible_growth(&domain->material[list->material], limit, strain);
     if (list->stiff.fibrous) exact += list->stiff.fibres / list->stiff.whole;
     return lar_greater(growth, exact);
 }
@@ -149,16 +153,16 @@ static bool measure(measured_list *list, lar_gid e, size_t place, double stiffne
 
 /* Whether an element, a flat one with no more than these areas, asks for no more than others have
  * and finds room in a whole step: then it does not matter how much that is. */
-static inline bool asks_for_little(measured_list *list, lar_gid e, size_t place, bool flat,
+static inline bool asks_for_little(measured_list *list, lar_gid e, size_t place, double limit,
                                    double areas, const float strain[LAR_STRAIN_NUMBERS]) {
+    if (limit < 0) return false;
     const lar_domain *domain = list->domain;
     const lar_state *state = list->state;
     const lar_hex8_stiff *stiff = &list->stiff;
     take_material(list, domain->model->element_material[e]);
     lar_hex8_stiff_of(&domain->material[list->material], strain, &list->stiff);
     double area = strain[LAR_STRAIN_AREA] / 3.0;
-    if (domain->area_limit && domain->area_limit[place] < 0) return false;
-    if (flat) area = lar_greater(area, areas / domain->base[place].areas);
+    if (limit < LAR_STRAINED_AREA) area = lar_greater(area, areas / domain->base[place].areas);
     double rate = list->faster * domain->rate[e].square;
     double square = rate * lar_hex8_growth(stiff, area);
     double need = 0.25 * domain->time_step * domain->time_step * square;
@@ -296,10 +300,11 @@ void lar_measure_strained(const lar_domain *domain, const lar_hex8_monitor *moni
         near += is_near;
         double volume = domain->base[place].volume;
         bool may_fold = !is_near && lane == listed && thrown > volume * volume;
-        bool flat = is_flat(domain, place), moves = flat && !is_steady(strained, place);
+        double limit = limit_at(domain, place);
+        bool flat = limit < LAR_STRAINED_AREA, moves = flat && !is_steady(strained, place);
         double areas = flat ? strained->steady[place].areas : 0;
         if (!may_fold && !moves &&
-            (asks_for_little(&list, e, place, flat, areas, monitor->strain[i]) ||
+            (asks_for_little(&list, e, place, limit, areas, monitor->strain[i]) ||
              measure(&list, e, place, 0, areas, true, monitor->strain[i])))
             continue;
         measure_later(&list, i, false, may_fold, may_fold || flat, 0);
