@@ -993,8 +993,8 @@ LAR_API int32_t lar_simulation_step_parts(const lar_simulation *simulation);
 LAR_API uint64_t lar_simulation_divided_steps(const lar_simulation *simulation, int32_t *max);
 /* How often a grid of threads has been divided anew since the simulation was created. Where tools
  * press, elements come to cost many times what others do; when the slowest processor would be a
- * tenth faster with another division it gets one, between two advances, which takes as long as the
- * first one did, and a hundredth of the time in all at most. The bits stay the same. 0 for
+ * tenth faster with another division it gets one, between two calls that advance (not within a long
+ * one), which takes as long as the first one did, and a hundredth of the time in all at most. The bits stay the same. 0 for
  * processes, threads of a processor, a distribution that was asked for, and more processors than
  * cores. */
 LAR_API uint64_t lar_simulation_redivisions(const lar_simulation *simulation);
@@ -1021,8 +1021,8 @@ typedef struct lar_contact_info {
     double deepest;    /* immersion of these [m] */
     uint64_t through;  /* times that a node was pressed through a face, deeper than contact reaches
                           or  over to the other side: bodies lie in each other, or behind */
-    double way;        /* the farthest that a node went in a step along an axis, where bodies may
-                          touch; of those on supports what they would go [m] */
+    double way;        /* the farthest that a node went along an axis in a step, or a part of one
+                          that is divided, where bodies may touch; of those on supports what they would go [m] */
 } lar_contact_info;
 
 LAR_SIZED void lar_simulation_contact(const lar_simulation *simulation, lar_contact_info *info);

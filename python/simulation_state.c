@@ -293,7 +293,7 @@ PyMethodDef python_state_methods[] = {
     {"contact", contact, METH_NOARGS,
      "contact($self)\n--\n\ndict: touching (nodes in contact with bodies and planes), deepest [m], "
      "through (times that a node was pressed through a face: bodies lie in each other, or behind), "
-     "way (the farthest that a node went in a step) [m], searches, tested."},
+     "way (the farthest that a node went in a step, or a part of one) [m], searches, tested."},
     {"reset", reset, METH_NOARGS,
      "reset($self)\n--\n\nBack to the state that it was made with, settings too. Added tools stay, "
      "where "
