@@ -210,8 +210,6 @@ static void write_progress(lar_json *json, const lar_session_status *s) {
     lar_json_text(json, "slow_advice", s->slow_advice);
     lar_json_number(json, "lag", s->lag);
     lar_json_number(json, "skipped", s->skipped);
-    lar_json_boolean(json, "recording", s->recording != 0);
-    lar_json_text(json, "recording_lost", s->recording_lost);
     lar_json_boolean(json, "lost", s->error == LAR_ERROR_PEER);
     lar_json_text(json, "message", s->message);
     lar_json_integer(json, "recoveries", (int64_t)s->recoveries);
@@ -250,6 +248,14 @@ static void write_settings(const lar_server *server, lar_json *json) {
     lar_json_close(json);
 }
 
+static void write_recording(const lar_server *server, lar_json *json) {
+    const lar_session_status *s = &server->status;
+    bool viewers = __atomic_load_n(&server->work.records, __ATOMIC_RELAXED);
+    lar_json_boolean(json, "recording", s->recording != 0);
+    lar_json_text(json, "recording_by", !s->recording ? "" : viewers ? "viewer" : "program");
+    lar_json_text(json, "recording_lost", s->recording_lost);
+}
+
 static void write_replay(const lar_server *server, lar_json *json) {
     const lar_session_status *s = &server->status;
     if (!s->replaying) return;
@@ -265,6 +271,7 @@ static void write_status(const lar_server *server, const lar_viewer *viewer, lar
     lar_json_begin(json);
     lar_json_text(json, "kind", "status");
     write_progress(json, &server->status);
+    write_recording(server, json);
     lar_json_number(json, "pace", server->pace);
     lar_json_integer(json, "viewers", __atomic_load_n(&server->viewers, __ATOMIC_RELAXED));
     lar_json_open(json, "saved", '[');

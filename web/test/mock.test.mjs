@@ -78,6 +78,26 @@ test('a recording that ends by itself is told at once, once', async () => {
     await v.close();
 });
 
+test("what the program records is shown, and neither button nor key ends it", async () => {
+    const v = await openPage(browser, server.url);
+    Object.assign(server.state, { recording: true, recordingBy: 'program' });
+    const button = v.page.getByRole('button', { name: 'Recording, by the program' });
+    await button.waitFor();
+    assert.equal(await button.isDisabled(), true);
+    assert.equal(await button.getAttribute('aria-pressed'), 'true');
+    assert.match(await button.getAttribute('title'), /records all of this session itself, until it ends/);
+    await v.page.locator('#picture').focus();
+    await v.page.keyboard.press('c');
+    await v.page.locator('#notes').getByText('records all of this session itself').waitFor();
+    assert.equal(server.state.recording, true);
+    // The same, by a viewer: anybody ends it.
+    Object.assign(server.state, { recordingBy: undefined });
+    await v.page.getByRole('button', { name: 'Stop recording' }).click();
+    await v.page.getByRole('button', { name: 'Record', exact: true }).waitFor();
+    assert.equal(await v.page.locator('#record').getAttribute('title'), 'Record what you do (C)');
+    await v.close();
+});
+
 test('a run that went back says so, once, and goes on', async () => {
     Object.assign(server.state, { recoveries: 2, recovery: 'went back 0.62 s to step 15800: element 7' });
     const v = await openPage(browser, server.url);
