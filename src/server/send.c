@@ -435,7 +435,8 @@ static int send_end(lar_server *server, lar_viewer *viewer) {
 
 int lar_viewer_send(lar_server *server, lar_viewer *viewer) {
     if (viewer->closing != LAR_CLOSE_NOT) return send_end(server, viewer);
-    unsigned due = viewer->due & -viewer->due; /* the lowest bit: the most urgent */
+    if (lws_get_close_length(viewer->wsi)) return 0; /* libwebsockets has closed it: no more data */
+    unsigned due = viewer->due & -viewer->due;       /* the lowest bit: the most urgent */
     int failed = 0;
     viewer->due &= ~due;
     switch (due) {
