@@ -36,23 +36,29 @@ static void set(lar_work *work, const lar_command *command, lar_error *error) {
             session, command->material, command->valued ? command->value : 1, error);
 }
 
-/* What is being recorded though no viewer has begun it: the program has, and it alone ends that. */
-static bool is_programs(lar_work *work, lar_error *error) {
+static bool is_recorded(const lar_work *work) {
     lar_session_status now;
     lar_session_status_get(work->session, &now);
-    return now.recording && !work->records &&
+    return now.recording;
+}
+
+/* What is being recorded though no viewer has begun it: the program has, and it alone ends that. */
+static bool is_programs(const lar_work *work, lar_error *error) {
+    return !work->records && is_recorded(work) &&
            lar_fail(error, LAR_ERROR_ARGUMENT,
-                    "the program records this session itself (--record); until that ends nothing "
+                    "the program itself records this session (--record); until that ends nothing "
                     "else is recorded or played");
 }
 
 static void record(lar_work *work, const char *path, lar_error *error) {
-    lar_session_status now;
     if (is_programs(work, error)) return;
     __atomic_store_n(&work->records, true, __ATOMIC_RELAXED); /* no status may think otherwise */
     lar_session_record(work->session, path, error);
-    lar_session_status_get(work->session, &now);
-    __atomic_store_n(&work->records, now.recording != 0, __ATOMIC_RELAXED);
+    __atomic_store_n(&work->records, is_recorded(work), __ATOMIC_RELAXED);
+}
+
+static void replay(const lar_work *work, const char *path, lar_error *error) {
+    if (!path || !is_programs(work, error)) lar_session_replay(work->session, path, error);
 }
 
 static void do_job(lar_work *work, lar_job_end *end) {
@@ -73,8 +79,7 @@ static void do_job(lar_work *work, lar_job_end *end) {
         record(work, job->on ? job->path : NULL, error);
         break;
     case LAR_COMMAND_REPLAY:
-        if (!job->name[0] || !is_programs(work, error))
-            lar_session_replay(work->session, job->name[0] ? job->path : NULL, error);
+        replay(work, job->name[0] ? job->path : NULL, error);
         break;
     case LAR_COMMAND_INSPECT:
         inspect(work, end);

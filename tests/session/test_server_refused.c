@@ -172,7 +172,7 @@ static void the_programs_recording_is_its_own(void **unused) {
     DONE(lar_session_record(s.b.session, path, &failure));
     client c = open_client(s.port);
     await_status(&c, "\"recording\":true,\"recording_by\":\"program\"");
-    static const char words[] = "the program records this session itself";
+    static const char words[] = "the program itself records";
     expect_note(&c, "{\"do\":\"record\",\"on\":false}", words);
     expect_note(&c, "{\"do\":\"record\",\"on\":true}", words);
     lar_session_status_get(s.b.session, &now);
