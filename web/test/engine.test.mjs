@@ -424,6 +424,11 @@ test('a tool is added by keyboard, presses the organ, is felt, and is removed', 
     await v.page.getByText('the field has the one that it names').waitFor();
     const named = Number(await v.page.locator('#add-radius').inputValue());
     assert.ok(named > 10 && named < 500, `${named} mm`);
+    // However absurd: the connection stays.
+    await v.page.locator('#add-radius').fill('2000000');
+    await keys.press('Enter');
+    await v.page.getByText('a radius of 2e+06 mm is too large').waitFor();
+    assert.equal(await v.get('connections'), 1);
     // A reset keeps it, above the body.
     await v.page.locator('#picture').focus();
     await fresh();

@@ -469,6 +469,9 @@ export function mock({ port = 0, surface = null, riding = false, token = null, w
                 faults,
                 mesh,
                 poses,
+                cut(code, reason) {
+                    for (const socket of sockets.clients) socket.close(code, reason);
+                },
                 close() {
                     clearInterval(engine);
                     for (const socket of sockets.clients) socket.terminate();

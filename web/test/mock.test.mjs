@@ -442,6 +442,20 @@ async function laidOut(v, parts, name) {
     }
 }
 
+test('a page that the engine cuts off for its own fault says so, and keeps what was written', async () => {
+    const v = await openPage(browser, server.url);
+    await v.page.getByText('Add a tool', { exact: true }).click();
+    await v.page.locator('#add-radius').fill('7.25');
+    server.cut(1008, 'there is no key x');
+    await v.page.locator('#notes').getByText('closed the connection: there is no key x. That is a fault of this page.').waitFor();
+    await v.until(() => window.lariat.connections === 2 && window.lariat.connected);
+    await v.page.locator('#trouble').waitFor({ state: 'hidden' });
+    await v.page.waitForTimeout(300);
+    assert.equal(await v.page.locator('#notes').getByText('a fault of this page').count(), 1);
+    assert.equal(await v.page.locator('#add-radius').inputValue(), '7.25');
+    await v.close();
+});
+
 test('tools are added and removed, by mouse and by keys, and what cannot be is said', async (t) => {
     const own = await mock();
     t.after(() => own.close());
@@ -452,13 +466,16 @@ test('tools are added and removed, by mouse and by keys, and what cannot be is s
     await v.page.getByText('Add a tool', { exact: true }).click();
     assert.equal(await v.page.locator('#add-length-row').isVisible(), false);
     assert.ok(Number(await v.page.locator('#add-radius').inputValue()) > 0);
-    for (const [radius, because] of [['0', 'more than zero'], ['-3', 'more than zero'], ['', 'in mm']]) {
+    for (const [radius, because] of [['0', 'more than zero'], ['-3', 'more than zero'], ['', 'in mm'], ['1e400', 'in mm'], ['1,250', 'in mm'], ['1.2.3', 'in mm'], ['five', 'in mm']]) {
         await v.page.locator('#add-radius').fill(radius);
         await v.page.getByRole('button', { name: 'Add', exact: true }).click();
         await v.page.locator('#add-trouble').getByText(because).waitFor();
     }
     assert.deepEqual(own.state.asked, [], 'and is not asked for');
-    await v.page.locator('#add-radius').fill('6.5');
+    assert.equal(await v.page.locator('#add-radius').inputValue(), 'five', 'and stays to be mended');
+    // A comma is a decimal point, typed as well.
+    await v.page.locator('#add-radius').fill('');
+    await v.page.locator('#add-radius').pressSequentially('6,5');
     await v.page.getByRole('button', { name: 'Add', exact: true }).click();
     await radio(v.page, 'sphere 1').waitFor();
     assert.deepEqual(own.state.asked, [{ do: 'add_tool', shape: 'sphere', radius: 0.0065 }]);
