@@ -174,6 +174,10 @@ test('a recording is played: listed, paused, scrubbed, left; and it outlives the
     await drag(p.page, ...FUNDUS, 10, -10, 2);
     await p.page.getByText('a recording is being played').waitFor();
     await p.page.mouse.up();
+    await p.page.waitForTimeout(300);
+    const notes = (await p.page.locator('#notes').innerText()).trim();
+    assert.match(notes, /^A recording is being played; leave it/, 'one note, though the recording is paused and nothing was held');
+    assert.equal(notes.split('\n').length, 1, notes);
     await p.page.keyboard.press('Space');
     await p.until(() => {
         const [here, end] = document.getElementById('replay-time').innerText.split(' of ').map(parseFloat);
