@@ -77,7 +77,7 @@ function fineSurface(mesh, pieces = 4, off = 0.12) {
     return { inner, weights, carriers, triangles, material, vertices: known.size };
 }
 
-export function mock({ port = 0, surface = null, riding = false, token = null, watchToken = null, organs = null, active = [], scan = false, fibres = 0, toolName = 'probe', dist = join(here, '../dist') } = {}) {
+export function mock({ port = 0, surface = null, riding = false, token = null, watchToken = null, organs = null, active = [], scan = false, fibres = 0, toolName = 'probe', title = surface ? 'Uterus' : 'Pear', dist = join(here, '../dist') } = {}) {
     const mesh = surface ? JSON.parse(readFileSync(surface, 'utf8')) : pear();
     // Two organs, one above the other.
     if (organs === 'halves')
@@ -173,7 +173,7 @@ export function mock({ port = 0, surface = null, riding = false, token = null, w
     }, 4);
 
     const hello = () => ({
-        kind: 'hello', protocol: 1, lariat: '0.1.0', viewer: 1, title: surface ? 'Uterus' : 'Pear', nodes: n, elements: faces,
+        kind: 'hello', protocol: 1, lariat: '0.1.0', viewer: 1, title, nodes: n, elements: faces,
         surface: { nodes: n, faces },
         ...(fine ? { riding: { vertices: fine.vertices, triangles: fine.triangles.length / 3, nodes: n } } : {}),
         ...(scan ? { scan: { size: SCAN, labels: [{ label: 1, name: 'uterus' }, { label: 2, name: 'bone' }] } } : {}),

@@ -442,6 +442,25 @@ async function laidOut(v, parts, name) {
     }
 }
 
+test('a long title takes two lines, and all of it is where the pointer rests', async (t) => {
+    const title = `Uterus of the demonstration, ${'with a description that goes on and on, '.repeat(6)}as scenes may have`;
+    const own = await mock({ title });
+    t.after(() => own.close());
+    const v = await openPage(browser, own.url);
+    for (const [width, height] of [[400, 700], [1000, 640]]) {
+        await v.page.setViewportSize({ width, height });
+        await v.page.waitForTimeout(150);
+        const box = await v.page.locator('#title').evaluate((e) => ({ high: e.clientHeight, line: parseFloat(getComputedStyle(e).lineHeight) || 1.5 * parseFloat(getComputedStyle(e).fontSize) }));
+        assert.ok(box.high < 2.3 * box.line, `${box.high} pixels in a window of ${width}`);
+        const state = await v.page.locator('#state').boundingBox();
+        assert.ok(state.x + state.width <= width && state.y < 110, `the badge is at ${state.y}`);
+    }
+    assert.equal(await v.page.locator('#title').getAttribute('title'), title);
+    await v.page.setViewportSize({ width: 400, height: 700 });
+    await v.shot('long-title');
+    await v.close();
+});
+
 test('a page that the engine cuts off for its own fault says so, and keeps what was written', async () => {
     const v = await openPage(browser, server.url);
     await v.page.getByText('Add a tool', { exact: true }).click();
