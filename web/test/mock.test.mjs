@@ -461,6 +461,27 @@ test('a long title takes two lines, and all of it is where the pointer rests', a
     await v.close();
 });
 
+test('with forced colours swatches keep theirs, and graphs can be read', async (t) => {
+    const own = await mock({ organs: 'halves' });
+    t.after(() => own.close());
+    const v = await openPage(browser, own.url);
+    const shown = (selector) => v.page.locator(selector).first().evaluate((e) => getComputedStyle(e).backgroundColor);
+    await v.page.locator('#inside').evaluate((card) => (card.open = true));
+    const organ = await shown('#organs canvas');
+    await v.page.getByRole('radio', { name: 'processor' }).click();
+    await v.page.locator('#keys-of-colours canvas').first().waitFor();
+    const key = await shown('#keys-of-colours canvas');
+    for (const colorScheme of ['light', 'dark']) {
+        await v.page.emulateMedia({ forcedColors: 'active', colorScheme });
+        assert.equal(await shown('#organs canvas'), organ);
+        assert.equal(await shown('#keys-of-colours canvas'), key);
+        assert.equal(await shown('#graph'), 'rgb(20, 24, 28)', 'the dark ground that its lines are made for');
+        await v.page.waitForTimeout(300);
+        await v.shot(`forced-colours-${colorScheme}`);
+    }
+    await v.close();
+});
+
 test('a page that the engine cuts off for its own fault says so, and keeps what was written', async () => {
     const v = await openPage(browser, server.url);
     await v.page.getByText('Add a tool', { exact: true }).click();
