@@ -200,7 +200,7 @@ export function mock({ port = 0, surface = null, riding = false, token = null, w
         step_bins: bins([8, state.tick]), tick_bins: bins([15, state.tick], [24, state.late]),
         ticks: state.tick, misses: state.late, slow_ticks: state.slow ? state.tick : 0, real_time_factor: 1, real_time_factor_now: state.slow ? state.slow === true ? 0.4 : state.slow : 1,
         engine_rate: 10000, haptic_rate: 1000, snapshot_rate: 58, slow_motion: state.slow, slow_cause: state.slow ? 'step' : '',
-        slow_advice: state.slow ? 'a step takes 250 us and stands for 100 us of the clock; what would hold: --grid 2x2x1, a mesh of about 700 elements, or a slower pace' : '', lag: 0, skipped: 0,
+        slow_advice: state.slow ? (state.slowAdvice ?? 'a step takes 250 us and stands for 100 us of the clock; what would hold: --grid 2x2x1, a mesh of about 700 elements, or a slower pace') : '', lag: 0, skipped: 0,
         recording: state.recording, recording_by: state.recordingBy ?? (state.recording ? 'viewer' : ''), recording_lost: state.recordingLost ?? '', lost: state.lost, message: state.message, viewers: 1, saved: state.saved, recordings: state.recordings, ...(state.replay ? { replay: state.replay } : {}),
         recoveries: state.recoveries, recovery: state.recovery, body: state.body,
         placed: state.placed, step_parts: state.parts, divided_steps: state.divided, heavier: 0, heavier_share: 0,
