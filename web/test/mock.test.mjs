@@ -451,14 +451,12 @@ test('a long title takes two lines, and all of it is where the pointer rests', a
     for (const [width, height] of [[400, 700], [1000, 640]]) {
         await v.page.setViewportSize({ width, height });
         await v.page.waitForTimeout(150);
-        const box = await v.page.locator('#title').evaluate((e) => ({ high: e.clientHeight, line: parseFloat(getComputedStyle(e).lineHeight) || 1.5 * parseFloat(getComputedStyle(e).fontSize) }));
-        assert.ok(box.high < 2.3 * box.line, `${box.high} pixels in a window of ${width}`);
+        const high = await v.page.locator('#title').evaluate((e) => e.clientHeight);
+        assert.ok(high < 65, `${high} pixels in a window of ${width}`);
         const state = await v.page.locator('#state').boundingBox();
         assert.ok(state.x + state.width <= width && state.y < 110, `the badge is at ${state.y}`);
     }
     assert.equal(await v.page.locator('#title').getAttribute('title'), title);
-    await v.page.setViewportSize({ width: 400, height: 700 });
-    await v.shot('long-title');
     await v.close();
 });
 
