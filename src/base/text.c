@@ -91,6 +91,16 @@ void lar_text_list(const char *const *name, int count, char *to, size_t size) {
     }
 }
 
+lar_time_text lar_text_time(double seconds) {
+    static const char unit[][3] = {"us", "ms", "s"};
+    lar_time_text out;
+    double count = 1e6 * seconds;
+    int i = 0;
+    for (; count >= 999.5 && i < 2; i++) count /= 1000;
+    snprintf(out.text, sizeof out.text, "%.3g %s", count, unit[i]);
+    return out;
+}
+
 locale_t lar_text_locale(void) {
     static locale_t shared; /* made by the first thread that is here */
     locale_t known = __atomic_load_n(&shared, __ATOMIC_ACQUIRE);

@@ -79,6 +79,12 @@ void lar_text_print(char *to, size_t size, const char *format, va_list args)
 /* "a", "a and b", "a, b and c" into to[size], cut where it does not fit. */
 void lar_text_list(const char *const *name, int count, char *to, size_t size);
 
+/* A time [s] as people write it: "52.3 us", "8.77 ms". */
+typedef struct lar_time_text {
+    char text[16];
+} lar_time_text;
+lar_time_text lar_text_time(double seconds);
+
 /* The C locale, in which numbers have a point. For uselocale() around what prints numbers into a
  * file: an embedding program may have another one. Lives as long as the program; 0, with which
  * uselocale() changes nothing, when there is no memory for it. */

@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
@@ -96,8 +97,17 @@ static int prepare(view *v) {
     return cli_complain_as_other(&cli_view, v->processes, &error);
 }
 
+/* "udp:HOST:PORT,token=...": what the device shows is for nobody else to read. */
+static void name_device(const char *spec, char name[128]) {
+    static const char KEY[] = ",token=";
+    const char *token = strstr(spec, KEY), *rest = "";
+    if (token) rest = token + strlen(KEY) + strcspn(token + strlen(KEY), ",");
+    snprintf(name, 128, "%.*s%s", (int)(token ? token - spec : (long)strlen(spec)), spec, rest);
+}
+
 static int unknown_tool(const view *v, const char *device) {
-    char known[512] = "";
+    char known[512] = "", name[128];
+    name_device(device, name);
     for (int32_t i = 0; i < lar_simulation_tool_count(v->simulation); i++) {
         lar_tool_info tool;
         size_t used = strlen(known);
@@ -105,7 +115,7 @@ static int unknown_tool(const view *v, const char *device) {
             snprintf(known + used, sizeof known - used, "%s%s", i ? ", " : "", tool.name);
     }
     return cli_complain(&cli_view, CLI_USAGE, "--device %s: there is no such tool; there are: %s",
-                        device, known);
+                        name, known);
 }
 
 /* "probe=udp:127.0.0.1:9000" */
@@ -167,6 +177,10 @@ static int open_session(view *v) {
     options.pace = s->pace;
     options.paused = s->paused;
     options.priority = (int)s->priority;
+    struct stat there;
+    if (s->record && stat(s->record, &there) == 0 && S_ISDIR(there.st_mode))
+        return cli_complain(&cli_view, CLI_FAILED, "%s is a folder; give --record a file",
+                            s->record);
     if (s->record && !s->force && access(s->record, F_OK) == 0)
         return cli_complain(&cli_view, CLI_FAILED,
                             "%s is there already; --force replaces it, or take another name",
@@ -318,7 +332,7 @@ static void note_devices(view *v) {
             lar_simulation_tool(v->simulation, i, &tool, NULL))
             continue;
         device->tool = tool.name;
-        snprintf(device->name, sizeof device->name, "%s", device->status.name);
+        name_device(device->status.name, device->name);
         r->devices++;
     }
 }

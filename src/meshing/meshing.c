@@ -181,8 +181,9 @@ static char *joined_names(const work *w) {
     char *all = lar_calloc(length, 1);
     for (int32_t i = 0; all && i < w->count; i++) {
         const char *slash = w->given ? NULL : strrchr(w->path[i], '/');
-        if (i > 0) strcat(all, ", ");
-        strcat(all, slash ? slash + 1 : w->path[i]);
+        const size_t used = strlen(all);
+        snprintf(all + used, length - used, "%s%s", i > 0 ? ", " : "",
+                 slash ? slash + 1 : w->path[i]);
     }
     return all;
 }

@@ -147,8 +147,7 @@ static void ask_setting(lar_server *server, lar_viewer *viewer, const lar_comman
 
 static void tell_saved(lar_server *server, lar_viewer *viewer, const char *what, const char *name) {
     lar_json *json = &server->json;
-    lar_json_begin(json);
-    lar_json_text(json, "kind", "saved");
+    lar_message_begin(json, "saved");
     lar_json_text(json, "what", what);
     lar_json_text(json, "name", name);
     lar_viewer_tell(viewer, json);
@@ -156,8 +155,7 @@ static void tell_saved(lar_server *server, lar_viewer *viewer, const char *what,
 
 static void tell_added(lar_server *server, lar_viewer *viewer, int32_t tool) {
     lar_json *json = &server->json;
-    lar_json_begin(json);
-    lar_json_text(json, "kind", "added");
+    lar_message_begin(json, "added");
     lar_json_integer(json, "tool", tool);
     lar_viewer_tell(viewer, json);
 }

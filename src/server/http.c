@@ -282,7 +282,9 @@ static void accept_some(lar_server *server) {
             continue;
         }
         setsockopt(fd, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
-        struct lws *wsi = lws_adopt_socket_vhost(server->vhost, fd);
+        struct lws *wsi = lws_adopt_descriptor_vhost(
+            server->vhost, LWS_ADOPT_SOCKET | LWS_ADOPT_HTTP | LWS_ADOPT_ALLOW_SSL,
+            (lws_sock_file_fd_type){.sockfd = fd}, NULL, NULL);
         if (wsi) add_connection(server, wsi, number);
     }
 }

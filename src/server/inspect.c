@@ -82,8 +82,7 @@ void lar_server_tell_reading(lar_server *server, const lar_job_end *end) {
     lar_json *json = &server->json;
     server->reading = false;
     if (!viewer) return;
-    lar_json_begin(json);
-    lar_json_text(json, "kind", end->error.status ? "no_values" : "values");
+    lar_message_begin(json, end->error.status ? "no_values" : "values");
     if (end->error.status) {
         lar_json_text(json, "text", end->error.message);
     } else {

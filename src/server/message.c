@@ -89,8 +89,8 @@ static const key_row key_table[KEYS] = {[KEY_DO] = {"do", IS_STRING, 0, 0, 0},
                                         [KEY_INDEX] = {"index", IS_WHOLE, 0, INT32_MAX, 0},
                                         [KEY_MATERIAL] = {"material", IS_WHOLE, 0, INT32_MAX, 0},
                                         [KEY_SHAPE] = {"shape", IS_STRING, 0, 0, 0},
-                                        [KEY_RADIUS] = {"radius", IS_REAL, -1000, 1000, 0},
-                                        [KEY_LENGTH] = {"length", IS_REAL, -1000, 1000, 0}};
+                                        [KEY_RADIUS] = {"radius", IS_REAL, -DBL_MAX, DBL_MAX, 0},
+                                        [KEY_LENGTH] = {"length", IS_REAL, -DBL_MAX, DBL_MAX, 0}};
 
 #define BIT(key) (1u << KEY_##key)
 

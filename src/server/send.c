@@ -5,6 +5,11 @@
 
 #include "server/state.h"
 
+void lar_message_begin(lar_json *json, const char *kind) {
+    lar_json_begin(json);
+    lar_json_text(json, "kind", kind);
+}
+
 /* ---- hello ----------------------------------------------------------------------------------- */
 
 static bool is_active(const lar_material_info *info) {
@@ -137,8 +142,7 @@ lar_status lar_server_make_hello(lar_server *server, lar_error *error) {
     lar_status status = lar_model_inspect(server->model, &info, error);
     if (status) return status;
     lar_model_surface(server->model, &surface);
-    lar_json_begin(json);
-    lar_json_text(json, "kind", "hello");
+    lar_message_begin(json, "hello");
     lar_json_integer(json, "protocol", 1);
     lar_json_text(json, "lariat", lar_version());
     lar_json_text(json, "title", info.title);
@@ -210,8 +214,6 @@ static void write_progress(lar_json *json, const lar_session_status *s) {
     lar_json_text(json, "slow_advice", s->slow_advice);
     lar_json_number(json, "lag", s->lag);
     lar_json_number(json, "skipped", s->skipped);
-    lar_json_boolean(json, "recording", s->recording != 0);
-    lar_json_text(json, "recording_lost", s->recording_lost);
     lar_json_boolean(json, "lost", s->error == LAR_ERROR_PEER);
     lar_json_text(json, "message", s->message);
     lar_json_integer(json, "recoveries", (int64_t)s->recoveries);
@@ -250,6 +252,14 @@ static void write_settings(const lar_server *server, lar_json *json) {
     lar_json_close(json);
 }
 
+static void write_recording(const lar_server *server, lar_json *json) {
+    const lar_session_status *s = &server->status;
+    bool viewers = __atomic_load_n(&server->work.records, __ATOMIC_RELAXED);
+    lar_json_boolean(json, "recording", s->recording != 0);
+    lar_json_text(json, "recording_by", !s->recording ? "" : viewers ? "viewer" : "program");
+    lar_json_text(json, "recording_lost", s->recording_lost);
+}
+
 static void write_replay(const lar_server *server, lar_json *json) {
     const lar_session_status *s = &server->status;
     if (!s->replaying) return;
@@ -262,9 +272,9 @@ static void write_replay(const lar_server *server, lar_json *json) {
 
 static void write_status(const lar_server *server, const lar_viewer *viewer, lar_json *json) {
     int64_t now = lar_clock_ns();
-    lar_json_begin(json);
-    lar_json_text(json, "kind", "status");
+    lar_message_begin(json, "status");
     write_progress(json, &server->status);
+    write_recording(server, json);
     lar_json_number(json, "pace", server->pace);
     lar_json_integer(json, "viewers", __atomic_load_n(&server->viewers, __ATOMIC_RELAXED));
     lar_json_open(json, "saved", '[');
@@ -316,8 +326,7 @@ void lar_viewer_tell(lar_viewer *viewer, lar_json *json) {
 
 void lar_viewer_note(lar_server *server, lar_viewer *viewer, const char *sentence) {
     lar_json *json = &server->json;
-    lar_json_begin(json);
-    lar_json_text(json, "kind", "note");
+    lar_message_begin(json, "note");
     lar_json_text(json, "text", sentence);
     lar_viewer_tell(viewer, json);
 }
@@ -328,8 +337,7 @@ void lar_server_tell_hand(void *context, uint64_t number, int32_t hand, int32_t 
     lar_viewer *viewer = lar_server_find(server, number);
     lar_json *json = &server->json;
     if (!viewer) return;
-    lar_json_begin(json);
-    lar_json_text(json, "kind", "hand");
+    lar_message_begin(json, "hand");
     lar_json_integer(json, "hand", hand);
     if (tool < 0)
         lar_json_text(json, "tool", NULL);
@@ -419,8 +427,7 @@ static int send_end(lar_server *server, lar_viewer *viewer) {
     }
     viewer->told = true;
     lws_callback_on_writable(viewer->wsi);
-    lar_json_begin(json);
-    lar_json_text(json, "kind", "error");
+    lar_message_begin(json, "error");
     lar_json_text(json, "text", viewer->reason);
     lar_json_end(json);
     return send_json(viewer, json);
@@ -428,7 +435,8 @@ static int send_end(lar_server *server, lar_viewer *viewer) {
 
 int lar_viewer_send(lar_server *server, lar_viewer *viewer) {
     if (viewer->closing != LAR_CLOSE_NOT) return send_end(server, viewer);
-    unsigned due = viewer->due & -viewer->due; /* the lowest bit: the most urgent */
+    if (lws_get_close_length(viewer->wsi)) return 0; /* libwebsockets has closed it: no more data */
+    unsigned due = viewer->due & -viewer->due;       /* the lowest bit: the most urgent */
     int failed = 0;
     viewer->due &= ~due;
     switch (due) {

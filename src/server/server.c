@@ -71,8 +71,7 @@ static void refuse_pictures(lar_server *server, const lar_error *error) {
     for (lar_viewer *viewer = server->first; viewer; viewer = viewer->next) {
         if (!viewer->asks) continue;
         viewer->asks = false;
-        lar_json_begin(json);
-        lar_json_text(json, "kind", "no_frame");
+        lar_message_begin(json, "no_frame");
         lar_json_text(json, "text", error->message);
         lar_viewer_tell(viewer, json);
     }

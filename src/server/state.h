@@ -190,6 +190,8 @@ void lar_viewer_wants(lar_viewer *viewer, unsigned due);
 
 /* ---- send.c ----------- */
 
+/* The first words of every text. */
+void lar_message_begin(lar_json *json, const char *kind);
 /* The part of `hello` that is the same for all viewers. */
 lar_status lar_server_make_hello(lar_server *server, lar_error *error);
 /* Sends one message that is due; not 0: the connection is broken or ends. */

@@ -36,6 +36,31 @@ static void set(lar_work *work, const lar_command *command, lar_error *error) {
             session, command->material, command->valued ? command->value : 1, error);
 }
 
+static bool is_recorded(const lar_work *work) {
+    lar_session_status now;
+    lar_session_status_get(work->session, &now);
+    return now.recording;
+}
+
+/* What is being recorded though no viewer has begun it: the program has, and it alone ends that. */
+static bool is_programs(const lar_work *work, lar_error *error) {
+    return !work->records && is_recorded(work) &&
+           lar_fail(error, LAR_ERROR_ARGUMENT,
+                    "the program itself records this session (--record); until that ends nothing "
+                    "else is recorded or played");
+}
+
+static void record(lar_work *work, const char *path, lar_error *error) {
+    if (is_programs(work, error)) return;
+    __atomic_store_n(&work->records, true, __ATOMIC_RELAXED); /* no status may think otherwise */
+    lar_session_record(work->session, path, error);
+    __atomic_store_n(&work->records, is_recorded(work), __ATOMIC_RELAXED);
+}
+
+static void replay(const lar_work *work, const char *path, lar_error *error) {
+    if (!path || !is_programs(work, error)) lar_session_replay(work->session, path, error);
+}
+
 static void do_job(lar_work *work, lar_job_end *end) {
     lar_job *job = &end->job;
     lar_error *error = &end->error;
@@ -51,10 +76,10 @@ static void do_job(lar_work *work, lar_job_end *end) {
         lar_session_load(work->session, job->path, error);
         break;
     case LAR_COMMAND_RECORD:
-        lar_session_record(work->session, job->on ? job->path : NULL, error);
+        record(work, job->on ? job->path : NULL, error);
         break;
     case LAR_COMMAND_REPLAY:
-        lar_session_replay(work->session, job->name[0] ? job->path : NULL, error);
+        replay(work, job->name[0] ? job->path : NULL, error);
         break;
     case LAR_COMMAND_INSPECT:
         inspect(work, end);

@@ -44,6 +44,7 @@ typedef struct lar_work {
 
     lar_thread thread;
     bool started;
+    bool records; /* what is recorded a viewer has begun; the worker writes it, atomically */
     pthread_mutex_t lock; /* of what follows */
     pthread_cond_t bell;
     bool ending, painting;

@@ -4,6 +4,8 @@
 #include <stdbool.h>
 #include <stdio.h>
 
+#include "base/text.h"
+
 /* Of a step's time, what is left for it: forces, pictures and waking take the rest. */
 static const double ROOM = 0.9;
 /* What several processors make of themselves. */
@@ -45,7 +47,7 @@ static void advise_smaller(const lar_advice *a, double pace, double min, double 
     double ratio = min / allowed;
     double wanted = ceil(ratio * a->busy / EFFICIENCY);
     double elements = lar_two_digits(a->elements / ratio);
-    char way[64] = "", other[64];
+    char way[48] = "", other[64];
     if (a->cores > a->busy && wanted <= a->cores) {
         char grid[32];
         name_grid((int32_t)wanted, grid);
@@ -56,10 +58,24 @@ static void advise_smaller(const lar_advice *a, double pace, double min, double 
     else
         snprintf(other, sizeof other, "%sa pace of %.2g", *way ? "or " : "", 0.95 * pace / ratio);
     snprintf(status->slow_advice, sizeof status->slow_advice,
-             "a step takes %.3g us and stands for %.3g us of the clock; what would hold: %s%s%s",
-             1e6 * min, 1e6 * allowed / ROOM, way, other,
+             "a step takes %s and stands for %s of the clock; what would hold: %s%s%s",
+             lar_text_time(min).text, lar_text_time(allowed / ROOM).text, way, other,
              is_busy_besides(ratio, pace, status) ? "; and other programs keep the processor busy"
                                                   : "");
+}
+
+/* Steps on several processors wait for the one whose core another program has taken: where one
+ * alone is fast enough it may hold, beside a browser that takes the other cores. */
+static void advise_alone(const lar_advice *a, double min, double allowed,
+                         lar_session_status *status) {
+    bool alone = a->processors > 1 && min * a->busy * EFFICIENCY <= allowed;
+    snprintf(status->slow_advice, sizeof status->slow_advice,
+             "a step takes %s of the %s that it has, but other programs keep the processor busy, "
+             "here or on a virtual machine's host; end them%s%s",
+             lar_text_time(min).text, lar_text_time(allowed / ROOM).text,
+             alone ? ", or try --grid 1x1x1: it may hold beside a browser that draws in software"
+                   : "",
+             a->priority > 0 ? "" : ", or try --priority 10");
 }
 
 void lar_advise(const lar_advice *a, double pace, lar_session_status *status) {
@@ -84,10 +100,6 @@ void lar_advise(const lar_advice *a, double pace, lar_session_status *status) {
         advise_smaller(a, pace, min, allowed, status);
     } else {
         status->slow_cause = LAR_SLOW_MACHINE;
-        snprintf(status->slow_advice, sizeof status->slow_advice,
-                 "a step takes %.3g us of the %.3g us that it has, but other programs keep the "
-                 "processor busy, here or, of a virtual machine, on its host; end them%s",
-                 1e6 * min, 1e6 * allowed / ROOM,
-                 a->priority > 0 ? "" : ", or start with --priority 10");
+        advise_alone(a, min, allowed, status);
     }
 }

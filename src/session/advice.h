@@ -20,6 +20,7 @@
 typedef struct lar_advice {
     double time_step; /* [s] */
     int32_t elements;
+    int32_t processors;
     int32_t busy, cores; /* threads that compute; cores of this machine that they may use */
     int priority;        /* lar_session_options.priority */
     int32_t stiffer;     /* not constant: parts of a step that stiffer materials take; 0, 1: none */

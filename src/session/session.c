@@ -74,6 +74,7 @@ static void make_advice(lar_session *session) {
     const lar_simulation *simulation = session->simulation;
     session->advice = (lar_advice){.time_step = session->time_step,
                                    .elements = simulation->domain.model->mesh.element_count,
+                                   .processors = lar_simulation_processors(simulation),
                                    .busy = lar_simulation_processors(simulation) *
                                            lar_simulation_threads(simulation),
                                    .cores = lar_usable_cores(),

@@ -18,6 +18,7 @@
 #include "base/memory.h"
 #include "base/pin.h"
 #include "base/parallel_for.h"
+#include "base/text.h"
 #include "base/thread.h"
 #include "divide/grid_choice.h"
 #include "model/model.h"
@@ -186,18 +187,6 @@ static double length_of(const choosing *c) {
     return steps > 0 ? 1e-9 * alone->score * steps : INFINITY;
 }
 
-/* "52.3 us", "8.77 ms". */
-typedef struct time_text {
-    char text[24];
-} time_text;
-
-static time_text text_of(double ns) {
-    time_text out;
-    bool large = ns >= 1e6;
-    snprintf(out.text, sizeof out.text, "%.3g %s", ns / (large ? 1e6 : 1e3), large ? "ms" : "us");
-    return out;
-}
-
 static void say(lar_grid_choice *choice, const choosing *c, int best) {
     const trial *alone = &c->trial[0], *chosen = &c->trial[best];
     const char *by = c->aim.tick > 0 ? ", by ticks and their slowest twentieth" : "";
@@ -206,15 +195,15 @@ static void say(lar_grid_choice *choice, const choosing *c, int best) {
     choice->tried = c->trials;
     choice->alone = 1e-9 * alone->score;
     choice->chosen = 1e-9 * chosen->score;
-    time_text first = text_of(alone->score);
+    const lar_time_text first = lar_text_time(choice->alone);
     if (best > 0)
         snprintf(choice->reason, sizeof choice->reason,
-                 "a step takes %s instead of %s with one processor%s", text_of(chosen->score).text,
-                 first.text, by);
+                 "a step takes %s instead of %s with one processor%s",
+                 lar_text_time(choice->chosen).text, first.text, by);
     else if (c->trials > 1)
         snprintf(choice->reason, sizeof choice->reason,
                  "a step takes %s, and %s with %d processors%s", first.text,
-                 text_of(c->trial[1].score).text, (int)c->trial[1].grid.count, by);
+                 lar_text_time(1e-9 * c->trial[1].score).text, (int)c->trial[1].grid.count, by);
     else
         snprintf(choice->reason, sizeof choice->reason, "a step takes %s", first.text);
 }

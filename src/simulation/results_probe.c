@@ -20,7 +20,7 @@ static lar_status fail_to(const lar_probe_file *file, const char *verb, int caus
 
 /* A CSV field after RFC 4180: quoted when it holds a separator, a quote or a line end. */
 static void print_name(FILE *line, const char *name, const char *what, const char *unit) {
-    bool quote = strpbrk(name, ",;\"\r\n") != NULL;
+    bool quote = name[strcspn(name, ",;\"\r\n")] != '\0';
     if (quote) fputc('"', line);
     for (const char *c = name; *c; c++) {
         if (*c == '"') fputc('"', line);

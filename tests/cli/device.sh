@@ -104,6 +104,9 @@ expect 1 "$LARIAT" device "udp:127.0.0.1:$port" --seconds 0.1 --token let-me-out
 expect 0 "$LARIAT" device "udp:127.0.0.1:$port" --seconds 0.2 --token let-me-in
 end_session
 
+grep -q '"device": *"udp:127.0.0.1:0"' view.json || fail "the report names $(grep '"device"' view.json)"
+! grep -q let-me-in view.json view.err || fail "the session's report tells the token"
+
 # The driver of the page.
 if command -v python3 >/dev/null; then
     begin_session udp:127.0.0.1:0

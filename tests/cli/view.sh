@@ -31,6 +31,9 @@ says '^tool  *probe: largest force 0 N, limit [0-9.]* N$'
 says '^state hash  *[0-9a-f]\{16\}$'
 [ -d "saved here/below" ] || fail "the folder for saved states was not made"
 
+expect 0 "$LARIAT" view $scene --port 0 --seconds 0.2 --grid 1x1x1
+says '^grid  *1x1x1: 1 processor, scheme'
+
 # A scene's duration does not end it, and that is said; the end of a ramp is none.
 { cat $scene && echo 'load: [ { nodes: fundus, force: [0, 0, 0.001], over: 0.1 } ]'; } >demo/ramp.yaml
 expect 0 "$LARIAT" view demo/ramp.yaml --port 0 --seconds 0.2 --pace 0
@@ -67,7 +70,7 @@ awk "BEGIN { exit !($(value_of wall_per_tick_us.p50) < $(value_of wall_per_tick_
 
 # Slow motion: which of the two it is and what would help, and what is late in it is no miss.
 expect 0 "$LARIAT" view $scene --port 0 --seconds 3 --pace 90
-complains 'note: slow motion, [0-9.]* times real time: a step takes [0-9.]* us and stands for [0-9.]* us of the clock; what would hold: .*a pace of [0-9.]*'
+complains 'note: slow motion, [0-9.]* times real time: a step takes [0-9.]* [um]s and stands for [0-9.]* [um]s of the clock; what would hold: .*a pace of [0-9.]*'
 says '^real-time factor.*because steps take longer than the time they stand for'
 says '^ticks .*, 0 missed (0.000 %); [0-9]* more were late in slow motion$'
 says "^a tick's forces *median [0-9.]* ms, .* longest [0-9.]* ms$"
@@ -214,6 +217,10 @@ expect 0 "$LARIAT" view $scene --port 0 --seconds 0.3 --record way.recording
 expect 1 "$LARIAT" view $scene --port 0 --seconds 0.1 --record way.recording
 complains 'way.recording is there already; --force replaces it'
 expect 0 "$LARIAT" view $scene --port 0 --seconds 0.1 --record way.recording --force
+for force in '' --force; do
+    expect 1 "$LARIAT" view $scene --port 0 --seconds 0.1 --record demo $force
+    complains 'demo is a folder; give --record a file'
+done
 # A command line that is refused leaves none, and replaces none.
 cp way.recording kept.recording
 expect 2 "$LARIAT" view $scene --port 0 --seconds 0.1 --record no.recording --device typo=script:x.csv

@@ -87,6 +87,32 @@ static void a_busy_machine_is_named(void **unused) {
     assert_null(strstr(s.slow_advice, "--priority"));
 }
 
+/* Several processors wait for the one whose core is taken: one alone may do, where it is fast
+ * enough. Whatever is said fits. */
+static void one_processor_is_named_where_it_is_enough(void **unused) {
+    (void)unused;
+    lar_advice two = organ;
+    two.processors = two.busy = 2;
+    lar_session_status s = slow(&two, 1, 2.4e-5, 1);
+    has(&s,
+        "end them, or try --grid 1x1x1: it may hold beside a browser that draws in software, or "
+        "try --priority 10");
+    two.priority = 5;
+    s = slow(&two, 1, 2.4e-5, 1);
+    has(&s, "draws in software");
+    assert_null(strstr(s.slow_advice, "--priority"));
+    s = slow(&two, 1, 6e-5, 1); /* alone it would take 96 of the 90 us that there are */
+    assert_null(strstr(s.slow_advice, "--grid"));
+    lar_advice threads = organ; /* of one processor */
+    threads.processors = 1, threads.busy = 2;
+    s = slow(&threads, 1, 2.4e-5, 1);
+    assert_null(strstr(s.slow_advice, "--grid"));
+    s = slow(&organ, 1, 2.213e-3, 1);
+    has(&s, "a step takes 2.21 ms and stands for 100 us of the clock");
+    s = slow(&organ, 100, 9.999e-4, 1);
+    has(&s, "a step takes 1 ms and stands for 1 us of the clock");
+}
+
 static void without_slow_motion_or_knowledge_there_is_none(void **unused) {
     (void)unused;
     lar_session_status s = slow(&organ, 1, 0, 1);
@@ -102,6 +128,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_step_that_is_too_long_names_grid_and_elements),
         cmocka_unit_test(strained_tissue_is_named), cmocka_unit_test(a_busy_machine_is_named),
+        cmocka_unit_test(one_processor_is_named_where_it_is_enough),
         cmocka_unit_test(without_slow_motion_or_knowledge_there_is_none)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

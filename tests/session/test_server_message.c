@@ -123,7 +123,7 @@ static void everything_else_is_refused(void **unused) {
         {LAR_CLOSE_POLICY, "{\"do\":\"frame\",\"field\":null}", "field must be a string"},
         {LAR_CLOSE_POLICY, "{\"do\":\"add_tool\",\"shape\":\"sphere\"}", "needs the key radius"},
         {LAR_CLOSE_POLICY, "{\"do\":\"add_tool\",\"radius\":1}", "needs the key shape"},
-        {LAR_CLOSE_POLICY, "{\"do\":\"add_tool\",\"shape\":\"sphere\",\"radius\":2000}", "between"},
+        {LAR_CLOSE_POLICY, "{\"do\":\"add_tool\",\"shape\":\"sphere\",\"radius\":1e400}", "number"},
         {LAR_CLOSE_POLICY, "{\"do\":\"remove_tool\",\"tool\":5}", "there are 5 tools"},
         {LAR_CLOSE_POLICY, "{\"do\":\"step\"}", "step needs the key steps"},
         {LAR_CLOSE_POLICY, "{\"do\":\"step\",\"steps\":0}", "between 1 and 100000"},

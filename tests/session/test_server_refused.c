@@ -160,6 +160,44 @@ static void what_is_not_there_is_said(void **unused) {
     end_serving(&s);
 }
 
+/* What the program records from the start is its own: no viewer ends it or puts another one in its
+ * place. A viewer's own recording anybody may end. */
+static void the_programs_recording_is_its_own(void **unused) {
+    (void)unused;
+    char folder[256], path[300], replay[128];
+    lar_session_status now;
+    snprintf(folder, sizeof folder, "%s/server-own-%d", LAR_TEST_BUILD, (int)getpid());
+    snprintf(path, sizeof path, "%s/all.recording", folder);
+    served s = serve_with(NULL, &(lar_server_options){.save_folder = folder});
+    DONE(lar_session_record(s.b.session, path, &failure));
+    client c = open_client(s.port);
+    await_status(&c, "\"recording\":true,\"recording_by\":\"program\"");
+    static const char words[] = "the program itself records";
+    expect_note(&c, "{\"do\":\"record\",\"on\":false}", words);
+    expect_note(&c, "{\"do\":\"record\",\"on\":true}", words);
+    lar_session_status_get(s.b.session, &now);
+    assert_int_equal(now.recording, 1);
+    DONE(lar_session_record(s.b.session, NULL, &failure));
+    await_status(&c, "\"recording\":false,\"recording_by\":\"\"");
+    nap(0.6);
+    say(&c, "{\"do\":\"record\",\"on\":true}");
+    await_status(&c, "\"recording\":true,\"recording_by\":\"viewer\"");
+    client other = open_client(s.port);
+    say(&other, "{\"do\":\"record\",\"on\":false}");
+    const char *name = strstr(await_text(&other, "saved"), "\"name\"");
+    assert_non_null(name);
+    snprintf(replay, sizeof replay, "{\"do\":\"replay\",%s", name);
+    /* The next one is the program's again. */
+    DONE(lar_session_record(s.b.session, path, &failure));
+    expect_note(&other, "{\"do\":\"record\",\"on\":false}", words);
+    expect_note(&other, replay, words);
+    close_client(&other);
+    close_client(&c);
+    end_serving(&s);
+    lar_recording_info info;
+    DONE(lar_recording_inspect(path, &info, &failure));
+}
+
 /* ---- files ----------------------------------------------------------------------------------- */
 
 static void write_file(const char *folder, const char *name, const char *text) {
@@ -343,6 +381,7 @@ int main(void) {
                                        cmocka_unit_test(tokens_are_asked_for),
                                        cmocka_unit_test(who_may_only_watch_does_nothing_else),
                                        cmocka_unit_test(what_is_not_there_is_said),
+                                       cmocka_unit_test(the_programs_recording_is_its_own),
                                        cmocka_unit_test(files_and_nothing_else_are_served),
                                        cmocka_unit_test(what_makes_no_sense_is_refused),
                                        cmocka_unit_test(another_model_is_refused),

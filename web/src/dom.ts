@@ -51,6 +51,16 @@ export function scaleFor(largest: number, unit: string): Scale {
     };
 }
 
+/* What people write: a comma is a decimal point, as in much of the world, where it can be nothing else. `1,250` may
+ * be either, and is none. A field for numbers would decide by the browser's language, and make 15 of `1,5`. */
+export function decimal(text: string): number {
+    const plain = text.trim();
+    const thousands = /^[+-]?[1-9]\d{0,2},\d{3}$/.test(plain);
+    const written = /^[+-]?(\d+[.,]?\d*|[.,]\d+)(e[+-]?\d+)?$/i.test(plain) && !thousands;
+    const value = written ? Number(plain.replace(',', '.')) : NaN;
+    return Number.isFinite(value) ? value : NaN;
+}
+
 /* A number of the engine that may be missing. */
 export function number(value: number | null | undefined, places: number): string {
     return value === null || value === undefined ? '–' : value.toFixed(places);

@@ -141,6 +141,9 @@ function start(): void {
             line.lost();
             panel.lost();
             hints.silence(true);
+            // It connects again within a second: without a word nobody would know what has happened.
+            if (loss.again && loss.ours)
+                note(`The engine has closed the connection: ${loss.because || 'a message that it does not know'}. That is a fault of this page.`, 30000);
             const again = { text: 'Try now', do: () => session.connect() };
             if (!loss.again)
                 return trouble.show(

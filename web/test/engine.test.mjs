@@ -174,6 +174,10 @@ test('a recording is played: listed, paused, scrubbed, left; and it outlives the
     await drag(p.page, ...FUNDUS, 10, -10, 2);
     await p.page.getByText('a recording is being played').waitFor();
     await p.page.mouse.up();
+    await p.page.waitForTimeout(300);
+    const notes = (await p.page.locator('#notes').innerText()).trim();
+    assert.match(notes, /^A recording is being played; leave it/, 'one note, though the recording is paused and nothing was held');
+    assert.equal(notes.split('\n').length, 1, notes);
     await p.page.keyboard.press('Space');
     await p.until(() => {
         const [here, end] = document.getElementById('replay-time').innerText.split(' of ').map(parseFloat);
@@ -424,6 +428,11 @@ test('a tool is added by keyboard, presses the organ, is felt, and is removed', 
     await v.page.getByText('the field has the one that it names').waitFor();
     const named = Number(await v.page.locator('#add-radius').inputValue());
     assert.ok(named > 10 && named < 500, `${named} mm`);
+    // However absurd: the connection stays.
+    await v.page.locator('#add-radius').fill('2000000');
+    await keys.press('Enter');
+    await v.page.getByText('a radius of 2e+06 mm is too large').waitFor();
+    assert.equal(await v.get('connections'), 1);
     // A reset keeps it, above the body.
     await v.page.locator('#picture').focus();
     await fresh();

@@ -77,7 +77,7 @@ function fineSurface(mesh, pieces = 4, off = 0.12) {
     return { inner, weights, carriers, triangles, material, vertices: known.size };
 }
 
-export function mock({ port = 0, surface = null, riding = false, token = null, watchToken = null, organs = null, active = [], scan = false, fibres = 0, toolName = 'probe', dist = join(here, '../dist') } = {}) {
+export function mock({ port = 0, surface = null, riding = false, token = null, watchToken = null, organs = null, active = [], scan = false, fibres = 0, toolName = 'probe', title = surface ? 'Uterus' : 'Pear', dist = join(here, '../dist') } = {}) {
     const mesh = surface ? JSON.parse(readFileSync(surface, 'utf8')) : pear();
     // Two organs, one above the other.
     if (organs === 'halves')
@@ -173,7 +173,7 @@ export function mock({ port = 0, surface = null, riding = false, token = null, w
     }, 4);
 
     const hello = () => ({
-        kind: 'hello', protocol: 1, lariat: '0.1.0', viewer: 1, title: surface ? 'Uterus' : 'Pear', nodes: n, elements: faces,
+        kind: 'hello', protocol: 1, lariat: '0.1.0', viewer: 1, title, nodes: n, elements: faces,
         surface: { nodes: n, faces },
         ...(fine ? { riding: { vertices: fine.vertices, triangles: fine.triangles.length / 3, nodes: n } } : {}),
         ...(scan ? { scan: { size: SCAN, labels: [{ label: 1, name: 'uterus' }, { label: 2, name: 'bone' }] } } : {}),
@@ -200,8 +200,8 @@ export function mock({ port = 0, surface = null, riding = false, token = null, w
         step_bins: bins([8, state.tick]), tick_bins: bins([15, state.tick], [24, state.late]),
         ticks: state.tick, misses: state.late, slow_ticks: state.slow ? state.tick : 0, real_time_factor: 1, real_time_factor_now: state.slow ? state.slow === true ? 0.4 : state.slow : 1,
         engine_rate: 10000, haptic_rate: 1000, snapshot_rate: 58, slow_motion: state.slow, slow_cause: state.slow ? 'step' : '',
-        slow_advice: state.slow ? 'a step takes 250 us and stands for 100 us of the clock; what would hold: --grid 2x2x1, a mesh of about 700 elements, or a slower pace' : '', lag: 0, skipped: 0,
-        recording: state.recording, recording_lost: state.recordingLost ?? '', lost: state.lost, message: state.message, viewers: 1, saved: state.saved, recordings: state.recordings, ...(state.replay ? { replay: state.replay } : {}),
+        slow_advice: state.slow ? (state.slowAdvice ?? 'a step takes 250 us and stands for 100 us of the clock; what would hold: --grid 2x2x1, a mesh of about 700 elements, or a slower pace') : '', lag: 0, skipped: 0,
+        recording: state.recording, recording_by: state.recordingBy ?? (state.recording ? 'viewer' : ''), recording_lost: state.recordingLost ?? '', lost: state.lost, message: state.message, viewers: 1, saved: state.saved, recordings: state.recordings, ...(state.replay ? { replay: state.replay } : {}),
         recoveries: state.recoveries, recovery: state.recovery, body: state.body,
         placed: state.placed, step_parts: state.parts, divided_steps: state.divided, heavier: 0, heavier_share: 0,
         tools: tools.map((_, i) => ({ ...poses[i], force: forces[i].at(-1) ?? [0, 0, 0], torque: [0, 0, 0],
@@ -469,6 +469,9 @@ export function mock({ port = 0, surface = null, riding = false, token = null, w
                 faults,
                 mesh,
                 poses,
+                cut(code, reason) {
+                    for (const socket of sockets.clients) socket.close(code, reason);
+                },
                 close() {
                     clearInterval(engine);
                     for (const socket of sockets.clients) socket.terminate();

@@ -78,6 +78,26 @@ test('a recording that ends by itself is told at once, once', async () => {
     await v.close();
 });
 
+test("what the program records is shown, and neither button nor key ends it", async () => {
+    const v = await openPage(browser, server.url);
+    Object.assign(server.state, { recording: true, recordingBy: 'program' });
+    const button = v.page.getByRole('button', { name: 'Recording, by the program' });
+    await button.waitFor();
+    assert.equal(await button.isDisabled(), true);
+    assert.equal(await button.getAttribute('aria-pressed'), 'true');
+    assert.match(await button.getAttribute('title'), /records all of this session itself, until it ends/);
+    await v.page.locator('#picture').focus();
+    await v.page.keyboard.press('c');
+    await v.page.locator('#notes').getByText('records all of this session itself').waitFor();
+    assert.equal(server.state.recording, true);
+    // The same, by a viewer: anybody ends it.
+    Object.assign(server.state, { recordingBy: undefined });
+    await v.page.getByRole('button', { name: 'Stop recording' }).click();
+    await v.page.getByRole('button', { name: 'Record', exact: true }).waitFor();
+    assert.equal(await v.page.locator('#record').getAttribute('title'), 'Record what you do (C)');
+    await v.close();
+});
+
 test('a run that went back says so, once, and goes on', async () => {
     Object.assign(server.state, { recoveries: 2, recovery: 'went back 0.62 s to step 15800: element 7' });
     const v = await openPage(browser, server.url);
@@ -322,7 +342,8 @@ test('nothing overlaps, from phones to wide windows, also low ones', async (t) =
     assert.equal(await name.getAttribute('title'), await name.innerText());
     const oneLine = await name.evaluate((e) => e.clientHeight < 30 && e.scrollWidth > e.clientWidth);
     assert.ok(oneLine, 'one line, that ends with an ellipsis');
-    Object.assign(own.state, { slow: true, saved: ['pear-1.checkpoint'], recordings: ['pear-1.recording'] });
+    const slowAdvice = 'a step takes 24.1 us of the 94.6 us that it has, but other programs keep the processor busy, here or on a virtual machine\'s host; end them, or try --grid 1x1x1: it may hold beside a browser that draws in software, or try --priority 10';
+    Object.assign(own.state, { slow: true, slowAdvice, saved: ['pear-1.checkpoint'], recordings: ['pear-1.recording'] });
     await v.page.locator('#slow').waitFor({ state: 'visible' });
     await v.page.evaluate(() => {
         const line = document.createElement('p');
@@ -422,6 +443,58 @@ async function laidOut(v, parts, name) {
     }
 }
 
+test('a long title takes two lines, and all of it is where the pointer rests', async (t) => {
+    const title = `Uterus of the demonstration, ${'with a description that goes on and on, '.repeat(6)}as scenes may have`;
+    const own = await mock({ title });
+    t.after(() => own.close());
+    const v = await openPage(browser, own.url);
+    for (const [width, height] of [[400, 700], [1000, 640]]) {
+        await v.page.setViewportSize({ width, height });
+        await v.page.waitForTimeout(150);
+        const high = await v.page.locator('#title').evaluate((e) => e.clientHeight);
+        assert.ok(high < 65, `${high} pixels in a window of ${width}`);
+        const state = await v.page.locator('#state').boundingBox();
+        assert.ok(state.x + state.width <= width && state.y < 110, `the badge is at ${state.y}`);
+    }
+    assert.equal(await v.page.locator('#title').getAttribute('title'), title);
+    await v.close();
+});
+
+test('with forced colours swatches keep theirs, and graphs can be read', async (t) => {
+    const own = await mock({ organs: 'halves' });
+    t.after(() => own.close());
+    const v = await openPage(browser, own.url);
+    const shown = (selector) => v.page.locator(selector).first().evaluate((e) => getComputedStyle(e).backgroundColor);
+    await v.page.locator('#inside').evaluate((card) => (card.open = true));
+    const organ = await shown('#organs canvas');
+    await v.page.getByRole('radio', { name: 'processor' }).click();
+    await v.page.locator('#keys-of-colours canvas').first().waitFor();
+    const key = await shown('#keys-of-colours canvas');
+    for (const colorScheme of ['light', 'dark']) {
+        await v.page.emulateMedia({ forcedColors: 'active', colorScheme });
+        assert.equal(await shown('#organs canvas'), organ);
+        assert.equal(await shown('#keys-of-colours canvas'), key);
+        assert.equal(await shown('#graph'), 'rgb(20, 24, 28)', 'the dark ground that its lines are made for');
+        await v.page.waitForTimeout(300);
+        await v.shot(`forced-colours-${colorScheme}`);
+    }
+    await v.close();
+});
+
+test('a page that the engine cuts off for its own fault says so, and keeps what was written', async () => {
+    const v = await openPage(browser, server.url);
+    await v.page.getByText('Add a tool', { exact: true }).click();
+    await v.page.locator('#add-radius').fill('7.25');
+    server.cut(1008, 'there is no key x');
+    await v.page.locator('#notes').getByText('closed the connection: there is no key x. That is a fault of this page.').waitFor();
+    await v.until(() => window.lariat.connections === 2 && window.lariat.connected);
+    await v.page.locator('#trouble').waitFor({ state: 'hidden' });
+    await v.page.waitForTimeout(300);
+    assert.equal(await v.page.locator('#notes').getByText('a fault of this page').count(), 1);
+    assert.equal(await v.page.locator('#add-radius').inputValue(), '7.25');
+    await v.close();
+});
+
 test('tools are added and removed, by mouse and by keys, and what cannot be is said', async (t) => {
     const own = await mock();
     t.after(() => own.close());
@@ -432,13 +505,16 @@ test('tools are added and removed, by mouse and by keys, and what cannot be is s
     await v.page.getByText('Add a tool', { exact: true }).click();
     assert.equal(await v.page.locator('#add-length-row').isVisible(), false);
     assert.ok(Number(await v.page.locator('#add-radius').inputValue()) > 0);
-    for (const [radius, because] of [['0', 'more than zero'], ['-3', 'more than zero'], ['', 'in mm']]) {
+    for (const [radius, because] of [['0', 'more than zero'], ['-3', 'more than zero'], ['', 'in mm'], ['1e400', 'in mm'], ['1,250', 'in mm'], ['1.2.3', 'in mm'], ['five', 'in mm']]) {
         await v.page.locator('#add-radius').fill(radius);
         await v.page.getByRole('button', { name: 'Add', exact: true }).click();
         await v.page.locator('#add-trouble').getByText(because).waitFor();
     }
     assert.deepEqual(own.state.asked, [], 'and is not asked for');
-    await v.page.locator('#add-radius').fill('6.5');
+    assert.equal(await v.page.locator('#add-radius').inputValue(), 'five', 'and stays to be mended');
+    // A comma is a decimal point, typed as well.
+    await v.page.locator('#add-radius').fill('');
+    await v.page.locator('#add-radius').pressSequentially('6,5');
     await v.page.getByRole('button', { name: 'Add', exact: true }).click();
     await radio(v.page, 'sphere 1').waitFor();
     assert.deepEqual(own.state.asked, [{ do: 'add_tool', shape: 'sphere', radius: 0.0065 }]);

@@ -516,6 +516,14 @@ test('sliders of the body: what they say is what they show, and nothing is lost 
     assert.equal(directionOf([1, 0, -1], [0, 0, 0]), 'other');
 });
 
+test('a comma is a decimal point, and what may be two numbers is none', () => {
+    const { decimal } = parts.dom;
+    for (const [text, value] of [['1,5', 1.5], ['1.5', 1.5], [' 12 ', 12], ['-0,25', -0.25], [',5', 0.5], ['0,125', 0.125], ['1e-3', 1e-3], ['1.250', 1.25], ['2000000', 2e6], ['1,2500', 1.25]])
+        assert.equal(decimal(text), value, text);
+    for (const text of ['', '1,250', '-12,500', '1.000,5', '1,2,3', '1 5', 'five', '0x10', 'Infinity', '1e400', '.', ','])
+        assert.ok(Number.isNaN(decimal(text)), text);
+});
+
 test('sizes of tools fit the body, and what is no size is said', () => {
     const { usual, fault, longestEdge, namedSize } = parts.addtool;
     assert.deepEqual(usual('sphere', 0.2, 0.005), { radius: 0.006, length: 0 });

@@ -60,7 +60,7 @@ void cli_print_heavier(const lar_simulation *simulation, FILE *out) {
     if (heavier.largest_share > 0)
         fprintf(out,
                 "%-17sstrained elements by %.2g %% of the mass on average, by %.2g %% at most; "
-                "now %d elements by %.2g %%\n",
+                "now %d element%s by %.2g %%\n",
                 "heavier", 100 * heavier.mean_share, 100 * heavier.largest_share,
-                (int)heavier.elements, 100 * heavier.share);
+                (int)heavier.elements, heavier.elements == 1 ? "" : "s", 100 * heavier.share);
 }

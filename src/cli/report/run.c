@@ -348,6 +348,17 @@ static void print_pace(const run_report *report, FILE *out) {
         fputc('\n', out);
 }
 
+void run_report_steps(double p50, double p99, double p999, double longest, FILE *out) {
+    const bool large = p50 >= 999.5;
+    const double unit = large ? 1000 : 1;
+    fprintf(out, "%-17smedian %.4g %s, 99 %% below %.4g, 99.9 %% below %.4g, longest %.*f\n",
+            "a step", p50 / unit, large ? "ms" : "us", p99 / unit, p999 / unit,
+            longest / unit < 10    ? 2
+            : longest / unit < 100 ? 1
+                                   : 0,
+            longest / unit);
+}
+
 void run_report_table(const run_report *report, FILE *out) {
     const lar_simulation *simulation = report->simulation;
     const lar_step_clock *clock = report->clock;
@@ -363,9 +374,8 @@ void run_report_table(const run_report *report, FILE *out) {
     cli_print_mass_scaling(report->model, &report->info.mass_scaling, false, out);
     print_pace(report, out);
     if (clock->times.count > 0) {
-        fprintf(out, "%-17smedian %.4g us, 99 %% below %.4g, 99.9 %% below %.4g, longest %.4g\n",
-                "a step", lar_step_clock_quantile(clock, 0.5), lar_step_clock_quantile(clock, 0.99),
-                lar_step_clock_quantile(clock, 0.999), lar_step_clock_longest(clock));
+        run_report_steps(lar_step_clock_quantile(clock, 0.5), lar_step_clock_quantile(clock, 0.99),
+                         lar_step_clock_quantile(clock, 0.999), lar_step_clock_longest(clock), out);
         fprintf(out, "%-17s%.4g ns on average\n", "an element", ns_per_element(report));
     }
     if (report->verify)

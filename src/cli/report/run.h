@@ -27,6 +27,8 @@ typedef struct run_report {
 
 /* Keys: docs/cli.md. */
 void run_report_json(const run_report *report, FILE *out);
+/* How long steps took [us], in a unit that fits the median. */
+void run_report_steps(double p50, double p99, double p999, double longest, FILE *out);
 void run_report_table(const run_report *report, FILE *out);
 
 #endif

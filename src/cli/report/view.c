@@ -4,6 +4,7 @@
 
 #include "cli/parallel.h"
 #include "cli/report/mass_scaling.h"
+#include "cli/report/run.h"
 #include "base/json/write.h"
 
 static const char *const state_names[] = {"idle", "playing", "paused", "stopped"};
@@ -149,9 +150,9 @@ void view_report_table(const view_report *report, FILE *out) {
             (int)report->info.elements, (int)report->info.nodes,
             lar_simulation_isa(report->simulation));
     if (report->parallel->divided)
-        fprintf(out, "%-17s%s: %d processors, scheme %s, by %s\n", "grid", report->parallel->grid,
-                (int)report->parallel->processors, report->parallel->scheme,
-                report->parallel->comm);
+        fprintf(out, "%-17s%s: %d processor%s, scheme %s, by %s\n", "grid", report->parallel->grid,
+                (int)report->parallel->processors, report->parallel->processors == 1 ? "" : "s",
+                report->parallel->scheme, report->parallel->comm);
     cli_print_reason(report->parallel, out);
     fprintf(out, "%-17s%.6g s in %" PRIu64 " steps of %.4g s\n", "simulated", s->time, s->step,
             lar_simulation_time_step(report->simulation));
@@ -166,9 +167,8 @@ void view_report_table(const view_report *report, FILE *out) {
                 "%.3f ms\n",
                 "a tick's forces", 1e3 * s->tick_p50, 1e3 * s->tick_p99, 1e3 * s->tick_p999,
                 1e3 * s->tick_max);
-        fprintf(out, "%-17smedian %.4g us, 99 %% below %.4g, 99.9 %% below %.4g, longest %.4g\n",
-                "a step", 1e6 * s->step_p50, 1e6 * s->step_p99, 1e6 * s->step_p999,
-                1e6 * s->step_max);
+        run_report_steps(1e6 * s->step_p50, 1e6 * s->step_p99, 1e6 * s->step_p999,
+                         1e6 * s->step_max, out);
     }
     if (s->recoveries > 0)
         fprintf(out, "%-17s%" PRIu64 "; the last time it %s\n", "recoveries", s->recoveries,

@@ -1,7 +1,7 @@
 /* Instruments that are added to a run and removed from it: a form below the list of tools. Which there
  * are is said by the engine, so all pages show the same. */
 import { showCards } from './desk';
-import { element, scaleFor, write, type Scale } from '../dom';
+import { decimal, element, scaleFor, write, type Scale } from '../dom';
 import type { Instrument } from '../hands/instrument';
 import { ONLY_WATCHES, type Session } from '../link/session';
 import { sizeOfBody, type Hello, type Request, type Status, type SurfaceMessage, type ToolInfo } from '../link/protocol';
@@ -54,7 +54,7 @@ export function longestEdge({ rest, faces }: Pick<SurfaceMessage, 'rest' | 'face
 
 /* What is wrong with a size, as a sentence; '': nothing that the page can know. */
 export function fault(what: 'radius' | 'length', value: number, unit: string): string {
-    if (Number.isNaN(value)) return `Say the ${what} in ${unit}.`;
+    if (Number.isNaN(value)) return `Say the ${what} in ${unit}, as a number such as 2.5.`;
     return value > 0 ? '' : `The ${what} must be more than zero.`;
 }
 
@@ -93,18 +93,22 @@ export class AddTool {
     }
 
     setHello(hello: Hello): void {
+        const size = sizeOfBody(hello);
+        const same = size === this.size; // connected anew to the same body: what was written stays
         this.hello = hello;
-        this.size = sizeOfBody(hello);
+        this.size = size;
         this.scale = scaleFor(this.size / FIELD_PART, 'm');
         this.asked = false;
         for (const what of ['radius', 'length']) write(element(`add-${what}-unit`), this.scale.unit);
         this.part.hidden = !this.possible || hello.watches;
-        this.suggest();
+        if (!same) this.suggest();
         this.show();
     }
 
     setSurface(surface: SurfaceMessage): void {
-        this.edge = longestEdge(surface);
+        const edge = longestEdge(surface);
+        if (edge === this.edge) return;
+        this.edge = edge;
         this.suggest();
     }
 
@@ -184,11 +188,12 @@ export class AddTool {
         const long = shape !== 'sphere';
         const { unit, factor } = this.scale;
         const metres = (value: number): number => Number((value * factor).toPrecision(9));
-        const why = fault('radius', this.radius.valueAsNumber, unit) || (long && fault('length', this.length.valueAsNumber, unit));
+        const [radius, length] = [decimal(this.radius.value), decimal(this.length.value)];
+        const why = fault('radius', radius, unit) || (long && fault('length', length, unit));
         this.trouble(why || '');
         if (why) return;
-        const request: Request = { do: 'add_tool', shape, radius: metres(this.radius.valueAsNumber) };
-        if (long) request.length = metres(this.length.valueAsNumber);
+        const request: Request = { do: 'add_tool', shape, radius: metres(radius) };
+        if (long) request.length = metres(length);
         this.asked = true;
         this.session.send(request);
     }

@@ -1,5 +1,5 @@
 /* What the colours show: tissue, or one of the engine's fields with its map, legend, range and unit. */
-import { element, withUnit, write } from '../dom';
+import { decimal, element, withUnit, write } from '../dom';
 import { STEPS, colourMap, css, organColour, processorColour, type MapName, type Rgb } from '../picture/palette';
 import { floorOf, follow } from './range';
 import { sizeOfBody, type FieldInfo, type Frame, type Hello } from '../link/protocol';
@@ -87,8 +87,8 @@ export class Colours {
     }
 
     private applyFixed(): void {
-        const min = this.fixedMin.valueAsNumber;
-        const max = this.fixedMax.valueAsNumber;
+        const min = decimal(this.fixedMin.value);
+        const max = decimal(this.fixedMax.value);
         if (!(max > min)) return;
         this.min = min;
         this.max = max;

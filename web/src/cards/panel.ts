@@ -149,6 +149,7 @@ export class StateLine {
 
     setTitle(title: string): void {
         write(element('title'), title || 'Lariat');
+        element('title').title = title;
         document.title = `${title || 'Model'} – Lariat`;
     }
 

@@ -1,11 +1,15 @@
 /* The buttons of the run: play, step, reset, record, save, load, pace. */
 import { element, write } from '../dom';
+import { note } from './notices';
 import type { ReplayBar } from './replaybar';
 import type { Session } from '../link/session';
 import type { Hello, Status } from '../link/protocol';
 
 const PLAY = 'M7 4v16l13-8z';
 const PAUSE = 'M6 4h4v16H6zM14 4h4v16h-4z';
+const NO_FOLDER = 'The engine was started without a folder to save to';
+const RECORD_TITLE = 'Record what you do (C)';
+const PROGRAMS = 'The program that serves this page records all of this session itself, until it ends.';
 
 export class Transport {
     private readonly play = element<HTMLButtonElement>('play');
@@ -39,8 +43,7 @@ export class Transport {
         this.saves = hello.saves;
         this.watches = hello.watches;
         this.perTick = Math.max(1, Math.round(hello.tick / hello.time_step));
-        for (const button of [this.record, this.save])
-            if (!hello.saves) button.title = 'The engine was started without a folder to save to';
+        for (const button of [this.record, this.save]) if (!hello.saves) button.title = NO_FOLDER;
         this.enable(true);
     }
 
@@ -61,10 +64,7 @@ export class Transport {
         write(element('play-text'), playing ? 'Pause' : 'Play');
         this.play.setAttribute('aria-label', playing ? 'Pause' : 'Play');
         element('play-shape').setAttribute('d', playing ? PAUSE : PLAY);
-        this.record.disabled = this.watches || !this.saves || Boolean(status.replay);
-        this.record.setAttribute('aria-pressed', String(status.recording));
-        write(this.record.querySelector('span')!, status.recording ? 'Stop' : 'Record');
-        this.record.setAttribute('aria-label', status.recording ? 'Stop recording' : 'Record');
+        this.showRecord(status);
         this.load.disabled = this.watches || !this.saves || status.saved.length === 0 || status.lost;
         element('reset').toggleAttribute('disabled', this.watches || status.lost);
         if (performance.now() > this.paceUntil) this.showPace(status.pace);
@@ -86,8 +86,9 @@ export class Transport {
     }
 
     recordOrEnd(): void {
-        if (!this.record.disabled)
-            this.session.send({ do: 'record', on: !this.session.status?.recording });
+        const status = this.session.status;
+        if (status?.recording_by === 'program') return note(PROGRAMS);
+        if (!this.record.disabled) this.session.send({ do: 'record', on: !status?.recording });
     }
 
     saveNow(): void {
@@ -105,6 +106,17 @@ export class Transport {
         if (index < 0 || index >= this.pace.options.length) return;
         this.pace.selectedIndex = index;
         this.setPace(Number(this.pace.value));
+    }
+
+    /* What the program records runs until that ends it: the button says that it does, and no more. */
+    private showRecord(status: Status): void {
+        const { record } = this;
+        const programs = status.recording_by === 'program';
+        record.disabled = this.watches || !this.saves || Boolean(status.replay) || programs;
+        record.setAttribute('aria-pressed', String(status.recording));
+        write(record.querySelector('span')!, programs ? 'Recording' : status.recording ? 'Stop' : 'Record');
+        record.setAttribute('aria-label', programs ? 'Recording, by the program' : status.recording ? 'Stop recording' : 'Record');
+        record.title = programs ? PROGRAMS : this.saves ? RECORD_TITLE : NO_FOLDER;
     }
 
     private setPace(value: number): void {

@@ -8,6 +8,7 @@ import type { Session } from '../link/session';
 import type { View } from '../picture/view';
 
 const PULL_MS = 1000 / 100;
+const PLAYED = 'A recording is being played; leave it (X) to pull and to move instruments.';
 
 export class Hand {
     state: 'free' | 'asked' | 'holding' = 'free';
@@ -35,6 +36,13 @@ export class Hand {
     /* Whether this page may pull at all. */
     get allowed(): boolean {
         return !this.session.watches;
+    }
+
+    /* While a recording is played nothing can be taken hold of: that is said, and nothing else. */
+    prevented(): boolean {
+        const played = Boolean(this.session.status?.replay);
+        if (played) this.say(PLAYED);
+        return played;
     }
 
     grab(hit: Hit): void {
@@ -94,7 +102,8 @@ export class Hand {
         if (!this.busy) return;
         this.state = 'free';
         this.view.changed();
-        if (news.state === 'missed') this.say('Nothing there to take hold of.');
+        const played = Boolean(this.session.status?.replay); // which the engine has said itself
+        if (news.state === 'missed' && !played) this.say('Nothing there to take hold of.');
         if (news.state === 'refused') this.say('Other viewers have all hands. Wait until one lets go.');
         if (news.state === 'lost') this.say('The hand has lost its hold.');
     }

@@ -149,6 +149,7 @@ function letGo(s: Served): void {
 function hold(s: Served): void {
     if (s.hand.busy || s.instrument.held) return letGo(s);
     if (!s.hand.allowed) return s.say(ONLY_WATCHES);
+    if (s.hand.prevented()) return;
     if (s.instrument.chosen >= 0) {
         s.instrument.take(null);
         s.used('move');

@@ -100,11 +100,13 @@ export class Pointer {
         if (!this.hand.allowed) return this.do('turning');
         if (tool >= 0) {
             if (tool !== this.instrument.chosen) this.instrument.choose(tool);
+            if (this.hand.prevented()) return this.do('turning');
             this.instrument.take(this.ray(at));
             this.used('move');
             return this.do('moving');
         }
         if (hit) {
+            if (this.hand.prevented()) return this.do('turning');
             this.hand.grab(hit);
             this.used('pull');
             return this.do('pulling');

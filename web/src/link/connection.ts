@@ -3,7 +3,7 @@
 import type { Request } from './protocol';
 
 export type Loss =
-    | { again: true; inSeconds: number; because: string }
+    | { again: true; inSeconds: number; because: string; ours: boolean } // ours: this page was at fault
     | { again: false; because: string };
 
 export interface Listener {
@@ -14,6 +14,7 @@ export interface Listener {
 }
 
 const DELAYS = [0.5, 1, 2, 4];
+const FAULTS = [1003, 1007, 1008, 1009]; // of a message that this page has sent
 const SILENCE = 5000; // ms: status comes ten times a second, so nothing for so long is a loss
 
 export class Connection {
@@ -82,6 +83,6 @@ export class Connection {
         const inSeconds = DELAYS[Math.min(this.failures, DELAYS.length - 1)]!;
         this.failures++;
         this.retry = window.setTimeout(() => this.connect(), inSeconds * 1000);
-        this.listener.lost({ again: true, inSeconds, because });
+        this.listener.lost({ again: true, inSeconds, because, ours: FAULTS.includes(code) });
     }
 }

@@ -107,6 +107,7 @@ export interface Status {
     lag: number;
     skipped: number;
     recording: boolean;
+    recording_by?: '' | 'viewer' | 'program'; // the program's no viewer can end
     recording_lost: string; // why a recording ended by itself; '': none did
     lost: boolean;
     message: string;
