@@ -79,7 +79,7 @@ static void write_energy(lar_json *json, const lar_simulation *simulation) {
     lar_json_number(json, "external", energy.external);
     lar_json_number(json, "damping", energy.damping);
     lar_json_number(json, "contact", energy.contact);
-    if (energy.viscous != 0) lar_json_number(json, "viscous", energy.viscous);
+    lar_json_number(json, "viscous", energy.viscous);
     lar_json_close(json);
 }
 
