@@ -6,6 +6,9 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "base/memory.h"
+#include "base/union_find.h"
+#include "base/vector.h"
 #include "cli/commands.h"
 #include "cli/mesh_real_time.h"
 #include "cli/report/mesh.h"
@@ -157,6 +160,55 @@ static bool doubt_units(const mesh_report *report) {
     return true;
 }
 
+/* Bodies of a surface: its pieces that hang together and have an inside, for a hollow in a body has
+ * a volume below zero. Negative: no memory. */
+static int32_t surface_bodies(const lar_surface_arrays *s) {
+    int32_t *parent = lar_calloc((size_t)s->vertices + 1, sizeof *parent), bodies = 0;
+    double *volume = lar_calloc((size_t)s->vertices + 1, sizeof *volume);
+    const bool done = parent && volume;
+    if (done) lar_union_start(parent, s->vertices);
+    for (int32_t i = 0; done && i < s->triangles; i++)
+        for (int k = 1; k < 3; k++) lar_union_join(parent, s->triangle[i][0], s->triangle[i][k]);
+    for (int32_t i = 0; done && i < s->triangles; i++) {
+        const int32_t *corner = s->triangle[i];
+        double across[3];
+        lar_cross(s->vertex[corner[1]], s->vertex[corner[2]], across);
+        volume[lar_union_root(parent, corner[0])] += lar_dot(s->vertex[corner[0]], across);
+    }
+    for (int32_t n = 0; done && n < s->vertices; n++) bodies += volume[n] > 0;
+    free(parent);
+    free(volume);
+    return done ? bodies : -1;
+}
+
+/* Of a mesh, each of whose nodes an element has. */
+static int32_t mesh_bodies(const lar_mesh_arrays *m) {
+    int32_t *parent = lar_calloc((size_t)m->nodes + 1, sizeof *parent), bodies = 0;
+    if (!parent) return -1;
+    lar_union_start(parent, m->nodes);
+    for (int32_t e = 0; e < m->elements; e++)
+        for (int a = 1; a < 8; a++) lar_union_join(parent, m->element[e][0], m->element[e][a]);
+    for (int32_t n = 0; n < m->nodes; n++) bodies += parent[n] == n;
+    free(parent);
+    return bodies;
+}
+
+/* Two bodies with a gap between them that become one are held together where nothing holds them. */
+static void doubt_bodies(const mesh_report *report) {
+    if (report->info.image || report->info.regions != 1) return;
+    lar_mesh_arrays mesh;
+    lar_surface_arrays surface;
+    lar_meshing_arrays(report->meshing, &mesh, &surface);
+    const int32_t of_surface = surface_bodies(&surface), of_mesh = mesh_bodies(&mesh);
+    if (of_mesh > 0 && of_mesh < of_surface)
+        cli_complain(&cli_mesh, CLI_DONE,
+                     "note: the surface has %d bodies and the mesh %d: gaps between them that are "
+                     "thinner than an element of %s are closed, or such bodies left out; take more "
+                     "elements or a smaller size, or give each body a file of its own and say "
+                     "--apart",
+                     (int)of_surface, (int)of_mesh, cli_length(report->info.size).text);
+}
+
 /* What the user should look at twice: another unit, parts that the grid is too coarse for. */
 static void doubt(const mesh_report *report, bool cubes) {
     static const double LARGE = 10;
@@ -175,6 +227,7 @@ static void doubt(const mesh_report *report, bool cubes) {
             &cli_mesh, CLI_DONE,
             "note: the body is %.4g m long; if the file is in millimetres, say --scale 0.001",
             size);
+    doubt_bodies(report);
     if (quality->true_volume > 0 && fabs(lost) > LOST)
         cli_complain(&cli_mesh, CLI_DONE,
                      "note: the mesh holds %.0f %% %s than the true surface, of which parts are "

@@ -492,13 +492,24 @@ static lar_status notice_mesh(lar_model *model, lar_error *error) {
     return status;
 }
 
-/* What theory.md says of this law where it is nearly incompressible. */
+/* What theory.md says of two laws: of one where it is nearly incompressible, of the other where it
+ * is far from that, for the energy of no volume is finite. */
 static lar_status notice_materials(lar_model *model, lar_error *error) {
     lar_status status = LAR_OK;
+    bool told = false;
     for (int i = 0; i < model->material_count && !status; i++) {
         const lar_material *m = &model->material[i];
-        double most = 8 * lar_material_shear(m) / 3;
-        if (m->law == LAR_LAW_holmes_mow && lar_material_bulk(m) > 1.001 * most)
+        const double shear = lar_material_shear(m), bulk = lar_material_bulk(m);
+        const double most = 8 * shear / 3, foam = 2.16 * shear; /* Poisson's ratio 0.2995 */
+        if (m->law == LAR_LAW_neo_hookean && bulk < foam && !told) {
+            told = true;
+            status = lar_model_notice(model, error,
+                                      "%.300s: material %d: neo-hookean with a Poisson's ratio "
+                                      "below 0.3 collapses when it is pressed to half its height; "
+                                      "for foam take coupled-neo-hookean, ogden or holmes-mow",
+                                      lar_model_source(model), i + 1);
+        }
+        if (!status && m->law == LAR_LAW_holmes_mow && bulk > 1.001 * most)
             status = lar_model_notice(model, error,
                                       "%.300s: material %d: holmes-mow with a bulk modulus above "
                                       "%.4g Pa, 8/3 of the shear modulus, gives way when it is "

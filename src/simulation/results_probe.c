@@ -26,11 +26,18 @@ static void print_name(FILE *line, const char *name, const char *what, const cha
         if (*c == '"') fputc('"', line);
         fputc(*c, line);
     }
-    fprintf(line, " %s [%s]", what, unit);
+    fprintf(line, "%s%s [%s]", *what ? " " : "", what, unit);
     if (quote) fputc('"', line);
 }
 
 enum { COLUMNS = 7 }; /* of one probe, at most */
+
+/* What a mean is of; nothing where the probe's name says so already, as one that is made does. */
+static const char *field_of(const lar_probe *probe) {
+    const char *field = lar_cell_field_table[probe->field].name;
+    size_t own = probe->name ? strlen(probe->name) : 0, size = strlen(field);
+    return own >= size && strcmp(probe->name + own - size, field) == 0 ? "" : field;
+}
 
 /* Returns their number; `what` and `unit` of column k. */
 static int column_of(const lar_probe *probe, int k, char what[32], const char **unit) {
@@ -41,7 +48,8 @@ static int column_of(const lar_probe *probe, int k, char what[32], const char **
     const lar_cell_field_row *mean = &lar_cell_field_table[probe->field];
     switch (probe->what) {
     case LAR_PROBE_MEAN:
-        snprintf(what, 32, "%s%s%s", mean->name, mean->components > 1 ? " " : "",
+        snprintf(what, 32, "%s%s%s", field_of(probe),
+                 mean->components > 1 && *field_of(probe) ? " " : "",
                  mean->components > 1 ? component[k] : "");
         *unit = mean->unit;
         return mean->components;

@@ -234,4 +234,22 @@ expect 0 "$LARIAT" mesh core.obj top.obj --scale 0.001 --elements 500 --title sw
 says 'core (1): left out: a later surface covers all of it; name the outer one first'
 expect 0 "$LARIAT" mesh top.obj core.obj --scale 0.001 --elements 500 --title kept
 says 'core (2): [0-9]* elements'
+
+# Two boxes 1 um apart become one body, and that is said.
+awk 'function tri(a, b, c) { printf "facet normal 0 0 0\nouter loop\nvertex %s\nvertex %s\nvertex %s\nendloop\nendfacet\n", p[a], p[b], p[c] }
+    BEGIN {
+        print "solid near"
+        for (box = 0; box < 2; box++) {
+            low = box * 0.040001
+            for (i = 0; i < 8; i++)
+                p[i] = sprintf("%.9g %.9g %.9g", low + 0.04 * (i % 2), 0.04 * (int(i / 2) % 2), 0.04 * int(i / 4))
+            split("0 2 3 1 4 5 7 6 0 1 5 4 2 6 7 3 0 4 6 2 1 3 7 5", q, " ")
+            for (f = 0; f < 6; f++) { tri(q[4*f+1], q[4*f+2], q[4*f+3]); tri(q[4*f+1], q[4*f+3], q[4*f+4]) }
+        }
+        print "endsolid near"
+    }' > near.stl
+expect 0 "$LARIAT" mesh near.stl --elements 500 --title near
+complains 'note: the surface has 2 bodies and the mesh 1: gaps between them .* are closed'
+expect 0 "$LARIAT" mesh top.obj --scale 0.001 --elements 500 --title whole
+if grep -q 'bodies and the mesh' "$SCRATCH/err"; then fail "$(cat "$SCRATCH/err")"; fi
 finish "mesh: images, surfaces, figures, scenes that run"

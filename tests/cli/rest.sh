@@ -149,6 +149,15 @@ done
 says '^hourglass  *99[0-9.]* % of strain and hourglass energy: .*two or more elements'
 expect 0 "$LARIAT" run "$SCRATCH/slender1.yaml" --json
 [ "$(value_of energy.hourglass_share | cut -c 1-4)" = 0.99 ] || fail "share of one layer"
+# Bent and let back it is straight again: a share of nothing.
+scene back "damping: 5" "duration: DURATION" 'fix: [{nodes: {plane: {point: [0, 0, 0], normal: [1, 0, 0]}}, axes: xyz}]' \
+    'move: [{nodes: {plane: {point: [0.2, 0, 0], normal: [1, 0, 0]}}, axes: z, by: -0.02, curve: {points: [[0, 0], [1, 1], [2, 0]]}}]'
+for end in 0.5 8; do
+    sed "s/-9.81/0/; s/DURATION/$end/" "$name" >"$SCRATCH/bent.yaml"
+    expect 0 "$LARIAT" run "$SCRATCH/bent.yaml"
+    if [ $end = 8 ] && grep -q '^hourglass' "$SCRATCH/out"; then fail "hourglass energy of a straight beam: $(cat "$SCRATCH/out")"; fi
+    [ $end = 8 ] || says '^hourglass  *88'
+done
 scene wrong "duration: soon"
 expect 1 "$LARIAT" run "$SCRATCH/wrong.yaml"
 complains 'wrong.yaml:5:11: duration: expected rest, or a number in seconds'

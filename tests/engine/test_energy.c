@@ -188,6 +188,29 @@ static void long_corners_keep_the_account(void **unused) {
     }
 }
 
+/* A free body that flies and stops: damping takes what it had half a step before the start. */
+static void damping_counts_from_half_a_step_before(void **unused) {
+    (void)unused;
+    brick b = soft_brick;
+    lar_model *model = brick_model(&b);
+    throw_body(model, (double[]){0, 0, 1}, (double[]){0, 0, 0}, 0);
+    lar_options options = lar_options_default();
+    options.time_step = 2e-4;
+    model->damping = 500;
+    lar_simulation *simulation = start_with(model, options);
+    const double half = 0.5 * model->damping * options.time_step;
+    double thrown = 0;
+    for (int32_t n = 0; n < simulation->domain.layout.node_count; n++)
+        thrown += 0.5 * simulation->domain.mass[n];
+    lar_energy e;
+    lar_simulation_energy(simulation, &e);
+    assert_below(fabs(e.kinetic + e.damping - (1 + half) * (1 + half) * thrown), 1e-9 * thrown);
+    advance(simulation, 1000);
+    lar_simulation_energy(simulation, &e);
+    assert_below(fabs(e.damping - (1 + half) * (1 + half) * thrown), 1e-9 * thrown);
+    finish(simulation, model);
+}
+
 /* A body is thrown against its clamp and crushed there, looked at in every step: what barriers damp
  * is in the account of the state at which they do. (Without that 0.95 and 0.014.) */
 static void a_blow_keeps_the_account(void **unused) {
@@ -285,6 +308,7 @@ int main(void) {
         cmocka_unit_test(every_joule_is_accounted_for),
         cmocka_unit_test(divided_steps_keep_the_account),
         cmocka_unit_test(long_corners_keep_the_account),
+        cmocka_unit_test(damping_counts_from_half_a_step_before),
         cmocka_unit_test(a_blow_keeps_the_account),
         cmocka_unit_test(what_is_sudden_keeps_the_account),
         cmocka_unit_test(sudden_loads_end_where_small_steps_do),

@@ -365,7 +365,7 @@ static void probes_of_elements_are_means(void **state) {
     free(f->model->output.probe[1].nodes.node);
     add_probe(f->model, "all", LAR_PROBE_MEAN, 0, BRICK_ELEMENTS);
     f->model->output.probe[0].field = LAR_CELL_STRESS;
-    add_probe(f->model, "all", LAR_PROBE_MEAN, 0, BRICK_ELEMENTS);
+    add_probe(f->model, "all pressure", LAR_PROBE_MEAN, 0, BRICK_ELEMENTS); /* it says so already */
     f->model->output.probe[1].field = LAR_CELL_PRESSURE;
     add_probe(f->model, "one", LAR_PROBE_MEAN, 5, 1);
     f->model->output.probe[2].field = LAR_CELL_VOLUME;

@@ -278,6 +278,11 @@ static void doubled_nodes(void **state) {
     for (int n = 0; n < 12; n++) assert_int_equal(leader[n], n == 9 ? 2 : n);
     free(leader);
     lar_mesh_clear(&mesh);
+    mesh = boxes(2); /* the ends of an element's edge are connected, however short it is */
+    for (int n = 0; n < 12; n++) mesh.position[n][2] *= 1e-9;
+    assert_int_equal(lar_mesh_doubled_nodes(&mesh, &doubled, NULL, &error), LAR_OK);
+    assert_int_equal(doubled, 0);
+    lar_mesh_clear(&mesh);
 }
 
 /* A thin layer and a very small or large mesh are good meshes. */

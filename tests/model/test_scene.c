@@ -390,6 +390,21 @@ static void laws_that_give_way_are_told(void **state) {
         if (i) assert_non_null(strstr(model->notice[0], "above 2667 Pa, 8/3 of the shear modulus"));
         lar_model_destroy(model);
     }
+    for (int i = 0; i < 2; i++) { /* once, however many materials */
+        const char *const poisson = i ? "0.29" : "0.3";
+        char text[512];
+        snprintf(text, sizeof text,
+                 HEAD "materials:\n"
+                      "  - {cells: all, law: neo-hookean, density: 1, youngs_modulus: 1e3, "
+                      "poisson_ratio: %s}\n"
+                      "  - {cells: 2, law: neo-hookean, density: 1, youngs_modulus: 2e3, "
+                      "poisson_ratio: %s}\n",
+                 poisson, poisson);
+        lar_model *model = scene(text);
+        assert_int_equal(model->notice_count, i);
+        if (i) assert_non_null(strstr(model->notice[0], "collapses when it is pressed"));
+        lar_model_destroy(model);
+    }
 }
 
 static void test_several_meshes(void **state) {

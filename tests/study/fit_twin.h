@@ -100,7 +100,7 @@ TEST_UNUSED static void twin_measure(const char *name, const double *truth, doub
     lar_error error = {0};
     twin_read(name, &problem);
     assert_in_range(problem.experiment[0].values, 1, TWIN_ROWS);
-    if (lar_inverse_forward(&problem, 0, truth, NULL, measured, &error))
+    if (lar_inverse_forward(&problem, 0, truth, NULL, NULL, measured, &error))
         fail_msg("%s", error.message);
     lar_inverse_problem_clear(&problem);
 }

@@ -79,7 +79,7 @@ static void write_energy(lar_json *json, const lar_simulation *simulation) {
     lar_json_number(json, "external", energy.external);
     lar_json_number(json, "damping", energy.damping);
     lar_json_number(json, "contact", energy.contact);
-    if (energy.viscous != 0) lar_json_number(json, "viscous", energy.viscous);
+    lar_json_number(json, "viscous", energy.viscous);
     lar_json_close(json);
 }
 
@@ -305,12 +305,14 @@ static void print_open_account(const run_report *report, FILE *out) {
                 "account", now.open, 100 * now.share, two_digits_of(shorter * time_step));
 }
 
-/* Where hourglass modes bear much, the mesh answers and not the tissue. */
-static void print_hourglass(const lar_energy *energy, FILE *out) {
-    static const double MUCH = 0.1, NOTHING = 1e-9;
+/* Where hourglass modes bear much, the mesh answers and not the tissue. Of a body that is back at
+ * its shape, or flies, what is left is a share of nothing. */
+static void print_hourglass(const run_report *report, const lar_energy *energy, FILE *out) {
+    static const double MUCH = 0.1, NOTHING = 1e-3;
     /* Where muscles have shortened, strain energy is below zero or near it: a part of nothing. */
     if (energy->strain < 0 || !(hourglass_share(energy) > MUCH)) return;
-    if (energy->hourglass < NOTHING * turnover_of(energy)) return;
+    double all = fmax(turnover_of(energy), turnover_of(&report->began));
+    if (energy->strain + energy->hourglass < NOTHING * all) return;
     fprintf(out,
             "%-17s%.3g %% of strain and hourglass energy: the mesh is too coarse for how it is "
             "bent or crushed; give it two or more elements through the thickness, or twice as "
@@ -326,7 +328,7 @@ static void print_body(const run_report *report, FILE *out) {
     if (energy.contact != 0) fprintf(out, ", contact %.4g", energy.contact);
     if (energy.viscous != 0) fprintf(out, ", viscous %.4g", energy.viscous);
     fprintf(out, "; external %.4g\n", energy.external);
-    print_hourglass(&energy, out);
+    print_hourglass(report, &energy, out);
     print_open_account(report, out);
     print_contact(report, out);
     print_tools(report->simulation, out);

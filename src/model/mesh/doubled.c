@@ -3,9 +3,21 @@
 
 #include "model/mesh/mesh.h"
 
-/* Of the mean edge: nodes that are nearer stand at one place. Programs that write seven digits
- * leave less between two copies of a node; no element is so thin. */
-static const double NEAR = 1e-6;
+/* Nodes that are nearer stand at one place: a millionth of the mean edge, since programs that write
+ * seven digits leave less between two copies of a node; where elements are thinner than that, half
+ * of their shortest edge, whose ends are connected. */
+static double near_of(const lar_mesh *mesh) {
+    double near = 1e-6 * lar_mesh_mean_edge(mesh);
+    for (int32_t e = 0; e < mesh->element_count; e++)
+        for (int k = 0; k < 12; k++) {
+            const double *a = mesh->position[mesh->element[e][lar_edge_node[k][0]]];
+            const double *b = mesh->position[mesh->element[e][lar_edge_node[k][1]]];
+            double farthest = 0; /* along an axis */
+            for (int i = 0; i < 3; i++) farthest = fmax(farthest, fabs(a[i] - b[i]));
+            near = fmin(near, 0.5 * farthest);
+        }
+    return near;
+}
 
 typedef struct placed {
     double cell[3]; /* of a grid so fine, whole numbers */
@@ -29,7 +41,7 @@ lar_status lar_mesh_doubled_nodes(const lar_mesh *mesh, int32_t *doubled, int32_
         free(first);
         return lar_fail_memory(error, count * (sizeof *place + sizeof *first), "doubled nodes");
     }
-    const double near = NEAR * lar_mesh_mean_edge(mesh);
+    const double near = near_of(mesh);
     for (int32_t n = 0; n < mesh->node_count; n++) {
         place[n].node = n;
         for (int i = 0; i < 3; i++)

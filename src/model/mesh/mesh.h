@@ -98,9 +98,9 @@ lar_status lar_mesh_add_set(lar_mesh *mesh, const char *name, lar_set_kind kind,
  * every element, and its faces in sets, change places, and mesh->turned is set. Others stay. */
 void lar_mesh_turn(lar_mesh *mesh);
 
-/* Nodes at the place of another one, to a millionth of the mean edge: what meets there is not
- * connected. *leader, when not NULL, becomes the first node at each one's place, [node_count]; the
- * caller frees it. */
+/* Nodes at the place of another one, to a millionth of the mean edge, or half the shortest where
+ * that is less: what meets there is not connected. *leader, when not NULL, becomes the first node
+ * at each one's place, [node_count]; the caller frees it. */
 lar_status lar_mesh_doubled_nodes(const lar_mesh *mesh, int32_t *doubled, int32_t **leader,
                                   lar_error *error);
 

@@ -307,23 +307,62 @@ static lar_status look_at_points(forward *f, double *model) {
 }
 
 /* Half of the automatic step under a tool: its springs are four times as stiff then. */
-static lar_status choose_step(const forward *f, lar_options *options) {
+static lar_status automatic_step(const forward *f, double *step) {
     lar_model_info info;
-    if (f->e->tool < 0 || f->model.time_step > 0) return LAR_OK;
     lar_status status = lar_model_inspect(&f->model, &info, f->error);
-    if (!status) options->time_step = 0.5 * info.time_step;
+    if (!status) *step = f->e->tool < 0 ? info.time_step : 0.5 * info.time_step;
     return status;
+}
+
+static lar_status choose_step(const forward *f, const lar_inverse_pace *pace,
+                              lar_options *options) {
+    double most, kept = pace ? pace->step : 0;
+    if (f->model.time_step > 0 || (f->e->tool < 0 && kept == 0)) return LAR_OK;
+    lar_status status = automatic_step(f, &most);
+    if (status) return status;
+    while (kept > 0 && kept > pace->part * most) kept *= 0.5;
+    options->time_step = kept > 0 ? kept : most;
+    return LAR_OK;
+}
+
+static double open_of(const lar_energy *e) {
+    return e->kinetic + e->strain + e->hourglass + e->damping + e->contact + e->viscous -
+           e->external;
+}
+
+/* What the run has made of energy, as a share of what went in or out. */
+static double open_share(const lar_simulation *simulation, const lar_energy *began) {
+    lar_energy e;
+    lar_simulation_energy(simulation, &e);
+    double all = fabs(e.kinetic) + fabs(e.strain) + fabs(e.hourglass) + fabs(e.damping) +
+                 fabs(e.contact) + fabs(e.viscous);
+    all = fmax(all, fabs(e.external));
+    return all > 0 ? fabs(open_of(&e) - open_of(began)) / all : 0;
 }
 
 /* ---- one experiment -------------------------------------------------------------------------- */
 
+lar_status lar_inverse_own_step(const lar_inverse_problem *problem, int k, const double *value,
+                                double *step, lar_error *error) {
+    forward f = {.e = &problem->experiment[k], .error = error};
+    *step = 0;
+    if (!f.e->in_time || f.e->model->time_step > 0) return LAR_OK;
+    lar_status status = copy_model(&f, problem, value);
+    if (!status) status = automatic_step(&f, step);
+    forward_clear(&f);
+    return status;
+}
+
 lar_status lar_inverse_forward(const lar_inverse_problem *problem, int k, const double *value,
-                               const volatile sig_atomic_t *stop, double *model, lar_error *error) {
+                               lar_inverse_pace *pace, const volatile sig_atomic_t *stop,
+                               double *model, lar_error *error) {
     forward f = {.e = &problem->experiment[k], .stop = stop, .error = error};
     lar_options options = lar_options_default();
+    lar_energy began;
     lar_status status = copy_model(&f, problem, value);
-    if (!status) status = choose_step(&f, &options);
+    if (!status) status = choose_step(&f, pace, &options);
     if (!status) status = lar_simulation_create(&f.model, &options, &f.simulation, error);
+    if (!status) lar_simulation_energy(f.simulation, &began);
     if (!status && f.e->tool >= 0)
         status = press(&f, model);
     else if (!status && f.e->kind == LAR_INVERSE_ASPIRATION)
@@ -332,6 +371,7 @@ lar_status lar_inverse_forward(const lar_inverse_problem *problem, int k, const 
         status = pull(&f, model);
     else if (!status)
         status = look_at_points(&f, model);
+    if (!status && pace) pace->open = f.e->in_time ? open_share(f.simulation, &began) : 0;
     forward_clear(&f);
     return status;
 }

@@ -22,9 +22,23 @@ static inline bool lar_inverse_stop_asked(const volatile sig_atomic_t *stop) {
     return stop && __atomic_load_n(stop, __ATOMIC_RELAXED);
 }
 
-/* Into model[values] of experiment k, with value[parameters]. Ends early with LAR_ERROR_ARGUMENT
- * and an empty message when *stop (may be NULL) is not 0. Any thread; runs share nothing. */
+/* The automatic time step of experiment k with value[parameters] [s]; 0 where none is to be kept:
+ * at rest it does not count, and a scene may give its own. */
+lar_status lar_inverse_own_step(const lar_inverse_problem *problem, int k, const double *value,
+                                double *step, lar_error *error);
+
+/* How runs in time go their steps (study/inverse/solver.h). */
+typedef struct lar_inverse_pace {
+    double step; /* that is kept, or the half, a quarter ... of it [s]; 0: the automatic one */
+    double part; /* of the automatic step: the most */
+    double open; /* told: by what share the account of energy was open at the end */
+} lar_inverse_pace;
+
+/* Into model[values] of experiment k, with value[parameters]; pace may be NULL. Ends early with
+ * LAR_ERROR_ARGUMENT and an empty message when *stop (may be NULL) is not 0. Any thread; runs share
+ * nothing. */
 lar_status lar_inverse_forward(const lar_inverse_problem *problem, int k, const double *value,
-                               const volatile sig_atomic_t *stop, double *model, lar_error *error);
+                               lar_inverse_pace *pace, const volatile sig_atomic_t *stop,
+                               double *model, lar_error *error);
 
 #endif

@@ -200,12 +200,34 @@ static void give_bounds(const lar_inverse_solver *s, double normal[P][P],
     }
 }
 
-/* Covariances, intervals, correlations and the directions that are not seen. r: what is left. */
-static void linearise(const lar_inverse_solver *s, const double *r, const double *jacobian,
-                      lar_inverse_result *result) {
+/* How far an estimate would go, in u, with other slopes: no chance, so it is added. */
+static double moved_by(int n, const double *inverse, const double *turn) {
+    double sum = 0;
+    for (int j = 0; j < n; j++) sum += inverse[j] * turn[j];
+    return fabs(sum);
+}
+
+static bool is_inside(const lar_inverse_parameter *p, double u) {
+    return !near_bound(p, u, false) && !near_bound(p, u, true);
+}
+
+/* A search that ended where the slopes ask for another value than any of its interval. */
+static void note_uneven(lar_inverse_result *result) {
+    if (result->converged)
+        lar_inverse_note(result, "the search ended where the squares are not least: forces of runs "
+                                 "are less even than they have to be for it; begin again from "
+                                 "another guess, with slower loads or a smaller time_step in the "
+                                 "scenes");
+    result->converged = false;
+}
+
+/* Covariances, intervals, correlations and the directions that are not seen. r: what is left;
+ * change: of it, with half the time step. */
+static void linearise(const lar_inverse_solver *s, const double *r, const double *change,
+                      const double *jacobian, lar_inverse_result *result) {
     const lar_inverse_problem *p = s->problem;
     int n = s->parameters, m = s->values;
-    double a[P][P], normal[P][P], v[P][P], inverse[P][P], slope[P] = {0};
+    double a[P][P], normal[P][P], v[P][P], inverse[P][P], slope[P] = {0}, turn[P] = {0};
     for (int i = 0; i < n; i++) {
         for (int j = 0; j < n; j++) {
             a[i][j] = 0;
@@ -213,19 +235,25 @@ static void linearise(const lar_inverse_solver *s, const double *r, const double
             normal[i][j] = a[i][j];
         }
         for (int k = 0; k < m; k++) slope[i] += jacobian[i * m + k] * r[k];
+        for (int k = 0; k < m; k++) turn[i] += jacobian[i * m + k] * change[k];
     }
     invert(n, a, v, inverse);
     double width = m > n ? lar_student_95(m - n) * result->deviation : NAN;
+    bool uneven = false;
     for (int i = 0; i < n; i++) {
         lar_inverse_estimate *e = &result->estimate[i];
         e->sensitivity = sqrt(normal[i][i]);
-        set_interval(&p->parameter[i], s->best_u[i], width * sqrt(inverse[i][i]), e);
+        double half = width * sqrt(inverse[i][i]) + moved_by(n, inverse[i], turn);
+        uneven |=
+            moved_by(n, inverse[i], slope) > half && is_inside(&p->parameter[i], s->best_u[i]);
+        set_interval(&p->parameter[i], s->best_u[i], half, e);
         for (int j = 0; j < n; j++) {
             double tied = inverse[i][j] / sqrt(inverse[i][i] * inverse[j][j]);
             result->correlation[i][j] = i == j ? 1 : m > n ? tied : NAN;
         }
     }
     find_held_back(s, inverse, slope, result);
+    if (uneven && !lar_inverse_at_bound(result)) note_uneven(result);
     give_bounds(s, normal, result);
     for (int d = 0; d < n && m > n && !lar_inverse_at_bound(result); d++)
         if (width / sqrt(a[d][d]) > WIDE) note_direction(p, v, d, width / sqrt(a[d][d]), result);
@@ -364,7 +392,7 @@ static lar_status check_units(const lar_inverse_solver *s, lar_error *error) {
 static lar_status try_guess(lar_inverse_solver *s, lar_error *error) {
     double *r = lar_calloc((size_t)s->values, sizeof *r);
     if (!r) return lar_fail_memory(error, (size_t)s->values, s->problem->path);
-    lar_status status = lar_inverse_evaluate(s, s->start, r);
+    lar_status status = lar_inverse_begin(s, s->start, r);
     free(r);
     if (status == LAR_ERROR_UNSTABLE || status == LAR_ERROR_MODEL) {
         lar_error why = *error;
@@ -378,22 +406,45 @@ static lar_status try_guess(lar_inverse_solver *s, lar_error *error) {
 
 /* ---- the fit --------------------------------------------------------------------------------- */
 
+/* How exact runs in time are, by what half the step changes; and where it was too long. */
+static void note_steps(const lar_inverse_solver *s, const double *change,
+                       lar_inverse_result *result) {
+    static const double OPEN = 1e-3;
+    for (int k = 0; k < s->problem->experiments; k++) {
+        const lar_inverse_experiment *e = &s->problem->experiment[k];
+        double *exact = &result->exact[k];
+        for (int32_t i = 0; i < e->values; i++)
+            *exact = fmax(*exact, fabs(*change++) * (e->error ? e->error[i] : e->noise));
+        if (s->pace[k].open > OPEN)
+            lar_inverse_note(result,
+                             "%s: steps are too long for how fast things are here (the account of "
+                             "energy is open by %.2g %%), and forces are noisy: give a smaller "
+                             "time_step in %s",
+                             e->name, 100 * s->pace[k].open, e->scene);
+    }
+}
+
 static lar_status know(lar_inverse_solver *s, lar_inverse_result *result) {
     size_t values = (size_t)s->values;
     double *r = lar_calloc(values, sizeof *r);
+    double *change = lar_calloc(values, sizeof *change);
     double *jacobian = lar_calloc((size_t)s->parameters * values, sizeof *jacobian);
     double u[P]; /* the best moves along in an evaluation */
     memcpy(u, s->best_u, sizeof u);
     s->doing = "looking how well the data tell";
-    lar_status status =
-        r && jacobian ? lar_inverse_evaluate(s, u, r) : lar_fail_memory(s->error, values, "a fit");
+    s->paces_fixed = true; /* these differences are of the same steps as what was found */
+    lar_status status = r && change && jacobian ? lar_inverse_evaluate(s, u, r)
+                                                : lar_fail_memory(s->error, values, "a fit");
     if (!status) status = lar_inverse_differentiate(s, u, r, jacobian);
     if (!status) {
         result->deviation = deviation_of(s, s->best_squares, s->parameters);
-        linearise(s, r, jacobian, result);
+        lar_inverse_halve_steps(s, u, r, change);
+        note_steps(s, change, result);
+        linearise(s, r, change, jacobian, result);
         status = profile_suspects(s, result);
     }
     free(r);
+    free(change);
     free(jacobian);
     return status;
 }

@@ -14,6 +14,8 @@ static lar_status squares_at(const lar_inverse_solver *best, int j, double u, do
     memcpy(s.start, best->best_u, sizeof s.start);
     s.start[j] = u;
     s.fixed[j] = true;
+    memcpy(s.pace, best->pace, sizeof s.pace); /* squares are compared with the best ones */
+    s.paces_fixed = true;
     s.before = best->runs + *runs;
     s.doing = "looking how far parameters can go";
     if (!status) status = lar_inverse_minimise(&s, &converged);

@@ -105,11 +105,10 @@ static void note_shape(const lar_inverse_experiment *e, const lar_inverse_residu
 
 /* Of points: they have places, and no order. */
 static void look_at_points(const lar_inverse_experiment *e, lar_inverse_residuals *r,
-                           const double *left, lar_inverse_result *result) {
+                           const double *left, double tiny, lar_inverse_result *result) {
     r->lag = lag_in_space(e, left);
     /* twice the deviation by chance, in which two that are nearest to each other count twice */
-    r->systematic =
-        r->rms > TINY * e->largest && e->rows >= ENOUGH && r->lag > 2 * sqrt(2.0 / e->rows);
+    r->systematic = r->rms > tiny && e->rows >= ENOUGH && r->lag > 2 * sqrt(2.0 / e->rows);
     if (!r->systematic) return;
     lar_inverse_note(result,
                      "%s: what is left is no chance (of %d points nearest ones correlate by %.2f), "
@@ -138,7 +137,7 @@ static double robust_deviation(double *of, int n) {
 /* Values that are off by far more than the others: slips of a person, or of a machine, which least
  * squares follow and no interval knows of. By chance one of 300 tables of eight values has one, and
  * fewer of longer tables. More than a tenth are no slips, but a law that does not fit. */
-static void look_for_slips(const lar_inverse_experiment *e, const double *left,
+static void look_for_slips(const lar_inverse_experiment *e, const double *left, double tiny,
                            lar_inverse_result *result) {
     static const double FAR = 7;
     const int n = e->values;
@@ -149,7 +148,7 @@ static void look_for_slips(const lar_inverse_experiment *e, const double *left,
     for (int i = 0; i < n; i++) sorted[i] = off[i] = fabs(left[i]) / (e->error ? e->error[i] : 1);
     const double deviation = robust_deviation(sorted, n);
     for (int i = 0; i < n; i++) {
-        far += off[i] > FAR * deviation && fabs(left[i]) > TINY * e->largest;
+        far += off[i] > FAR * deviation && fabs(left[i]) > tiny;
         if (off[i] > off[worst]) worst = i;
     }
     if (far > 0 && far <= (n + 9) / 10)
@@ -177,14 +176,15 @@ void lar_inverse_look_at_residuals(const lar_inverse_problem *problem, lar_inver
         r->relative = r->rms / e->whole;
         r->lag = NAN;
         test_runs(r, model, n);
-        if (judged) look_for_slips(e, model, result);
+        const double tiny = fmax(TINY * e->largest, result->exact[k]);
+        if (judged) look_for_slips(e, model, tiny, result);
         if (judged && e->kind >= LAR_INVERSE_MARKERS) {
-            look_at_points(e, r, model, result);
+            look_at_points(e, r, model, tiny, result);
         } else if (judged) {
             r->lag = lag_of(model, n);
-            r->systematic = r->rms > TINY * e->largest &&
-                            (one_sided(e, model) ||
-                             (n >= ENOUGH && (r->runs_z < -1.96 || r->lag > 2 / sqrt(n))));
+            r->systematic =
+                r->rms > tiny && (one_sided(e, model) ||
+                                  (n >= ENOUGH && (r->runs_z < -1.96 || r->lag > 2 / sqrt(n))));
             if (r->systematic) note_shape(e, r, model, result);
         }
         for (int i = 0; i < n; i++) model[i] = e->measured[i] - model[i];

@@ -34,6 +34,8 @@ typedef struct lar_inverse_result {
     lar_inverse_estimate estimate[LAR_INVERSE_PARAMETERS_MAX];
     double correlation[LAR_INVERSE_PARAMETERS_MAX][LAR_INVERSE_PARAMETERS_MAX];
     lar_inverse_residuals residuals[LAR_INVERSE_EXPERIMENTS_MAX];
+    double
+        exact[LAR_INVERSE_EXPERIMENTS_MAX]; /* what half the time step changes at most [N], [m] */
     double *model; /* [values] what would have been measured, all experiments in a row */
     int notes;
     char note[LAR_INVERSE_NOTES_MAX][LAR_INVERSE_NOTE]; /* sentences: what to make of it */
