@@ -63,11 +63,12 @@ void lar_tool_ask(lar_tools *tools, int32_t tool, const lar_tool_motion *motion)
     lar_tool_motion *now = &tools->motion[tool];
     lar_tool_follower *follower = &tools->follower[tool];
     follower->hand = *motion;
-    follower->hand.holding = follower->hand.padding = 0;
+    follower->hand.holding = follower->hand.outside = 0;
     if (follower->lagging) return;
-    int32_t holding = now->holding;
+    int32_t holding = now->holding, outside = now->outside;
     *now = *motion;
     now->holding = holding;
+    now->outside = outside;
 }
 
 /* What a tool has felt in an interval, on average. */
@@ -264,9 +265,10 @@ static bool follow(const lar_tool *tool, const lar_tool_limits *limits, lar_tool
                      springs_open(tool, limits, mean, &law, &now, &then);
     if (!held_back && !follower->lagging) return false;
     if (!held_back && same_pose(&now, &hand)) {
-        int32_t holding = motion->holding;
+        int32_t holding = motion->holding, outside = motion->outside;
         *motion = follower->hand;
         motion->holding = holding;
+        motion->outside = outside;
         follower->lagging = 0;
         return true;
     }
@@ -297,6 +299,15 @@ static hardness_change change_for(double depth, double before, double load) {
     return depth < HARD ? FADES : STAYS;
 }
 
+/* Whether the middle of a tool is known to be outside of the tissue that it touches: it has begun
+ * with what looks at it and nothing else, and nothing has come so near the middle since that this
+ * may have passed it. Never of jaws: what looks away from one of them is before the other. */
+static bool is_outside(const lar_tool *tool, const lar_tool_follower *follower, double depth,
+                       bool before) {
+    return tool->shape != LAR_TOOL_GRASPER && depth > 0 && depth <= DANGER &&
+           (before || !follower->behind);
+}
+
 /* Not at once: what is already in the tool is driven out by that. */
 static double hardened(double hardness, hardness_change change, double fading, double seconds) {
     static const double RISE = 1e-3; /* [s] */
@@ -322,9 +333,11 @@ lar_hardened lar_tools_harden(const lar_tool_list *list, lar_tools *tools, doubl
         tools->deep[i] = depth > DANGER ? felt->depth : 0;
         double now = hardened(before, change, fading, seconds);
         tools->hardness[i] = now;
+        int32_t *outside = &tools->motion[i].outside, was = *outside;
+        *outside = is_outside(&list->tool[i], &tools->follower[i], depth, was);
         all.most = fmax(all.most, now);
         all.harder = all.harder || now > before;
-        all.changed = all.changed || now != before;
+        all.changed = all.changed || now != before || *outside != was;
     }
     return all;
 }
@@ -377,6 +390,7 @@ bool lar_tools_follow(const lar_tool_list *list, lar_tools *tools, uint64_t step
         lar_tool_follower *follower = &tools->follower[i];
         lar_tool_felt felt = follower->felt;
         follower->felt = (lar_tool_felt){0};
+        follower->behind = 0;
         if (!lar_tool_touches(&list->tool[i]) || !(limits->drag > 0)) continue;
         jaws_state jaws = jaws_of(follower, &tools->motion[i]);
         mean_load mean = mean_of(&felt, limits, jaws, needs, unit, &follower->load);

@@ -290,6 +290,7 @@ static void touch_near(lar_tool_contact *contact, const lar_condition_context *c
         patch.face = &contact->faces->face[vicinity->near[i]];
         patch.body = &vicinity->body;
         patch.radius = contact->list->tool[tool].radius;
+        patch.outside = contact->tools->motion[tool].outside;
         patch.rate_of = 1 / context->time_step;
         patch.touches = touches_of(contact, tool);
         double center[3];
@@ -302,8 +303,9 @@ static void touch_near(lar_tool_contact *contact, const lar_condition_context *c
         for (int a = 0; a < 4; a++) lar_state_velocity(state, patch.face->node[a], patch.v[a]);
         lar_tool_contact_push_face(&patch, law, context->springs, contact->faces->weights);
         vicinity->look[i] = vicinity->path + lar_tool_contact_clear(patch.closest, patch.radius);
-        if (patch.touching == 0) continue;
         lar_tool_sum *sum = &contact->sum[tool];
+        sum->behind |= patch.behind;
+        if (patch.touching == 0) continue;
         sum->touching += patch.touching;
         if (patch.depth > sum->depth) sum->depth = patch.depth;
         sum->squeeze += context->shares * whole_units(patch.squeeze * context->scale);

@@ -44,7 +44,7 @@ typedef struct lar_tool_sum {
     int32_t touching, held;       /* in the last step */
     int32_t clings;               /* since the last stretch of steps began a held point has been no
                                      farther from where it is held than jaws reach: 1 */
-    int32_t padding;
+    int32_t behind;               /* likewise, a point in it has looked away from it: 1 */
 } lar_tool_sum;
 
 /* A face of the surface. */
@@ -167,7 +167,10 @@ void lar_tool_contact_forget(lar_tool_contact *contact);
 
 /* Before a stretch of steps: the deepest points are asked for stretch by stretch. */
 static inline void lar_tool_contact_forget_depths(lar_tool_contact *contact) {
-    for (int i = 0; i < LAR_TOOLS_MAX; i++) contact->sum[i].depth = contact->sum[i].clings = 0;
+    for (int i = 0; i < LAR_TOOLS_MAX; i++) {
+        lar_tool_sum *sum = &contact->sum[i];
+        sum->depth = sum->clings = sum->behind = 0;
+    }
 }
 
 /* Adds the forces at the state's step to state->force. Asks for no memory. */

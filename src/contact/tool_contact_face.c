@@ -75,12 +75,17 @@ __attribute__((noinline)) static double against_of(const lar_tool_contact_patch 
 /* A point that has been passed by the middle of the tool sees a normal that would push it on, out
  * of the body: its face then looks the same way as the push. It is let go, smoothly where the push
  * goes along the face. A crumpled face looks elsewhere as a whole than where the point is, and
- * would let in what lies before it: of both, what keeps the tool outside counts. */
-static double facing(const lar_tool_contact_patch *patch, const double normal[3], int triangle,
+ * would let in what lies before it: of both, what keeps the tool outside counts. A tool that has
+ * passed nothing pushes out whatever is in it: the end of a pad stands along the push, and a force
+ * that goes with how a face is turned has no energy: tissue would flutter on it for ever. */
+static double facing(lar_tool_contact_patch *patch, const double normal[3], int triangle,
                      const double weight[4]) {
+    if (patch->outside) return 1;
     double against = -lar_dot(normal, patch->out);
     if (against < 0.2) against = against_of(patch, normal, against, triangle, weight);
-    return against <= 0 ? 0 : against < 0.2 ? 5 * against : 1;
+    if (!(against < 0.2)) return 1;
+    patch->behind = 1;
+    return against <= 0 ? 0 : 5 * against;
 }
 
 /* A face that comes into a hard tool from the side, or turns round in it, is deep in it at once.
@@ -187,7 +192,7 @@ typedef struct wall_part {
     double share, count; /* facing; against those of the other triangles [m^2] */
 } wall_part;
 
-static wall_part part_of(const lar_tool_contact_patch *patch, int triangle, lar_face_segment *at) {
+static wall_part part_of(lar_tool_contact_patch *patch, int triangle, lar_face_segment *at) {
     double beyond = (1 - WALL) * patch->radius - at->distance;
     if (!(beyond > 0)) return (wall_part){0};
     if (!(at->distance > 0)) { /* the middle line goes through the face: out the way it came */
@@ -266,7 +271,7 @@ void lar_tool_contact_push_face(lar_tool_contact_patch *patch, const lar_contact
     int n = lar_tool_contact_points(face, patch->radius);
     patch->mass = lar_tool_contact_point_mass(face, mass, n);
     patch->covered = patch->depth = patch->squeeze = patch->jaw[0] = patch->jaw[1] = 0;
-    patch->touching = 0;
+    patch->touching = patch->behind = 0;
     memset(patch->force, 0, sizeof patch->force);
     lar_face_normal((const double(*)[3])patch->x, patch->out);
     double size = lar_length(patch->out);

@@ -28,6 +28,8 @@ typedef struct lar_tool_contact_patch { /* one face before one tool */
     double squeeze;     /* of the jaws, as a force at their ends [N] */
     double jaw[2];      /* on each jaw, outwards [N] */
     int32_t touching;
+    int32_t outside;         /* 1: the tool's middle has passed nothing (lar_tool_motion) */
+    int32_t behind;          /* 1: what may have been passed is in the tool */
     lar_touch_list *touches; /* of who looks; NULL in steps */
 } lar_tool_contact_patch;
 

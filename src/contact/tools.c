@@ -103,7 +103,8 @@ static bool near_enough(const lar_tool *tool, const lar_tool_motion *motion) {
 bool lar_tool_motion_good(const lar_tool *tool, const lar_tool_motion *motion) {
     return lar_pose_is_normal(&motion->from) && lar_pose_is_normal(&motion->to) &&
            motion->start <= motion->end && motion->end <= LAR_STEPS_MAX && motion->holding >= 0 &&
-           motion->holding <= LAR_HOLDS_NEAR && motion->padding == 0 && near_enough(tool, motion);
+           motion->holding <= LAR_HOLDS_NEAR && (motion->outside | 1) == 1 &&
+           near_enough(tool, motion);
 }
 
 /* Sums are whatever they are; tissue is no deeper in a tool than its middle. Hands never lag. */
@@ -111,9 +112,10 @@ bool lar_tool_follower_good(const lar_tool *tool, const lar_tool_follower *follo
     const lar_tool_felt *felt = &follower->felt;
     int32_t lagging_max = tool->shape != LAR_TOOL_HAND;
     return lar_tool_motion_good(tool, &follower->hand) && follower->hand.holding == 0 &&
-           felt->depth >= 0 && felt->depth <= tool->radius && felt->steps <= LAR_STEPS_MAX &&
-           follower->load >= 0 && isfinite(follower->load) && follower->lagging >= 0 &&
-           follower->lagging <= lagging_max && follower->padding == 0;
+           follower->hand.outside == 0 && felt->depth >= 0 && felt->depth <= tool->radius &&
+           felt->steps <= LAR_STEPS_MAX && follower->load >= 0 && isfinite(follower->load) &&
+           follower->lagging >= 0 && follower->lagging <= lagging_max &&
+           (follower->behind | 1) == 1;
 }
 
 bool lar_grasp_good(const lar_grasp *grasp, int32_t tools, const lar_model *model) {

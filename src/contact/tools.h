@@ -31,7 +31,7 @@ typedef struct lar_tool_motion {
     int32_t holding;     /* it has closed upon something, or nothing, and not opened since: 1; and
                             since the last decision something has been within its jaws, or it has
                             just closed: 2 */
-    int32_t padding;
+    int32_t outside;     /* no tissue that it touches has come near its middle: 1 (tool_body.h) */
 } lar_tool_motion;
 
 /* A surface point that a tool has hold of. */
@@ -159,11 +159,11 @@ static inline bool lar_division_lets_go(const lar_step_division *division) {
 
 /* The hand of a tool, and how far the tool is from following it. */
 typedef struct lar_tool_follower {
-    lar_tool_motion hand; /* what was asked for; `holding` and `padding` are 0 */
+    lar_tool_motion hand; /* what was asked for; `holding` and `outside` are 0 */
     lar_tool_felt felt;
     double load;     /* of the last interval: what was felt, as a part of what the tool may bear */
     int32_t lagging; /* it goes its own way: tools->motion is not that of the hand */
-    int32_t padding;
+    int32_t behind;  /* in this interval a surface that looks away has been in the tool: 1 */
 } lar_tool_follower;
 
 /* A place for a tool that is added while the simulation runs (spares.h). Zero: free. */

@@ -69,6 +69,7 @@ void lar_interval_harvest(lar_interval *interval, const lar_domain *whole, const
         felt->squeeze = whole_number(felt->squeeze + now->squeeze - before->squeeze);
         felt->depth = now->depth > felt->depth ? now->depth : felt->depth;
         felt->steps += steps;
+        tools->follower[t].behind |= now->behind;
         if (now->clings && tools->motion[t].holding) tools->motion[t].holding = LAR_HOLDS_NEAR;
         interval->depth[t] = fmax(interval->depth[t], now->depth);
         *before = *now;

@@ -50,6 +50,7 @@ static inline void lar_report_join(lar_report *sum, const lar_report *other) {
         to->touching += from->touching;
         to->held += from->held;
         to->clings |= from->clings;
+        to->behind |= from->behind;
     }
     lar_report_contact(&sum->contact, &other->contact);
     sum->moved = lar_larger(sum->moved, other->moved);

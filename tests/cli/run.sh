@@ -160,6 +160,28 @@ expect 0 "$LARIAT" run "$SCRATCH/hit.yaml" --json
 has_keys --numbers account.open account.share
 value_of account.share | awk '{ exit !($1 > 0.01 && $1 < 1) }' || fail "share $(value_of account.share)"
 
+# Foam is softer under a tool's springs than they are: the summary says how deep it is in the tool,
+# and nothing where the step is so short that they are hard.
+cat >"$SCRATCH/foam.yaml" <<'END'
+lariat: 1
+mesh: beam.vtk
+duration: 0.1
+damping: 50
+materials: [{ cells: all, law: coupled-neo-hookean, density: 80, youngs_modulus: 1.0e5, poisson_ratio: 0.2 }]
+fix: [{ nodes: { plane: { point: [0, 0, 0], normal: [0, 0, 1] } }, axes: xyz }]
+tools: [{ name: bar, shape: capsule, radius: 0.006, length: 0.03, towards: [0, 1, 0],
+          path: [[0, 0.02, 0.02, 0.0161], [0.05, 0.02, 0.02, 0.014]] }]
+END
+expect 0 "$LARIAT" run "$SCRATCH/foam.yaml"
+says '^ *tissue is [0-9.]* mm deep in it, 0.[0-9]* of its radius: .* --time-step [0-9.e-]*, shows how much'
+expect 0 "$LARIAT" run "$SCRATCH/foam.yaml" --json
+deep=$(value_of tools.0.depth)
+expect 0 "$LARIAT" run "$SCRATCH/foam.yaml" --time-step 1.5e-5
+! grep -q 'deep in it' "$SCRATCH/out" || fail "$(grep 'deep in it' "$SCRATCH/out")"
+expect 0 "$LARIAT" run "$SCRATCH/foam.yaml" --time-step 1.5e-5 --json
+value_of tools.0.depth | awk '{ exit !($1 > 0 && $1 < 0.5 * deep) }' deep="$deep" ||
+    fail "as deep with hard springs: $(value_of tools.0.depth)"
+
 # Rounding of a strain energy that large moduli leave next to nothing of is no matter of the step.
 one_cube "$SCRATCH/cube.inp"
 cat >"$SCRATCH/tiny.yaml" <<'END'

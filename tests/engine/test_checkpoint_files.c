@@ -114,7 +114,7 @@ static void forged_files_are_refused(void **unused) {
         {DIVISION + 32, 8, NAN, "tool"},
         {DIVISION + 40, 8, 1e300, "tool"},  /* when decided */
         {DIVISION + 48, 4, 0, "tool"},      /* parts of stiffer materials */
-        {DIVISION + 52, 4, 34, "tool"},      /* due */
+        {DIVISION + 52, 4, 34, "tool"},     /* due */
         {DIVISION + 52, 4, 0x2100, "tool"}, /* still for 33 decisions */
         {SETTINGS, 4, 2, "tool"},           /* whether gravity is set */
         {SETTINGS + 4, 4, -1, "tool"},      /* and damping */
@@ -139,6 +139,7 @@ static void forged_files_are_refused(void **unused) {
         {TOOL + 56, 8, 1.5, "tool"},    /* an opening */
         {TOOL + 128, 8, 1e300, "tool"}, /* the step at which it began */
         {TOOL + 144, 4, 3, "tool"},     /* whether it holds, and something near */
+        {TOOL + 148, 4, 2, "tool"},     /* and its middle is outside */
         {FOLLOWER, 8, NAN, "tool"},     /* where it was asked to go */
         {FOLLOWER + 64, 8, 1e200, "tool"},
         {FOLLOWER + 24, 8, 0.5, "tool"},
@@ -154,7 +155,7 @@ static void forged_files_are_refused(void **unused) {
         {FELT + 72, 8, -1, "tool"},
         {FELT + 80, 4, 2, "tool"}, /* lagging */
         {FELT + 80, 4, -1, "tool"},
-        {FELT + 84, 4, 1, "tool"},
+        {FELT + 84, 4, 2, "tool"},            /* whether what looks away is in it */
         {HAND + 152 + 80, 4, 1, "tool"},      /* hands do not lag */
         {bytes.size - 16, 8, NAN, "numbers"}, /* a velocity */
         {bytes.size - 16, 8, 3, "hash"},

@@ -5,6 +5,7 @@
 
 static const brick block = {{8, 8, 4}, 0.005, 0, LAR_LAW_neo_hookean, 4e3, 2e5, 1050};
 static const double upright[4] = {1, 0, 0, 0}, height = 0.02;
+static const double along_x[4] = {0.70710678118654752, 0, -0.70710678118654752, 0};
 
 static lar_simulation *pressed(lar_model *model, double part, double x, double y, double deep) {
     const double radius = model->tool[0].radius;
@@ -94,10 +95,58 @@ static void a_pinch_is_straight(void **unused) {
     finish(simulation, model);
 }
 
+/* A bar across a pad of foam stands over the pad's ends, whose faces look along it: they are in the
+ * bar although they do not look at it. The same on every grid. */
+static uint64_t lie(double nu, double y, const char *grid) {
+    static const double E = 2e5, deep = 0.01, radius = 0.015;
+    brick pad = {{8, 8, 4}, 0.005, 0, LAR_LAW_coupled_neo_hookean, 0, 0, 80};
+    pad.shear = E / 2 / (1 + nu);
+    pad.bulk = E / 3 / (1 - 2 * nu);
+    lar_model *model = brick_model(&pad);
+    fix_nodes(model, brick_side(&pad, 2, 0), LAR_AXIS_ALL);
+    touch_tool(model, "bar",
+               (lar_tool){.shape = LAR_TOOL_CAPSULE, .radius = radius, .length = 0.06},
+               (double[]){0.05, y, height + radius + 0.0002});
+    memcpy(model->tool[0].rest.orientation, along_x, sizeof along_x);
+    model->damping = 20;
+    lar_options options = lar_options_default();
+    options.grid = grid;
+    lar_simulation *simulation = start_with(model, options);
+    uint64_t steps = (uint64_t)(0.3 / lar_simulation_time_step(simulation));
+    place(simulation, 0, (double[]){0.05, y, height + radius - deep}, along_x, 1, steps);
+    while (lar_simulation_time(simulation) < 0.5) advance(simulation, 100);
+    lar_energy then, now;
+    lar_tool_force force;
+    lar_error error;
+    lar_simulation_energy(simulation, &then);
+    while (lar_simulation_time(simulation) < 0.6) advance(simulation, 100);
+    lar_simulation_energy(simulation, &now);
+    assert_int_equal(lar_simulation_tool_force(simulation, 0, &force, &error), LAR_OK);
+    print_message("a bar on a pad, nu %g, y = %g mm: %.4g N; kinetic %.1e of strain, external grew "
+                  "by %.1e of it\n",
+                  nu, 1e3 * y, force.force[2], now.kinetic / now.strain,
+                  (now.external - then.external) / now.strain);
+    assert_true(force.force[2] > 30 && force.limited == 0);
+    assert_below(fabs(now.kinetic), 1e-6 * now.strain);
+    assert_below(fabs(now.external - then.external), 1e-4 * now.strain);
+    uint64_t hash = lar_simulation_hash(simulation);
+    finish(simulation, model);
+    return hash;
+}
+
+static void what_looks_elsewhere_comes_to_rest(void **unused) {
+    (void)unused;
+    uint64_t hash = lie(0.3, 0.02, NULL);
+    assert_true(lie(0.3, 0.02, "2x2x1") == hash);
+    lie(0.2, 0.036, NULL); /* along another end as well */
+    lie(0, 0.02, NULL);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(tissue_comes_to_rest),
         cmocka_unit_test(a_pinch_is_straight),
+        cmocka_unit_test(what_looks_elsewhere_comes_to_rest),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -126,6 +126,7 @@ static void write_tools(lar_json *json, const lar_simulation *simulation) {
         lar_json_number(json, "grasp", force.grasp_force);
         lar_json_integer(json, "touching", force.touching);
         lar_json_integer(json, "held", force.held);
+        lar_json_number(json, "depth", force.depth);
         lar_json_close(json);
     }
     lar_json_close(json);
@@ -248,6 +249,19 @@ static void print_contact(const run_report *report, FILE *out) {
     print_through(report, &info, out);
 }
 
+/* A tool's springs are in line with tissue, and where its volume may change they are no harder than
+ * its elements (docs/theory.md, tools). */
+static void print_depth(const lar_simulation *simulation, const lar_tool_info *info,
+                        const lar_tool_force *force, FILE *out) {
+    static const double MUCH = 0.1; /* radii */
+    if (!(force->depth > MUCH * info->radius)) return;
+    fprintf(out,
+            "%-17stissue is %.2g mm deep in it, %.2g of its radius: the force is less than that "
+            "of a hard tool; half the step, --time-step %.2g, shows how much\n",
+            "", 1e3 * force->depth, force->depth / info->radius,
+            two_digits_of(0.5 * lar_simulation_time_step(simulation)));
+}
+
 /* Nothing of tools that neither touch nor hold. */
 static void print_tools(const lar_simulation *simulation, FILE *out) {
     for (int32_t i = 0; i < lar_simulation_tool_count(simulation); i++) {
@@ -261,6 +275,7 @@ static void print_tools(const lar_simulation *simulation, FILE *out) {
         if (force.grasp_force > 0) fprintf(out, ", jaws grasp with %.3g N", force.grasp_force);
         if (force.held > 0) fprintf(out, ", holds %d points", (int)force.held);
         fputc('\n', out);
+        print_depth(simulation, &info, &force, out);
     }
 }
 
