@@ -88,7 +88,7 @@ static void survey_group(lar_body_contact *contact, const lar_state *state, int3
             survey_face(contact, state, group->node, face[first], s, corner_of_first, &of_first);
     for (int32_t i = 0; i < group->count; i++) {
         if (s->flush && lar_flush_hides(contact->surface, group->node, face[i])) continue;
-        if (i != first && !s->edge && contact->travel < away[i]) {
+        if (i != first && contact->travel < away[i]) {
             if (away[i] < s->next) s->next = away[i];
             continue;
         }
@@ -130,6 +130,11 @@ int32_t lar_survey_closest(lar_body_contact *contact, const lar_state *state, in
                            lar_survey *s, lar_face_point *point) {
     const lar_contact_group *group = &contact->list.group[g];
     survey_group(contact, state, g, s);
+    /* Who was farther than a face that is not seen now may be the closest one. */
+    if (s->gap == -INFINITY && s->next < INFINITY) {
+        for (int32_t i = 0; i < group->count; i++) contact->away[group->first + i] = 0;
+        survey_group(contact, state, g, s);
+    }
     /* A little earlier, for rounding. */
     contact->due[g] = s->gap > 0 && !s->flush
                           ? fmin(contact->travel + 0.999 * s->gap / LAR_APPROACH, s->next)
