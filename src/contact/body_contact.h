@@ -238,7 +238,9 @@ typedef struct lar_survey {
     double corner[LAR_GROUP_FACES_MAX][4][3];  /* [m] */
     lar_face_point point[LAR_GROUP_FACES_MAX]; /* where they are closest, of those near `min` */
     double min;                                /* of those within reach; INFINITY: none is */
-    double gap;  /* by which those looked at are out of reach, at most 0 when one is not [m] */
+    double gap;  /* by which those looked at are out of reach, at most 0 when one is not [m];
+                    -INFINITY: the node is behind some that it does not see */
+    bool edge;   /* the node is on a sharp edge, and may not see all faces that it is behind */
     double next; /* travel at which the first of the others may matter [m] */
 } lar_survey;
 
@@ -273,8 +275,16 @@ void lar_offset_leave(lar_body_contact *contact, const lar_state *state, int32_t
 bool lar_offset_pushes(lar_body_contact *contact, const lar_state *state, int32_t g, int32_t face,
                        double depth, double rate);
 
+/* Whether a face that a node or point on a sharp edge is behind looks away from its body: pushed
+ * out there the node would be pulled from its own body, for the surface of that goes on beyond the
+ * face, with both bodies on one side of it. The face is only nearer than the one that is in the
+ * way, as where a block slides over the end of what it lies on. */
+bool lar_looks_away(const lar_body_contact *contact, const lar_state *state, int32_t node,
+                    const double corner[4][3]);
+
 /* The node of group g touches no face of that other body, `gap` out of their reach [m] (INFINITY:
- * it is before one): from now on it is pushed like any other. */
+ * it is before one): from now on it is pushed like any other. Who is behind faces that look away
+ * from its body (-INFINITY), and no others, has come there from the back. */
 void lar_offset_out(lar_body_contact *contact, const lar_state *state, int32_t g, double gap);
 
 /* Whether the node or point of group g is flush still with the body of that (history/flush.h), and

@@ -15,6 +15,7 @@
 /* A side of a face, by its nodes in ascending order. */
 typedef struct side {
     int32_t node[2], face;
+    int32_t other; /* of a sharp edge: the second face */
 } side;
 
 static int by_nodes(const void *a, const void *b) {
@@ -61,7 +62,7 @@ static side *list_sides(const lar_contact_surface *s, size_t count) {
     for (size_t i = 0; i < count && sides; i++) {
         const lar_contact_face *face = &s->face[i / 4];
         int32_t a = face->corner[i % 4], b = face->corner[(i + 1) % 4];
-        sides[i] = (side){{a < b ? a : b, a < b ? b : a}, (int32_t)(i / 4)};
+        sides[i] = (side){{a < b ? a : b, a < b ? b : a}, (int32_t)(i / 4), -1};
     }
     if (sides) qsort(sides, count, sizeof *sides, by_nodes);
     return sides;
@@ -69,10 +70,25 @@ static side *list_sides(const lar_contact_surface *s, size_t count) {
 
 static const double MEETS = 0.5; /* edges that are blunter: faces are enough */
 
+/* The node beside an end of a sharp edge, on one of its faces. */
+static void add_inward(const lar_contact_surface *s, int32_t inward[3], const side *edge,
+                       int32_t face, int end) {
+    const int32_t *corner = s->face[face].corner;
+    int a = 0, k = 0;
+    while (corner[a] != edge->node[end]) a++;
+    int32_t next = corner[(a + 1) % 4];
+    if (next == edge->node[!end]) next = corner[(a + 3) % 4];
+    while (k < 3 && inward[k] >= 0 && inward[k] != next) k++;
+    if (k < 3) inward[k] = next;
+}
+
 /* Sharp edges to the front; returns how many. */
 static size_t find_edges(lar_contact_surface *s, side *sides, size_t count) {
     size_t edges = 0;
-    for (int32_t n = 0; n < s->node_count; n++) s->node[n].blunt = 1;
+    for (int32_t n = 0; n < s->node_count; n++) {
+        s->node[n].blunt = 1;
+        memset(s->node[n].inward, -1, sizeof s->node[n].inward);
+    }
     for (size_t i = 0; i + 1 < count; i++) {
         if (memcmp(sides[i].node, sides[i + 1].node, sizeof sides[i].node) != 0) continue;
         double blunt = bluntness(s, sides[i].face, sides[i + 1].face);
@@ -80,7 +96,12 @@ static size_t find_edges(lar_contact_surface *s, side *sides, size_t count) {
             lar_contact_node *node = &s->node[sides[i].node[k]];
             node->blunt = fmin(node->blunt, blunt);
         }
-        if (blunt < MEETS) sides[edges++] = sides[i];
+        if (!(blunt < MEETS)) continue;
+        for (int k = 0; k < 4; k++)
+            add_inward(s, s->node[sides[i].node[k % 2]].inward, &sides[i], sides[i + k / 2].face,
+                       k % 2);
+        sides[edges] = sides[i];
+        sides[edges++].other = sides[i + 1].face;
     }
     for (int32_t f = 0; f < s->face_count; f++)
         for (int a = 0; a < 4; a++)
@@ -108,6 +129,10 @@ static void add_edge(lar_contact_surface *s, const side *edge) {
     for (int k = 0; k < EDGE_POINTS; k++) {
         double along = (k + 0.5) / EDGE_POINTS;
         add_point(s, &(lar_contact_point){2, {edge->node[0], edge->node[1]}, {1 - along, along}});
+        int32_t *inward = s->node[s->point_count - 1].inward;
+        memset(inward, -1, sizeof s->node->inward);
+        add_inward(s, inward, edge, edge->face, 0);
+        add_inward(s, inward, edge, edge->other, 0);
     }
 }
 
@@ -130,6 +155,7 @@ static void add_face(lar_contact_surface *s, int32_t face) {
         memcpy(point.node, s->face[face].corner, sizeof point.node);
         for (int a = 0; a < 4; a++) point.weight[a] = a == k ? 0.625 : 0.125;
         add_point(s, &point);
+        memset(s->node[s->point_count - 1].inward, -1, sizeof s->node->inward);
     }
 }
 

@@ -117,6 +117,8 @@ static void mark_nodes(const lar_contact_map *map, const lar_contact_list *list,
     double weight[LAR_CONTACT_PARENTS];
     int count = lar_contact_parents(map->surface, group->node, parent, weight);
     for (int k = 0; k < count; k++) marked[parent[k]] = 1;
+    const int32_t *inward = map->surface->node[group->node].inward;
+    for (int k = 0; k < 3 && inward[k] >= 0; k++) marked[inward[k]] = 1;
     for (int32_t i = group->first; i < group->first + group->count; i++)
         for (int a = 0; a < 4; a++) marked[map->surface->face[list->face[i]].corner[a]] = 1;
 }

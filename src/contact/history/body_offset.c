@@ -1,6 +1,7 @@
 /* What nodes remember of lying in a body (body_contact.h, Offsets). */
 #include <math.h>
 
+#include "base/vector.h"
 #include "contact/body_contact.h"
 #include "contact/history/flush.h"
 #include "mechanics/face_contact.h"
@@ -95,6 +96,28 @@ void lar_offset_stay_flush(lar_body_contact *contact, int32_t g, int32_t face,
     double near =
         face < 0 ? 0 : (closest->height < 0 ? ROUNDING : LAR_FLUSH_NEAR) * s->face[face].size;
     if (face < 0 || !(closest->distance < near)) lar_offset_part(contact, node);
+}
+
+/* ---- sharp edges ----------------------------------------------------------------------------- */
+
+bool lar_looks_away(const lar_body_contact *contact, const lar_state *state, int32_t node,
+                    const double corner[4][3]) {
+    static const double AGAINST = 0.3, AWAY = -0.7; /* cosines */
+    const int32_t *inward = contact->surface->node[node].inward;
+    int32_t parent[LAR_CONTACT_PARENTS];
+    double weight[LAR_CONTACT_PARENTS], from[3], to[3], way[3];
+    lar_contact_parents(contact->surface, node, parent, weight);
+    lar_contact_place_of_node(contact, state, parent[0], from, NULL);
+    lar_face_normal(corner, way);
+    bool away = false;
+    for (int k = 0; k < 3 && inward[k] >= 0; k++) {
+        lar_contact_place_of_node(contact, state, inward[k], to, NULL);
+        lar_minus(to, from, to);
+        double cosine = lar_dot(way, to) / (lar_length(way) * lar_length(to));
+        if (cosine > AGAINST) return false;
+        away = away || cosine < AWAY;
+    }
+    return away;
 }
 
 /* ---- other bodies ---------------------------------------------------------------------------- */
@@ -208,7 +231,11 @@ void lar_offset_out(lar_body_contact *contact, const lar_state *state, int32_t g
     const lar_contact_surface *s = contact->surface;
     if (group->node >= s->node_count) return;
     int32_t face = contact->list.face[group->first];
-    if (offset_of(contact, state, group->node) == lar_offset_behind(s->face[face].body))
+    const double before = offset_of(contact, state, group->node);
+    const double behind = lar_offset_behind(s->face[face].body);
+    if (gap == -INFINITY)
+        set_offset(contact, state, group->node, before == 0 ? behind : before);
+    else if (before == behind)
         set_offset(contact, state, group->node, 0);
     else if (gap <= 0.5 * reach_of(contact, group->node, face))
         count_sunk(contact, state, g, reach_of(contact, group->node, face));

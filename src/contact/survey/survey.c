@@ -21,8 +21,8 @@ static double fade_above(const lar_body_contact *contact, int32_t node, int32_t 
  * INFINITY: it is not seen. A slice of one element between two planes has its nodes in the planes
  * of its sides: a wall that goes through another one would find that one's side closest, at no
  * distance, and nothing that pushes. */
-static double survey_face(lar_body_contact *contact, const lar_state *state, int32_t f,
-                          lar_survey *s, double corner[4][3], lar_face_point *point) {
+static double survey_face(lar_body_contact *contact, const lar_state *state, int32_t node,
+                          int32_t f, lar_survey *s, double corner[4][3], lar_face_point *point) {
     double tie = tie_of(contact, f);
     lar_contact_corners(contact, state, f, corner, NULL);
     double distance = lar_face_box_distance(s->x, (const double(*)[3])corner);
@@ -32,6 +32,11 @@ static double survey_face(lar_body_contact *contact, const lar_state *state, int
         distance = point->distance;
         if ((s->held & contact->surface->face[f].plane) && fabs(point->height) <= tie) {
             s->gap = fmin(s->gap, 0); /* it is looked at again in the next step */
+            return INFINITY;
+        }
+        if (s->edge && point->height < 0 && distance <= s->reach &&
+            lar_looks_away(contact, state, node, (const double(*)[3])corner)) {
+            s->gap = -INFINITY;
             return INFINITY;
         }
         if (distance <= s->reach && distance < s->min) s->min = distance;
@@ -72,12 +77,15 @@ static void survey_group(lar_body_contact *contact, const lar_state *state, int3
     s->flush = lar_offset_is_flush(contact, state, g);
     s->held =
         lar_same_body(contact, group->node, face[0]) ? contact->surface->node[group->node].held : 0;
+    s->edge = !s->flush && !lar_same_body(contact, group->node, face[0]) &&
+              contact->surface->node[group->node].inward[0] >= 0;
     lar_face_point of_first;
     double corner_of_first[4][3];
     lar_contact_place(contact, state, group->node, s->x, NULL);
     double distance_of_first = 0;
     if (!s->flush || !lar_flush_hides(contact->surface, group->node, face[first]))
-        distance_of_first = survey_face(contact, state, face[first], s, corner_of_first, &of_first);
+        distance_of_first =
+            survey_face(contact, state, group->node, face[first], s, corner_of_first, &of_first);
     for (int32_t i = 0; i < group->count; i++) {
         if (s->flush && lar_flush_hides(contact->surface, group->node, face[i])) continue;
         if (i != first && contact->travel < away[i]) {
@@ -88,7 +96,8 @@ static void survey_group(lar_body_contact *contact, const lar_state *state, int3
         s->entry[k] = i;
         s->distance[k] = distance_of_first;
         if (i != first) {
-            s->distance[k] = survey_face(contact, state, face[i], s, s->corner[k], &s->point[k]);
+            s->distance[k] =
+                survey_face(contact, state, group->node, face[i], s, s->corner[k], &s->point[k]);
             continue;
         }
         s->point[k] = of_first;
@@ -121,6 +130,11 @@ int32_t lar_survey_closest(lar_body_contact *contact, const lar_state *state, in
                            lar_survey *s, lar_face_point *point) {
     const lar_contact_group *group = &contact->list.group[g];
     survey_group(contact, state, g, s);
+    /* Who was farther than a face that is not seen now may be the closest one. */
+    if (s->gap == -INFINITY && s->next < INFINITY) {
+        for (int32_t i = 0; i < group->count; i++) contact->away[group->first + i] = 0;
+        survey_group(contact, state, g, s);
+    }
     /* A little earlier, for rounding. */
     contact->due[g] = s->gap > 0 && !s->flush
                           ? fmin(contact->travel + 0.999 * s->gap / LAR_APPROACH, s->next)
