@@ -34,7 +34,7 @@ static double survey_face(lar_body_contact *contact, const lar_state *state, int
             s->gap = fmin(s->gap, 0); /* it is looked at again in the next step */
             return INFINITY;
         }
-        if (s->edge && point->height < 0 && distance <= s->reach &&
+        if (s->edge && point->height < -tie && distance <= s->reach &&
             lar_looks_away(contact, state, node, (const double(*)[3])corner)) {
             s->gap = -INFINITY;
             return INFINITY;

@@ -17,6 +17,9 @@ enum { JUST = 1000 };
 /* A smaller force than this part of the largest beside it is not what broke the tissue; nor one
  * that strains the element by less than a thousandth. */
 static const double BESIDE = 0.1, STRAINS = 1e-3;
+/* Hands press with no more than tools may bear (contact/tool_body.h): so many times that is what
+ * tissue does that is thrown at the tool. */
+static const double THROWN = 4;
 
 /* Where something broke, and what acts there. */
 typedef struct fault_spot {
@@ -168,7 +171,8 @@ static bool may_have_part(const lar_domain *domain, const lar_tools *tools, int3
     double force =
         fmax(lar_length(mean), follower->load * domain->surroundings.list->limits[tool].force);
     bool touched = tools->division.untouched != 0 || felt->depth > 0 || force > 0;
-    return touched && (spot->loads < spot->firm || (moving && force >= BESIDE * spot->loads));
+    bool pressed = force >= BESIDE * spot->loads && follower->load < THROWN;
+    return touched && (spot->loads < spot->firm || (moving && pressed));
 }
 
 void lar_fault_attribute(const lar_domain *domain, const lar_tools *tools, lar_fault *fault) {
