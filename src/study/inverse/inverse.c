@@ -243,7 +243,8 @@ static void linearise(const lar_inverse_solver *s, const double *r, const double
     for (int i = 0; i < n; i++) {
         lar_inverse_estimate *e = &result->estimate[i];
         e->sensitivity = sqrt(normal[i][i]);
-        double half = width * sqrt(inverse[i][i]) + moved_by(n, inverse[i], turn);
+        /* At half the step as much is left again, where errors go with the step itself. */
+        double half = width * sqrt(inverse[i][i]) + 2 * moved_by(n, inverse[i], turn);
         uneven |=
             moved_by(n, inverse[i], slope) > half && is_inside(&p->parameter[i], s->best_u[i]);
         set_interval(&p->parameter[i], s->best_u[i], half, e);
