@@ -92,7 +92,7 @@ void lar_text_list(const char *const *name, int count, char *to, size_t size) {
 }
 
 lar_time_text lar_text_time(double seconds) {
-    static const char unit[][3] = {"us", "ms", "s"};
+    static const char *const unit[] = {"us", "ms", "s"};
     lar_time_text out;
     double count = 1e6 * seconds;
     int i = 0;

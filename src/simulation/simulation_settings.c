@@ -366,7 +366,7 @@ lar_status lar_simulation_set_force_at(lar_simulation *simulation, int32_t set,
 
 lar_status lar_simulation_set_force_on(lar_simulation *simulation, const char *set,
                                        const double force[3], lar_error *error) {
-    int32_t index;
+    int32_t index = 0;
     lar_status status =
         lar_simulation_check_change(simulation, "lar_simulation_set_force_on", error);
     if (!status) status = lar_simulation_force_set(simulation->domain.model, set, &index, error);

@@ -260,4 +260,14 @@ TEST_UNUSED static double characteristic_force(const brick *b) {
     return (b->bulk + 4 * b->shear / 3) * b->edge * b->edge;
 }
 
+/* Goes on for so long [s]: the account of energy is closed then to 10^-4. */
+TEST_UNUSED static lar_energy balanced_after(lar_simulation *s, double seconds) {
+    lar_energy e;
+    advance(s, (uint64_t)(seconds / s->domain.time_step));
+    lar_simulation_energy(s, &e);
+    double spent = e.kinetic + e.strain + e.hourglass + e.damping + e.contact + e.viscous;
+    assert_below(fabs(spent - e.external), 1e-4 * e.external);
+    return e;
+}
+
 #endif

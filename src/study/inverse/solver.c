@@ -94,19 +94,6 @@ static lar_status choose_steps(lar_inverse_solver *s, const double *u) {
     return status;
 }
 
-/* Whether the steps that are kept suit u: they leave room for differences, which move the automatic
- * step by half of theirs, and they are not half as long as could be. */
-static bool steps_suit(const lar_inverse_solver *s, const double *u) {
-    static const double ROOM = 1.04, SHORT = 2.2;
-    double own[LAR_INVERSE_EXPERIMENTS_MAX];
-    if (s->paces_fixed || own_steps(s, u, own)) return true;
-    for (int k = 0; k < s->problem->experiments; k++) {
-        const double most = s->pace[k].part * own[k], step = s->pace[k].step;
-        if (most < ROOM * step || most > SHORT * step) return false;
-    }
-    return true;
-}
-
 /* Experiments whose account of energy was open go in shorter steps from now on. */
 static void judge_steps(lar_inverse_solver *s, const job *jobs, int count) {
     static const double OPEN = 1e-4, LEAST = 1.0 / 32;
@@ -328,6 +315,18 @@ void lar_inverse_solver_clear(lar_inverse_solver *s) {
 }
 
 #ifdef LAR_HAVE_CMINPACK
+/* Whether the steps that are kept suit u: they leave room for differences, which move the automatic
+ * step by half of theirs, and they are not half as long as could be. */
+static bool steps_suit(const lar_inverse_solver *s, const double *u) {
+    static const double ROOM = 1.04, SHORT = 2.2;
+    double own[LAR_INVERSE_EXPERIMENTS_MAX];
+    if (s->paces_fixed || own_steps(s, u, own)) return true;
+    for (int k = 0; k < s->problem->experiments; k++) {
+        const double most = s->pace[k].part * own[k], step = s->pace[k].step;
+        if (most < ROOM * step || most > SHORT * step) return false;
+    }
+    return true;
+}
 
 bool lar_inverse_available(void) {
     return true;
