@@ -128,13 +128,10 @@ static lar_status open_parts(lar_comm *comm, lar_error *error) {
         return lar_fail_memory(error, count * sizeof *comm->addresses, "addresses of processors");
     for (size_t p = 0; p < count; p++) comm->links[p] = -1;
     comm->addresses[comm->options.self].receive_bytes = comm->options.receive_bytes;
-    bool waits = !comm->backend->meets && count > 1;
-    __atomic_fetch_add(&opening, waits, __ATOMIC_SEQ_CST);
     lar_status status = comm->backend->open(comm, error);
     if (!status) status = come_together(comm, error);
-    if (!status && comm->backend->begin) comm->backend->begin(comm);
-    __atomic_fetch_sub(&opening, waits, __ATOMIC_SEQ_CST);
     if (status) return status;
+    if (comm->backend->begin) comm->backend->begin(comm);
     /* What a processor sends to itself needs no network. */
     comm->peers[comm->options.self] = (lar_comm_peer){comm->receive, comm->options.receive_bytes};
     return comm->backend->meets ? LAR_OK : lar_heartbeat_start(comm, error);
@@ -159,12 +156,16 @@ lar_status lar_comm_open(const lar_comm_options *options, lar_comm **out, lar_er
     comm->process = getpid();
     comm->options = *options;
     comm->verdict = &comm->own_verdict;
+    /* Until what a start has made is gone as well: who is told to end before leaves it behind. */
+    const bool waits = !backend->meets && options->count > 1;
+    __atomic_fetch_add(&opening, waits, __ATOMIC_SEQ_CST);
     status = open_parts(comm, error);
     if (status && options->team) lar_comm_team_give_up(options->team, options->self);
     if (status)
         lar_comm_close(comm);
     else
         *out = comm;
+    __atomic_fetch_sub(&opening, waits, __ATOMIC_SEQ_CST);
     return status;
 }
 

@@ -41,7 +41,8 @@ static lar_status lost(int32_t p, lar_error *error) {
 
 /* How long a wait lasts before it looks whether all are still there [s]. */
 static const double LOOK = 0.05;
-static const double LATE = 1; /* for guests after a refusal [s] */
+static const double LATE = 1;      /* for guests after a refusal [s] */
+static const double LEAVING = 0.5; /* for those who have met, after one [s] */
 
 lar_status lar_rendezvous_check(const lar_comm *comm, lar_error *error) {
     if (lar_comm_check_interrupt(error)) return LAR_ERROR_PEER;
@@ -189,6 +190,17 @@ static void refuse_all(lar_comm *comm, const lar_error *why) {
     for (int32_t p = 1; p < comm->options.count; p++)
         if (comm->links[p] >= 0)
             lar_socket_send(comm->links[p], &n, sizeof n, lar_comm_now() + 0.2);
+}
+
+/* UCX 1.13 ends a process (wireup_ep.c) that connects to one that is gone: none is, as long as the
+ * others have not heard that it is over. */
+static void see_all_out(lar_comm *comm) {
+    double until = lar_comm_now() + LEAVING;
+    note n;
+    for (int32_t p = 1; p < comm->options.count; p++)
+        while (comm->links[p] >= 0 &&
+               lar_socket_receive(comm->links[p], &n, sizeof n, until) == LAR_SOCKET_DONE) {
+        }
 }
 
 /* Who comes a moment later would call in vain until its own limit. */
@@ -340,6 +352,7 @@ static lar_status gather_ready(lar_comm *comm, const lar_error *own, lar_error *
     if (!why.status) tell_all(comm, false, deadline, NULL);
     if (why.status) {
         refuse_all(comm, &why);
+        see_all_out(comm);
         if (error) *error = why;
     }
     return why.status;
