@@ -13,15 +13,13 @@ void lar_body_contact_restart(lar_body_contact *contact) {
     contact->travel = contact->horizon = 0;
     contact->fresh = true;
     if (contact->friction) contact->friction->known = false;
+    /* Along one axis, by both. */
     for (int32_t g = 0; g < contact->list.group_count; g++) {
-        /* Along one axis, by both. */
-        double due = 0.5 * (double)contact->list.group[g].gap;
-        contact->due[g] = fmax(due, 0);
+        contact->due[g] = fmax(0.5 * (double)contact->list.group[g].gap, 0);
         contact->last[g] = 0;
     }
-    for (int32_t i = 0; i < contact->list.face_count; i++) {
-        contact->away[i] = 0;
-    }
+    for (int32_t i = 0; i < contact->list.face_count; i++)
+        contact->away[i] = fmax(0.5 * (double)contact->list.gap[i], 0);
 }
 
 /* The group of node n, among those from *g on, that has faces of a body; -1: there is none. They

@@ -1,10 +1,13 @@
 /* Which nodes may come to touch which faces soon: the search over boxes (T 3.8.1).
  *
- *     tree of patches of faces           a box around all faces below it, made once from the
- *              []                        places at rest, refitted at every search
- *         []        []
- *       []  []    []  []       every node goes down the branches whose boxes, grown by the reach
- *       ff  ff    ff  ff       of the faces and a skin, hold it: first patches, then single faces
+ *     tree of forks of up to four        a box around all faces below each branch, made once from
+ *              []                        the places at rest, refitted at every search
+ *        []  [] []  []
+ *      ffff ..                   every node goes down the branches whose boxes, grown by the reach
+ *                                of the faces and a skin, hold it: forks, at last single faces
+ *
+ * Four boxes are looked at together, in single precision: rounding to the nearest keeps the order
+ * of numbers, so what a box holds is held by the rounded one.
  *
  * The result is a list of groups: a node, and the faces of ONE body that it may meet, ascending.
  * It misses nothing as long as no contact node has moved by more than half the skin along any axis
@@ -23,11 +26,17 @@
 
 #include "contact/contact_surface.h"
 
-/* A patch: faces first .. first + count - 1 of lar_contact_tree.order; its left half follows it,
- * its right half is `right`, 0 for one that is not divided. */
-typedef struct lar_patch {
-    int32_t first, count, right;
-} lar_patch;
+/* Up to four branches: forks, all of them with higher numbers, or faces, ~i for the face order[i]
+ * of the tree. Those that are not there repeat the first one and have boxes that hold nothing. */
+enum { LAR_FORK = 4 };
+typedef struct lar_fork {
+    int32_t branch[LAR_FORK];
+} lar_fork;
+
+typedef float lar_fours __attribute__((vector_size(4 * LAR_FORK)));
+typedef struct lar_fork_box {
+    lar_fours lower[3], upper[3]; /* of each branch */
+} lar_fork_box;
 
 typedef struct lar_box {
     double lower[3], upper[3];
@@ -36,22 +45,22 @@ typedef struct lar_box {
 /* What may touch what, and the tree over it: constant once time step and masses are fitted. */
 typedef struct lar_contact_tree {
     lar_contact_surface surface;
-    int32_t patch_count;
-    lar_patch *patch; /* [patch_count] */
-    int32_t *order;   /* [face_count] faces, those of a patch together */
-    int32_t *place;   /* [face_count] where a face stands in `order` */
+    int32_t fork_count;
+    lar_fork *fork; /* [fork_count] the first one has everything */
+    int32_t *order; /* [face_count] faces, those of a fork together */
+    int32_t *place; /* [face_count] where a face stands in `order` */
 } lar_contact_tree;
 
 typedef struct lar_contact_search {
     const lar_contact_tree *tree;
-    lar_box *patch_box;    /* [tree->patch_count] */
-    lar_box *face_box;     /* [face_count] in the tree's order */
-    int32_t *apart;        /* [face_count] the last node, plus 1, that never meets it */
-    lar_contact_list list; /* of the last search */
-    lar_contact_list next; /* of the one under way */
-    const double (*x)[3];  /* its places, not owned */
-    int32_t boxes;         /* of faces made anew so far */
-    int32_t at;            /* the node that comes next */
+    lar_fork_box *fork_box; /* [tree->fork_count] */
+    lar_box *face_box;      /* [face_count] in the tree's order */
+    int32_t *apart;         /* [face_count] the last node, plus 1, that never meets it */
+    lar_contact_list list;  /* of the last search */
+    lar_contact_list next;  /* of the one under way */
+    const double (*x)[3];   /* its places, not owned */
+    int32_t boxes;          /* of faces made anew so far */
+    int32_t at;             /* the node that comes next */
 } lar_contact_search;
 
 /* Without contacts between bodies surface.node_count is 0. Bodies that lie in each other at rest

@@ -102,6 +102,7 @@ typedef struct lar_contact_list {
     int32_t group_count, face_count;
     lar_contact_group *group; /* [group_count] by node, then by body */
     int32_t *face;            /* [face_count] contact faces */
+    float *gap;               /* [face_count] the same for each of them [m] */
     int32_t group_room, face_room;
     double skin; /* [m] */
 } lar_contact_list;

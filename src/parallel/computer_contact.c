@@ -14,7 +14,7 @@ enum { SEARCH_STEPS = 200, MIN_STEPS = 16, PART_STEPS = 60 };
 /* The share of the way that a list is good for, after which the next search begins. */
 #define BEGIN_AT 0.75
 
-/* What is sent: the groups of the list and its faces follow. */
+/* What is sent: the groups of the list, its faces and their gaps follow. */
 typedef struct list_head {
     double skin, moved;
     int32_t group_count, face_count; /* -1: the list stays */
@@ -139,12 +139,14 @@ static lar_status send_list(lar_computer *computer, const lar_contact_list *list
         groups = (size_t)list->group_count * sizeof *list->group;
         faces = (size_t)list->face_count * sizeof *list->face;
     }
-    size_t bytes = sizeof head + groups + faces;
+    size_t gaps = faces / sizeof *list->face * sizeof *list->gap;
+    size_t bytes = sizeof head + groups + faces + gaps;
     unsigned char *payload = lar_calloc_aligned(bytes, 1);
     if (!payload) return lar_fail_memory(error, bytes, "pairs in contact");
     memcpy(payload, &head, sizeof head);
     if (groups) memcpy(payload + sizeof head, list->group, groups);
     if (faces) memcpy(payload + sizeof head + groups, list->face, faces);
+    if (gaps) memcpy(payload + sizeof head + groups + faces, list->gap, gaps);
     const lar_order order = {LAR_ORDER_CONTACT, 0};
     lar_status status = lar_control_order(computer->control, &order, payload, bytes, error);
     for (int32_t p = 1; p < computer->division.grid.count && !status; p++) {
@@ -191,11 +193,12 @@ lar_status lar_contact_execute(lar_computer *computer, const void *payload, size
         list.group_count = head.group_count;
         list.face = (int32_t *)(group + head.group_count);
         list.face_count = head.face_count;
+        list.gap = (float *)(list.face + head.face_count);
         const lar_contact_list *room = &computer->contact.search->list; /* of every thread, too */
         fits = head.face_count >= 0 && head.group_count <= room->group_room &&
                head.face_count <= room->face_room &&
                bytes == sizeof head + (size_t)head.group_count * sizeof *list.group +
-                            (size_t)head.face_count * sizeof *list.face &&
+                            (size_t)head.face_count * (sizeof *list.face + sizeof *list.gap) &&
                list_fits(map->surface, &list);
     }
     if (!fits)

@@ -186,6 +186,8 @@ static void take_groups(lar_worker *worker, const lar_contact_list *list) {
         own->group[own->group_count++] =
             (lar_contact_group){group->node, own->face_count, group->count, group->gap};
         memcpy(own->face + own->face_count, face, (size_t)group->count * sizeof *face);
+        memcpy(own->gap + own->face_count, list->gap + group->first,
+               (size_t)group->count * sizeof *own->gap);
         own->face_count += group->count;
     }
     lar_body_contact_restart(contact);
@@ -232,9 +234,10 @@ static lar_status create_contact(const lar_body_contact *whole, int32_t thread, 
                                   .offset = lar_calloc(2 * groups, sizeof *contact->offset)};
     contact->list.group = lar_calloc(groups, sizeof *contact->list.group);
     contact->list.face = lar_calloc(pairs, sizeof *contact->list.face);
+    contact->list.gap = lar_calloc(pairs, sizeof *contact->list.gap);
     if (!adds_node || !adds_corner || !keeps || !contact->due || !contact->last || !contact->near ||
         !contact->away || !contact->part || !contact->offset || !contact->list.group ||
-        !contact->list.face)
+        !contact->list.face || !contact->list.gap)
         return lar_fail_memory(error, groups * sizeof *contact->part + 4 * pairs,
                                "contact of bodies");
     lar_status status = lar_body_friction_create(surface, contact, error);
@@ -317,6 +320,7 @@ void lar_contact_exchange_destroy(lar_processor *p) {
         free(contact->keeps);
         free(contact->list.group);
         free(contact->list.face);
+        free(contact->list.gap);
         contact->adds_node = contact->adds_corner = contact->keeps = NULL;
         contact->list = (lar_contact_list){0};
         if (!exchange->publish) continue;

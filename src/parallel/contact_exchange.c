@@ -30,10 +30,11 @@ static void write_place(const lar_state *state, const double rest[3], int32_t lo
     to[6] = state->level[local];
 }
 
-static double fastest_of(const double place[LAR_PLACE_VALUES], double max) {
-    double x = fabs(place[3]), y = fabs(place[4]), z = fabs(place[5]);
+static inline double fastest_of(const double place[LAR_PLACE_VALUES], double max) {
+    const double x = fabs(place[3]), y = fabs(place[4]), z = fabs(place[5]);
     /* Seldom; numbers that are none come here as well. */
-    if (!(x <= max && y <= max && z <= max)) max = lar_larger(lar_larger(lar_larger(max, x), y), z);
+    if (__builtin_expect(!((x <= max) & (y <= max) & (z <= max)), 0))
+        max = lar_larger(lar_larger(lar_larger(max, x), y), z);
     return max;
 }
 

@@ -201,7 +201,7 @@ static void without_contact_there_is_nothing(void **unused) {
     lar_model *model = brick_model(&one_brick);
     create(model);
     assert_int_equal(tree.surface.node_count, 0);
-    assert_null(tree.patch);
+    assert_null(tree.fork);
     lar_contact_search_clear(&search);
     lar_contact_tree_clear(&tree);
     lar_model_destroy(model);

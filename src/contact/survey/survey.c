@@ -82,13 +82,13 @@ static void survey_group(lar_body_contact *contact, const lar_state *state, int3
     lar_face_point of_first;
     double corner_of_first[4][3];
     lar_contact_place(contact, state, group->node, s->x, NULL);
-    double distance_of_first = 0;
+    double distance_of_first = 0, soon = contact->travel + contact->list.skin / 16;
     if (!s->flush || !lar_flush_hides(contact->surface, group->node, face[first]))
         distance_of_first =
             survey_face(contact, state, group->node, face[first], s, corner_of_first, &of_first);
     for (int32_t i = 0; i < group->count; i++) {
         if (s->flush && lar_flush_hides(contact->surface, group->node, face[i])) continue;
-        if (i != first && contact->travel < away[i]) {
+        if (i != first && soon < away[i]) {
             if (away[i] < s->next) s->next = away[i];
             continue;
         }
