@@ -150,6 +150,9 @@ bool lar_tool_name_problem(const char *name, char problem[LAR_PROBLEM_SIZE]) {
     return true;
 }
 
+static const double SIZE_MAX_M = 1e6;
+static const double PARTING = 0.0559; /* 3.2 degrees: more are no radians taken for them */
+
 const char *lar_tool_size_problem(const lar_tool *tool) {
     bool long_one = tool->shape == LAR_TOOL_CAPSULE || tool->shape == LAR_TOOL_GRASPER;
     if (tool->shape != LAR_TOOL_SPHERE && !long_one)
@@ -163,6 +166,11 @@ const char *lar_tool_size_problem(const lar_tool *tool) {
         return tool->shape == LAR_TOOL_GRASPER
                    ? "the spread must be more than zero and less than 180 degrees"
                    : "only a grasper has a spread";
+    if (tool->shape == LAR_TOOL_GRASPER && 0.5 * tool->length * tool->spread < tool->radius &&
+        tool->spread < PARTING)
+        return "its jaws do not part at that spread (radians here)";
+    if (tool->radius > SIZE_MAX_M || tool->length > SIZE_MAX_M)
+        return "its radius and length must be below 1e6 m";
     for (int i = 0; i < 3; i++)
         if (!(fabs(tool->rest.position[i]) <= LAR_POSE_FARTHEST))
             return "its place must be finite and within 1e9 m";

@@ -85,7 +85,7 @@ lar_status lar_simulation_set_parameter_at(lar_simulation *simulation, int32_t m
             return lar_fail(error, LAR_ERROR_ARGUMENT,
                             "%g for %s asks for steps %.3g times as short as the model's "
                             "materials, with the stiffness that is set; they are divided for that "
-                            "down to half: take a softer value, or one in the model",
+                            "down to half: take a value nearer to the model's, or one in the model",
                             value, lar_parameter_name(&made, index),
                             fmin(sqrt(entry.faster * factor), SHORTEST));
     }

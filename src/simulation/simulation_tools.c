@@ -61,8 +61,8 @@ static lar_status check_tool(const lar_simulation *simulation, int32_t tool, con
                              lar_error *error) {
     if (!simulation || !place)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
-                        "a tool's call needs a simulation and a place for the answer; neither may "
-                        "be NULL");
+                        "a tool's call needs a simulation, and a pose or a place for the answer; "
+                        "none may be NULL");
     if (tool < 0 || tool >= simulation->list.count)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "there is no tool %ld; the simulation has %ld, counted from 0", (long)tool,

@@ -8,6 +8,7 @@
 #include "mechanics/hex8_full.h"
 #include "mechanics/hex8_guard.h"
 #include "model/springs.h"
+#include "step/mass/compressible.h"
 
 double lar_element_frequency(const lar_model *model, lar_element_kind kind, lar_gid e,
                              const lar_material *material, lar_hex8 *hex8) {
@@ -147,7 +148,9 @@ static double wave_square(const lar_material *material) {
 }
 
 /* Where bodies touch, springs of a longer step would be softer than their tissue: it would go
- * through them. Elements are taken to be of one size. */
+ * through them. So are those of tools on compressible tissue, which besides has modes as fast as
+ * what is left for springs: under a tool at rest it would tremble for ever. Elements are taken to
+ * be of one size. */
 static double share_for_contact(const lar_model *model) {
     double share = 1, fastest = 0;
     bool bodies = false;
@@ -155,8 +158,9 @@ static double share_for_contact(const lar_model *model) {
         bodies = bodies || model->contact[i].kind != LAR_CONTACT_PLANE;
     for (int i = 0; i < model->material_count; i++)
         fastest = fmax(fastest, wave_square(&model->material[i]));
-    for (int i = 0; i < model->material_count && bodies; i++) {
+    for (int i = 0; i < model->material_count; i++) {
         const lar_material *material = &model->material[i];
+        if (!bodies && !(model->tool_count > 0 && lar_material_compressible(material))) continue;
         double slower = sqrt(fastest / wave_square(material));
         share = fmin(share, slower * lar_contact_longest(lar_material_confined(material)));
     }

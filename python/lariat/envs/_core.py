@@ -123,7 +123,10 @@ class Core:
             raise lariat.ArgumentError(f"options: {sorted(options)} are unknown; there are "
                                        "stiffness and goal")
         if goal is not None:
-            goal = np.asarray(goal, float)
+            try:
+                goal = np.asarray(goal, float)
+            except (TypeError, ValueError) as error:
+                raise lariat.ArgumentError(f"goal: expected 3 finite numbers: {error}") from None
             if goal.shape != (3,) or not np.isfinite(goal).all():
                 raise lariat.ArgumentError(f"goal: expected 3 finite numbers, got {goal}")
             size = self.high - self.low
