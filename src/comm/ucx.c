@@ -278,7 +278,7 @@ static void ucx_leave(lar_comm *comm) {
 }
 
 /* UCX 1.13 ends the process (assertions in ucp_request.c, wireup_ep.c) when endpoints are closed or
- * a worker destroyed while two are still connecting. After a start that did not come about all of it
+ * a worker destroyed while two are still connecting. After a start that was called off all of it
  * stays, untouched until the process ends: memory without names, nothing in the file system. */
 static void leave_as_it_is(ucx_state *state) {
     static ucx_state *stay; /* for who looks for lost memory */
@@ -288,7 +288,7 @@ static void leave_as_it_is(ucx_state *state) {
 static void ucx_close(lar_comm *comm) {
     ucx_state *state = comm->state;
     if (!state || comm->forked) return; /* UCX does not outlive a fork: its memory stays */
-    if (state->connecting) {
+    if (state->connecting && lar_comm_check_interrupt(NULL)) {
         leave_as_it_is(state);
         return;
     }
