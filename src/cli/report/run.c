@@ -252,22 +252,20 @@ static void print_contact(const run_report *report, FILE *out) {
 /* A tool's springs are in line with tissue, and where its volume may change they are no harder than
  * its elements (docs/theory.md, tools). */
 static void print_depth(const run_report *report, const lar_tool_info *info,
-                        const lar_tool_force *force, FILE *out) {
-    static const double MUCH = 0.1;       /* radii */
-    static const double MUCH_EDGE = 0.05; /* what is thin has small elements */
-    const double part = force->depth / info->radius,
-                 edge = force->depth / report->info.shortest_edge;
-    if (!(part > MUCH || edge > MUCH_EDGE)) return;
+                        const lar_tool_force *force, const lar_energy *energy, FILE *out) {
+    static const double MUCH = 0.1; /* radii, and of what is stored in the bodies */
+    const double *f = force->force, deep = force->depth / info->radius;
+    double springs = 0.5 * sqrt(f[0] * f[0] + f[1] * f[1] + f[2] * f[2]) * force->depth;
+    if (!(deep > MUCH || springs > MUCH * (energy->strain + energy->hourglass))) return;
     fprintf(out,
-            "%-17stissue is %.2g mm deep in it, %.2g of %s: the force is less than that of a hard "
-            "tool; half the step, --time-step %.2g, shows how much\n",
-            "", 1e3 * force->depth, part > MUCH ? part : edge,
-            part > MUCH ? "its radius" : "the shortest edge",
+            "%-17stissue is %.2g mm deep in it, %.2g of its radius: the force is less than that "
+            "of a hard tool; half the step, --time-step %.2g, shows how much\n",
+            "", 1e3 * force->depth, deep,
             two_digits_of(0.5 * lar_simulation_time_step(report->simulation)));
 }
 
 /* Nothing of tools that neither touch nor hold. */
-static void print_tools(const run_report *report, FILE *out) {
+static void print_tools(const run_report *report, const lar_energy *energy, FILE *out) {
     const lar_simulation *simulation = report->simulation;
     for (int32_t i = 0; i < lar_simulation_tool_count(simulation); i++) {
         lar_tool_info info;
@@ -280,7 +278,7 @@ static void print_tools(const run_report *report, FILE *out) {
         if (force.grasp_force > 0) fprintf(out, ", jaws grasp with %.3g N", force.grasp_force);
         if (force.held > 0) fprintf(out, ", holds %d points", (int)force.held);
         fputc('\n', out);
-        print_depth(report, &info, &force, out);
+        print_depth(report, &info, &force, energy, out);
     }
 }
 
@@ -351,7 +349,7 @@ static void print_body(const run_report *report, FILE *out) {
     print_hourglass(report, &energy, out);
     print_open_account(report, out);
     print_contact(report, out);
-    print_tools(report, out);
+    print_tools(report, &energy, out);
     print_parts(report->simulation, out);
     print_rest(report, out);
     fprintf(out, "%-17s%016" PRIx64 "\n", "state hash", lar_simulation_hash(report->simulation));
