@@ -19,6 +19,8 @@ typedef struct touching {
     int32_t fading;    /* the face that fades towards its edge, or rubs; -1: none */
     double fade[4][3]; /* forces of that on its corners, the node gets minus them [N] */
     bool rubs;         /* there is friction in `fade`, which is of the one face */
+    int32_t border;    /* the face through which the node's edge comes; -1: none */
+    double pay[4][3];  /* the same of that */
 } touching;
 
 /* ---- one node and one face ------------------------------------------------------------------ */
@@ -102,7 +104,7 @@ static void blend(const lar_body_contact *contact, int32_t g, const lar_face_poi
     double fade = fade_at(closest, s), all = 0;
     bool lone = alone(s, closest, fade);
     if (!(fade > 0) || (lone && !others_near(s, fade))) return;
-    touching blended = {.fading = -1};
+    touching blended = {.fading = -1, .border = -1};
     for (int32_t k = 0; k < s->count; k++) {
         int32_t f = contact->list.face[group->first + s->entry[k]];
         double sum[4] = {0}, far = 0;
@@ -213,10 +215,11 @@ static double within_force(double max, const double force[5][3]) {
     return largest <= max ? 1 : max / largest;
 }
 
-/* Towards sharp edges springs fade, and the slope of what they store is a force of its own. */
+/* Towards sharp edges springs fade, and the slope of what they store is a force of its own. Adds
+ * what they store to *energy [J]. */
 static double fade(const lar_body_contact *contact, const double x[3], const known_face *known,
                    const lar_face_point *closest, double full, const spring two[2], double rate,
-                   touching *t) {
+                   double *energy, touching *t) {
     const lar_contact_face *f = &contact->surface->face[known->face];
     double blunt[4], change[5], slope[5][3], stored;
     for (int a = 0; a < 4; a++) blunt[a] = contact->surface->node[f->corner[a]].blunt;
@@ -228,7 +231,9 @@ static double fade(const lar_body_contact *contact, const double x[3], const kno
             lar_contact_late_force(&contact->law, two[i].mass, full, two[i].depth, rate, &stored);
         all += force;
         more += 0.5 * force * two[i].depth - stored;
+        *energy += stored;
     }
+    *energy += part * more;
     lar_face_slope(x, (const double(*)[3])known->x, closest, change, slope);
     for (int a = 0; a < 5; a++)
         for (int i = 0; i < 3; i++) slope[a][i] *= -more;
@@ -237,6 +242,16 @@ static double fade(const lar_body_contact *contact, const double x[3], const kno
     for (int a = 0; a < 4; a++)
         for (int i = 0; i < 3; i++) t->fade[a][i] = within * slope[a][i];
     return part * all + (1 - part) * late;
+}
+
+/* The part of a spring that there is where the node's edge comes in through another face. */
+__attribute__((noinline, cold)) static double come_in(const lar_body_contact *contact, int32_t g,
+                                                      const lar_survey *s, double energy,
+                                                      touching *t) {
+    double part = lar_edge_part(s, energy, t->pay);
+    t->border = contact->list.face[contact->list.group[g].first + s->entry[s->border]];
+    for (int i = 0; i < 12; i++) t->fade[i / 3][i % 3] *= part;
+    return part;
 }
 
 /* The force on the node of group g by a face which it is behind, or before it by less than the
@@ -251,7 +266,7 @@ static bool push(lar_body_contact *contact, const lar_state *state, int32_t g, i
     known_face known = {.face = face};
     lar_contact_place(contact, state, node, x, v);
     lar_contact_corners(contact, state, face, known.x, known.v);
-    *t = (touching){.count = 1, .face = {face}, .fading = -1};
+    *t = (touching){.count = 1, .face = {face}, .fading = -1, .border = -1};
     memcpy(t->weight[0], closest->weight, sizeof closest->weight);
     bool before = !(closest->height < 0), own = lar_same_body(contact, node, face);
     if ((before || !own) && lar_contact_active(&surface->node[node], f))
@@ -269,12 +284,17 @@ static bool push(lar_body_contact *contact, const lar_state *state, int32_t g, i
     double moved = moved_mass(&surface->node[node], &point);
     spring two[2];
     springs_of(contact, node, face, moved, depth, offset, two);
-    double force = 0;
+    double force = 0, energy = 0;
     if (f->fades && !own && !s->flush)
-        force = fade(contact, x, &known, closest, full_of(contact, node, face), two, rate, t);
+        force =
+            fade(contact, x, &known, closest, full_of(contact, node, face), two, rate, &energy, t);
     else
-        for (int i = 0; i < 2; i++)
-            force += lar_contact_force(&contact->law, two[i].mass, two[i].depth, rate);
+        for (int i = 0; i < 2; i++) {
+            double one = lar_contact_force(&contact->law, two[i].mass, two[i].depth, rate);
+            force += one;
+            energy += 0.5 * one * two[i].depth;
+        }
+    if (s->border >= 0) force *= come_in(contact, g, s, together * energy, t);
     t->depth = fmax(depth, 0);
     for (int i = 0; i < 3; i++) {
         t->force[i] = together * force * way[i];
@@ -377,13 +397,26 @@ static void add_to_face(lar_body_contact *contact, const lar_condition_context *
                  context->scale);
 }
 
+static const double MAX = 0x1p58; /* of a force in force units */
+
+/* What the border pays, in whole units. False: beyond all reason. */
+__attribute__((noinline, cold)) static bool round_pay(const touching *t, double scale,
+                                                      int64_t pay[4][3], int64_t sum[3]) {
+    for (int i = 0; i < 12; i++) {
+        double along = t->pay[i / 3][i % 3] * scale;
+        if (!(fabs(along) < MAX)) return false;
+        pay[i / 3][i % 3] = -llrint(along);
+        sum[i % 3] -= pay[i / 3][i % 3];
+    }
+    return true;
+}
+
 /* Force sums are internal minus external forces. Who adds only some of the parts rounds the same
  * numbers as who adds the others. */
 static void add_forces(lar_body_contact *contact, const lar_condition_context *context,
                        lar_state *state, int32_t node, const touching *t) {
-    static const double MAX = 0x1p58; /* of a force in force units */
     lar_body_contact_part *part = &contact->part[contact->part_count];
-    int64_t corner[4 * LAR_CONTACT_FACES][3], slope[4][3] = {{0}}, sum[3] = {0};
+    int64_t corner[4 * LAR_CONTACT_FACES][3], slope[4][3] = {{0}}, pay[4][3], sum[3] = {0};
     for (int i = 0; i < 3; i++) {
         double force = t->force[i] * context->scale;
         /* Beyond all reason: the speeds that make such a force stop the run. */
@@ -400,11 +433,13 @@ static void add_forces(lar_body_contact *contact, const lar_condition_context *c
             sum[i] -= slope[a][i];
         }
     }
+    if (t->border >= 0 && !round_pay(t, context->scale, pay, sum)) return;
     part->count = 0;
     add_to_node(contact, context, state, node, sum, part);
     for (int32_t f = 0; f < t->count; f++)
         add_to_face(contact, context, state, t->face[f], &corner[4 * f], part);
     if (t->fading >= 0) add_to_face(contact, context, state, t->fading, slope, part);
+    if (t->border >= 0) add_to_face(contact, context, state, t->border, pay, part);
     if (part->count) contact->part_count++;
 }
 

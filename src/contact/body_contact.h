@@ -18,7 +18,8 @@
  * their points, which does not jump. docs/theory.md, contact.
  *
  * Sharp edges (contact_edges.c): towards them springs fade, with a force
- * along the face; and points of them are pushed by faces of other bodies as nodes are.
+ * along the face; and points of them are pushed by faces of other bodies as nodes are, but not by
+ * those that they run through.
  *
  * Offsets. A node of a body may come to lie below that body's own faces without having come through
  * one of them: through its neighbours, which do not push it, or because the body lies in itself at
@@ -88,7 +89,7 @@ typedef struct lar_contact_view {
 /* Faces of a body that push a node together, at most, and whom they push. */
 enum {
     LAR_CONTACT_FACES = 4,
-    LAR_CONTACT_PARTS = LAR_CONTACT_PARENTS + 4 * (LAR_CONTACT_FACES + 1)
+    LAR_CONTACT_PARTS = LAR_CONTACT_PARENTS + 4 * (LAR_CONTACT_FACES + 2)
 };
 
 /* What this thread adds in the step under way: forces on its local nodes. */
@@ -238,10 +239,13 @@ typedef struct lar_survey {
     double corner[LAR_GROUP_FACES_MAX][4][3];  /* [m] */
     lar_face_point point[LAR_GROUP_FACES_MAX]; /* where they are closest, of those near `min` */
     double min;                                /* of those within reach; INFINITY: none is */
-    double gap;  /* by which those looked at are out of reach, at most 0 when one is not [m];
-                    -INFINITY: the node is behind some that it does not see */
-    bool edge;   /* the node is on a sharp edge, and may not see all faces that it is behind */
-    double next; /* travel at which the first of the others may matter [m] */
+    double gap;     /* by which those looked at are out of reach, at most 0 when one is not [m];
+                       -INFINITY: the node is behind some that it does not see */
+    bool edge;      /* the node is on a sharp edge, and may not see all faces that it is behind */
+    double across;  /* all faces are looked at that are nearer; 0: as `min` says [m] */
+    int32_t border; /* the face through which the node's edge comes, of those above; -1: none */
+    double inset;   /* how far the node is behind that [m] */
+    double next;    /* travel at which the first of the others may matter [m] */
 } lar_survey;
 
 /* The face that counts of group g, and where; -1: none is within reach. Sets when it is due. */
@@ -278,9 +282,24 @@ bool lar_offset_pushes(lar_body_contact *contact, const lar_state *state, int32_
 /* Whether a face that a node or point on a sharp edge is behind looks away from its body: pushed
  * out there the node would be pulled from its own body, for the surface of that goes on beyond the
  * face, with both bodies on one side of it. The face is only nearer than the one that is in the
- * way, as where a block slides over the end of what it lies on. */
+ * way, as where a block slides over the end of what it lies on.
+ * *through, if not NULL: how much deeper behind the face the edge goes on to the next node, where
+ * it goes through the face [m]; 0 where the face lies along it, with the node's body before it;
+ * otherwise -1. */
 bool lar_looks_away(const lar_body_contact *contact, const lar_state *state, int32_t node,
-                    const double corner[4][3]);
+                    const double corner[4][3], double *through);
+
+/* The edge of the node of group g may go into the other body through one face, the border, and lie
+ * on another one, as that of a slab under a block that slides along it. Then only the other one is
+ * in its way: of those that it goes through none is seen. The border takes part in what the other
+ * one does, until the node is `across` behind it. */
+void lar_edge_enters(const lar_body_contact *contact, const lar_state *state, int32_t g,
+                     lar_survey *s);
+
+/* The part of a spring that there is so far behind the border, of one that stores `energy`: none on
+ * it, or it would come from nowhere. on[]: the forces on the border's corners by which it is paid;
+ * the node gets minus their sum [N]. */
+double lar_edge_part(const lar_survey *s, double energy, double on[4][3]);
 
 /* The node of group g touches no face of that other body, `gap` out of their reach [m] (INFINITY:
  * it is before one): from now on it is pushed like any other. Who is behind faces that look away

@@ -82,11 +82,23 @@ static void add_inward(const lar_contact_surface *s, int32_t inward[3], const si
     if (k < 3) inward[k] = next;
 }
 
+/* One of the nodes along the edge, for a node or point on both sides of which that goes on. (In a
+ * corner all nodes that are along edges lie in the body.) */
+static void add_along(lar_contact_surface *s, int32_t at, int32_t next) {
+    lar_contact_node *node = &s->node[at];
+    int k = 0;
+    while (k < 3 && node->inward[k] >= 0) k++;
+    if (k == 3 || node->along < 3) return;
+    node->along = k;
+    node->inward[k] = next;
+}
+
 /* Sharp edges to the front; returns how many. */
 static size_t find_edges(lar_contact_surface *s, side *sides, size_t count) {
     size_t edges = 0;
     for (int32_t n = 0; n < s->node_count; n++) {
         s->node[n].blunt = 1;
+        s->node[n].along = 3;
         memset(s->node[n].inward, -1, sizeof s->node[n].inward);
     }
     for (size_t i = 0; i + 1 < count; i++) {
@@ -103,6 +115,8 @@ static size_t find_edges(lar_contact_surface *s, side *sides, size_t count) {
         sides[edges] = sides[i];
         sides[edges++].other = sides[i + 1].face;
     }
+    for (size_t i = 0; i < 2 * edges; i++)
+        add_along(s, sides[i / 2].node[i % 2], sides[i / 2].node[1 - i % 2]);
     for (int32_t f = 0; f < s->face_count; f++)
         for (int a = 0; a < 4; a++)
             s->face[f].fades = s->face[f].fades || s->node[s->face[f].corner[a]].blunt < 1;
@@ -117,6 +131,7 @@ static void add_point(lar_contact_surface *s, const lar_contact_point *point) {
     int32_t at = s->point_count++;
     s->point[at - s->node_count] = *point;
     s->node[at] = s->node[point->node[0]];
+    s->node[at].along = 3;
     for (int i = 0; i < 3; i++) s->rest[at][i] = 0;
     for (int k = 0; k < point->count; k++) {
         s->node[at].passes &= s->node[point->node[k]].passes;
@@ -133,6 +148,7 @@ static void add_edge(lar_contact_surface *s, const side *edge) {
         memset(inward, -1, sizeof s->node->inward);
         add_inward(s, inward, edge, edge->face, 0);
         add_inward(s, inward, edge, edge->other, 0);
+        add_along(s, s->point_count - 1, edge->node[1]);
     }
 }
 

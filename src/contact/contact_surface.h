@@ -54,8 +54,9 @@ typedef struct lar_contact_node {
     double area;     /* of the surface around it at rest that looks one way [m^2] */
     unsigned held;   /* axes that supports of the scene hold it along */
     double blunt;    /* 1, or less where it is on a sharp edge, down to 0: contact_edges.c */
+    int32_t along;   /* which of these is along an edge that goes on beyond the node; 3: none */
     int32_t inward[3]; /* on a sharp edge: contact nodes beside it that lie in the body, as seen
-                          from it, or from a point's first node; -1: no more */
+                          from it, or from a point's first node, and that one; -1: no more */
 } lar_contact_node;
 
 /* A point of a sharp edge, or of a face among such edges, which meets faces of other bodies as

@@ -236,11 +236,80 @@ static void an_end_is_no_wall(void **unused) {
         assert_below(ends[i].seam ? 0.95 : 1, go_over(&ends[i]));
 }
 
+/* A soft block lies half over the side of a long slab that is fixed, its middle on the slab's edge,
+ * and slides along that: a prism along x does not push along x. */
+typedef struct side {
+    double cell[3]; /* of the slab [m] */
+    double overlap; /* of its side, beyond the block's middle [m] */
+    double speed;   /* [m/s] */
+} side;
+
+/* Stretches the nodes from `first` on, and moves them. */
+static void stretch(lar_model *model, int32_t first, const double by[3], const double to[3]) {
+    for (int32_t n = first; n < model->mesh.node_count; n++)
+        for (int i = 0; i < 3; i++)
+            model->mesh.position[n][i] = to[i] + by[i] * model->mesh.position[n][i];
+}
+
+/* The part of its speed that it has left when it has gone 20 mm. */
+static double go_along(const side *e) {
+    static const double way = 0.02, cell[3] = {0.04 / 3, 0.04 / 3, 0.008};
+    const double width = 0.04 + e->overlap, height = 0.02;
+    const brick slab = {{(int)lround(0.2 / e->cell[0]), (int)lround(width / e->cell[1]),
+                         (int)lround(height / e->cell[2])},
+                        1,
+                        0,
+                        LAR_LAW_neo_hookean,
+                        2.07e4,
+                        2e5,
+                        1000};
+    const brick block = {{3, 3, 2}, 1, 0, LAR_LAW_neo_hookean, 2.07e4, 2e5, 1000};
+    lar_model *model = empty_model(&slab);
+    add_brick(model, &slab, (double[]){0, 0, 0});
+    stretch(model, 0, e->cell, (double[]){-0.08, -0.04, 0});
+    for (int k = 0; k <= slab.cells[2]; k++)
+        fix_nodes(model, brick_side(&slab, 2, k), LAR_AXIS_ALL);
+    int32_t split = model->mesh.element_count;
+    int32_t first = add_brick(model, &block, (double[]){0, 0, 0});
+    stretch(model, first, cell, (double[]){-0.05, -0.02, height});
+    touch_between(model, split);
+    throw_nodes(model, first, model->mesh.node_count, (double[]){e->speed, 0, 0});
+    model->gravity[2] = -9.81;
+    lar_simulation *s = start(model);
+    double velocity[3], fall;
+    while (lar_simulation_time(s) < way / e->speed) {
+        lar_energy energy;
+        advance(s, 10);
+        lar_simulation_energy(s, &energy);
+        assert_true(energy.contact >= 0);
+    }
+    mean_motion(s, first, velocity, &fall);
+    print_message("along a side, %g mm of it beyond the middle, elements of %g mm, %g m/s: %.3f of "
+                  "the speed\n",
+                  1e3 * e->overlap, 1e3 * e->cell[0], e->speed, velocity[0] / e->speed);
+    finish(s, model);
+    return velocity[0] / e->speed;
+}
+
+/* What of the slab's edge came into the block through its front was pushed out there. */
+static void a_side_is_no_wall(void **unused) {
+    (void)unused;
+    static const side sides[] = {{{0.025, 0.008, 0.01}, 0, 0.05},
+                                 {{0.025, 0.008, 0.01}, 0, 0.2},
+                                 {{0.0125, 0.008, 0.01}, 0.008, 0.05}};
+    for (size_t i = 0; i < sizeof sides / sizeof sides[0]; i++) {
+        double left = go_along(&sides[i]);
+        assert_below(0.95, left);
+        assert_below(left, 1.1);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_slide_over_what_is_fixed_costs_no_speed),
         cmocka_unit_test(a_slide_over_what_gives_way_costs_next_to_none),
         cmocka_unit_test(an_end_is_no_wall),
+        cmocka_unit_test(a_side_is_no_wall),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

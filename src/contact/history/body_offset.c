@@ -101,23 +101,68 @@ void lar_offset_stay_flush(lar_body_contact *contact, int32_t g, int32_t face,
 /* ---- sharp edges ----------------------------------------------------------------------------- */
 
 bool lar_looks_away(const lar_body_contact *contact, const lar_state *state, int32_t node,
-                    const double corner[4][3]) {
+                    const double corner[4][3], double *through) {
     static const double AGAINST = 0.3, AWAY = -0.7; /* cosines */
-    const int32_t *inward = contact->surface->node[node].inward;
+    const lar_contact_surface *s = contact->surface;
+    const lar_contact_node *at = &s->node[node];
     int32_t parent[LAR_CONTACT_PARENTS];
-    double weight[LAR_CONTACT_PARENTS], from[3], to[3], way[3];
-    lar_contact_parents(contact->surface, node, parent, weight);
+    double weight[LAR_CONTACT_PARENTS], from[3], to[3], way[3], least = 1, most = -1, deeper = 0;
+    lar_contact_parents(s, node, parent, weight);
     lar_contact_place_of_node(contact, state, parent[0], from, NULL);
     lar_face_normal(corner, way);
-    bool away = false;
-    for (int k = 0; k < 3 && inward[k] >= 0; k++) {
-        lar_contact_place_of_node(contact, state, inward[k], to, NULL);
+    for (int k = 0; k < 3 && at->inward[k] >= 0; k++) {
+        lar_contact_place_of_node(contact, state, at->inward[k], to, NULL);
         lar_minus(to, from, to);
-        double cosine = lar_dot(way, to) / (lar_length(way) * lar_length(to));
-        if (cosine > AGAINST) return false;
-        away = away || cosine < AWAY;
+        double deep = lar_dot(way, to) / lar_length(way), cosine = deep / lar_length(to);
+        if (k == at->along) {
+            /* Of a point: whether the edge ends at its node behind the face. */
+            const bool ends = node >= s->node_count && s->node[parent[!(cosine > 0)]].along == 3;
+            if (fabs(cosine) > AGAINST) deeper = fabs(cosine) > -AWAY && !ends ? fabs(deep) : -1;
+            continue;
+        }
+        if (!through && cosine > AGAINST) return false;
+        least = fmin(least, cosine);
+        most = fmax(most, cosine);
     }
-    return away;
+    if (through) *through = least < -AGAINST && !(deeper > 0) ? -1 : deeper;
+    return least < AWAY && !(most > AGAINST);
+}
+
+void lar_edge_enters(const lar_body_contact *contact, const lar_state *state, int32_t g,
+                     lar_survey *s) {
+    double least = s->across - s->fade, longest = 0;
+    bool through[LAR_GROUP_FACES_MAX], lies = false;
+    s->inset = s->across;
+    for (int32_t k = 0; k < s->count; k++) {
+        double deep = -1;
+        if (s->distance[k] < s->across && s->point[k].height < 0)
+            lar_looks_away(contact, state, contact->list.group[g].node,
+                           (const double(*)[3])s->corner[k], &deep);
+        through[k] = deep > 0;
+        if (!through[k] && s->distance[k] < least) {
+            least = s->distance[k];
+            lies = deep == 0;
+        }
+        if (through[k] && s->distance[k] < s->inset) {
+            s->inset = s->distance[k];
+            s->border = k;
+            longest = deep;
+        }
+    }
+    if (!lies || !(least < longest)) s->border = -1;
+    if (s->border < 0) return;
+    s->min = least;
+    for (int32_t k = 0; k < s->count; k++)
+        if (through[k]) s->distance[k] = INFINITY;
+}
+
+double lar_edge_part(const lar_survey *s, double energy, double on[4][3]) {
+    const double *weight = s->point[s->border].weight, part = s->inset / s->across;
+    double at[3], pull = 6 * (1 - part) * energy / (s->across * s->across);
+    lar_face_mean((const double(*)[3])s->corner[s->border], weight, at);
+    for (int i = 0; i < 12; i++)
+        on[i / 3][i % 3] = weight[i / 3] * pull * (s->x[i % 3] - at[i % 3]);
+    return part * part * (3 - 2 * part);
 }
 
 /* ---- other bodies ---------------------------------------------------------------------------- */

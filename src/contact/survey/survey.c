@@ -26,7 +26,7 @@ static double survey_face(lar_body_contact *contact, const lar_state *state, int
     double tie = tie_of(contact, f);
     lar_contact_corners(contact, state, f, corner, NULL);
     double distance = lar_face_box_distance(s->x, (const double(*)[3])corner);
-    if (distance <= s->min + s->fade + tie && distance <= s->reach + tie) {
+    if (distance <= fmax(s->min + s->fade, s->across) + tie && distance <= s->reach + tie) {
         contact->info.tested++;
         lar_face_closest(s->x, (const double(*)[3])corner, tie, point);
         distance = point->distance;
@@ -35,7 +35,7 @@ static double survey_face(lar_body_contact *contact, const lar_state *state, int
             return INFINITY;
         }
         if (s->edge && point->height < -tie && distance <= s->reach &&
-            lar_looks_away(contact, state, node, (const double(*)[3])corner)) {
+            lar_looks_away(contact, state, node, (const double(*)[3])corner, NULL)) {
             s->gap = -INFINITY;
             return INFINITY;
         }
@@ -48,7 +48,7 @@ static double survey_face(lar_body_contact *contact, const lar_state *state, int
 /* How far nodes may move against each other until a face that is farther away than the closest one
  * may be that: both distances change. */
 static double farther_by(double distance, double tie, const lar_survey *s) {
-    return 0.5 * (distance - 8 * tie - s->fade - s->min);
+    return 0.5 * (distance - 8 * tie - fmax(s->fade + s->min, s->across));
 }
 
 /* The travel until which a face cannot be the closest one within reach: it is out of reach, or
@@ -58,6 +58,10 @@ static double away_until(double travel, double distance, double tie, const lar_s
     double reach = distance - tie - s->reach, min = farther_by(distance, tie, s);
     return travel + 0.999 * (reach > min ? reach : min) / LAR_APPROACH;
 }
+
+/* Where an edge comes in through a face, of the depth of the layer. Bodies that keep a distance are
+ * pushed before they get there. */
+static const double ACROSS = 0.5;
 
 /* The one that was closest the last time goes first: most others then need no more than a look. */
 static void survey_group(lar_body_contact *contact, const lar_state *state, int32_t g,
@@ -79,6 +83,10 @@ static void survey_group(lar_body_contact *contact, const lar_state *state, int3
         lar_same_body(contact, group->node, face[0]) ? contact->surface->node[group->node].held : 0;
     s->edge = !s->flush && !lar_same_body(contact, group->node, face[0]) &&
               contact->surface->node[group->node].inward[0] >= 0;
+    s->border = -1;
+    s->across = s->edge && contact->surface->node[group->node].along < 3 && !(s->above > 0)
+                    ? ACROSS * s->reach
+                    : 0;
     lar_face_point of_first;
     double corner_of_first[4][3];
     lar_contact_place(contact, state, group->node, s->x, NULL);
@@ -140,6 +148,7 @@ int32_t lar_survey_closest(lar_body_contact *contact, const lar_state *state, in
                           ? fmin(contact->travel + 0.999 * s->gap / LAR_APPROACH, s->next)
                           : 0;
     if (!(s->min < INFINITY)) return -1;
+    if (s->across > 0) lar_edge_enters(contact, state, g, s);
     int32_t chosen = choose_face(contact, g, s, point);
     if (chosen < 0) return -1;
     contact->last[g] = chosen;
