@@ -61,7 +61,7 @@ static double away_until(double travel, double distance, double tie, const lar_s
 
 /* Where an edge comes in through a face, of the depth of the layer. Bodies that keep a distance are
  * pushed before they get there. */
-static const double ACROSS = 0.5;
+static const double ACROSS = 0.25;
 
 /* The one that was closest the last time goes first: most others then need no more than a look. */
 static void survey_group(lar_body_contact *contact, const lar_state *state, int32_t g,
