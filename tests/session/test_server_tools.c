@@ -75,7 +75,7 @@ static void what_cannot_be_is_said(void **unused) {
         {"{\"do\":\"add_tool\",\"shape\":\"sphere\",\"radius\":10}", "too large for a body"},
         {"{\"do\":\"add_tool\",\"shape\":\"sphere\",\"radius\":2000}", "too large for a body"},
         {"{\"do\":\"add_tool\",\"shape\":\"sphere\",\"radius\":-1e300}", "more than zero"},
-        {"{\"do\":\"add_tool\",\"shape\":\"sphere\",\"radius\":1e300}", "within 1e9 m"},
+        {"{\"do\":\"add_tool\",\"shape\":\"sphere\",\"radius\":1e300}", "below 1e6 m"},
         {"{\"do\":\"add_tool\",\"shape\":\"capsule\",\"radius\":0.005,\"length\":1e6}",
          "too large for a body"},
         {"{\"do\":\"add_tool\",\"shape\":\"sphere\",\"radius\":1e-9}", "too thin"},
