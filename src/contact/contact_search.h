@@ -1,10 +1,10 @@
 /* Which nodes may come to touch which faces soon: the search over boxes (T 3.8.1).
  *
- *     tree of forks of up to four        a box around all faces below each branch, made once from
- *              []                        the places at rest, refitted at every search
- *        []  [] []  []
- *      ffff ..                   every node goes down the branches whose boxes, grown by the reach
- *                                of the faces and a skin, hold it: forks, at last single faces
+ *     tree of forks, four branches each  a box around all faces below a branch; made once from
+ *                   []                   the places at rest, refitted at every search
+ *         []    []      []    []
+ *        ffff  ffff    ffff  fff         every node goes down the branches whose boxes, grown by
+ *                                        the reach of the faces and a skin, hold it
  *
  * Four boxes are looked at together, in single precision: rounding to the nearest keeps the order
  * of numbers, so what a box holds is held by the rounded one.
