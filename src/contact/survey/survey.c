@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/vector.h"
 #include "contact/history/flush.h"
 
 static double tie_of(const lar_body_contact *contact, int32_t face) {
@@ -26,7 +27,7 @@ static double survey_face(lar_body_contact *contact, const lar_state *state, int
     double tie = tie_of(contact, f);
     lar_contact_corners(contact, state, f, corner, NULL);
     double distance = lar_face_box_distance(s->x, (const double(*)[3])corner);
-    if (distance <= fmax(s->min + s->fade, s->across) + tie && distance <= s->reach + tie) {
+    if (distance <= lar_greater(s->min + s->fade, s->across) + tie && distance <= s->reach + tie) {
         contact->info.tested++;
         lar_face_closest(s->x, (const double(*)[3])corner, tie, point);
         distance = point->distance;
@@ -48,7 +49,7 @@ static double survey_face(lar_body_contact *contact, const lar_state *state, int
 /* How far nodes may move against each other until a face that is farther away than the closest one
  * may be that: both distances change. */
 static double farther_by(double distance, double tie, const lar_survey *s) {
-    return 0.5 * (distance - 8 * tie - fmax(s->fade + s->min, s->across));
+    return 0.5 * (distance - 8 * tie - lar_greater(s->fade + s->min, s->across));
 }
 
 /* The travel until which a face cannot be the closest one within reach: it is out of reach, or
@@ -145,7 +146,7 @@ int32_t lar_survey_closest(lar_body_contact *contact, const lar_state *state, in
     }
     /* A little earlier, for rounding. */
     contact->due[g] = s->gap > 0 && !s->flush
-                          ? fmin(contact->travel + 0.999 * s->gap / LAR_APPROACH, s->next)
+                          ? lar_lesser(contact->travel + 0.999 * s->gap / LAR_APPROACH, s->next)
                           : 0;
     if (!(s->min < INFINITY)) return -1;
     if (s->across > 0) lar_edge_enters(contact, state, g, s);
@@ -179,7 +180,7 @@ static double outdone(const lar_body_contact *contact, const int32_t *face, cons
         if (!(before > until)) continue;
         double than = lar_face_outdone(s->x, (const double(*)[3])s->corner[k], edge,
                                        (const double(*)[3])s->corner[m]);
-        until = fmax(until, fmin(before, than));
+        until = lar_greater(until, lar_lesser(before, than));
     }
     return until;
 }
@@ -206,9 +207,9 @@ double lar_survey_clear(const lar_body_contact *contact, int32_t g, const lar_su
         double farther = farther_by(s->distance[k], tie_of(contact, f), s);
         if (farther >= clear) continue;
         double before = lar_face_before(s->x, (const double(*)[3])s->corner[k]);
-        farther = fmax(farther, before);
-        if (farther < clear && lasts) farther = fmax(farther, outdone(contact, face, s, k));
-        clear = fmin(clear, farther);
+        farther = lar_greater(farther, before);
+        if (farther < clear && lasts) farther = lar_greater(farther, outdone(contact, face, s, k));
+        clear = lar_lesser(clear, farther);
     }
     return clear;
 }
