@@ -185,8 +185,21 @@ typedef struct end {
     bool seam;            /* there is a second slab */
 } end;
 
-/* The part of its speed that it has left 18 mm farther on; contact never gives more than it took.
- */
+/* The part of its speed that a block has left after so much time as it takes for a way; contact
+ * never gives more than it took. */
+static double left_after(lar_simulation *s, int32_t first, double way, double speed) {
+    double velocity[3], fall;
+    while (lar_simulation_time(s) < way / speed) {
+        lar_energy energy;
+        advance(s, 10);
+        lar_simulation_energy(s, &energy);
+        assert_true(energy.contact >= 0);
+    }
+    mean_motion(s, first, velocity, &fall);
+    return velocity[0] / speed;
+}
+
+/* The part of its speed that it has left 18 mm farther on. */
 static double go_over(const end *e) {
     static const double before = 0.012, way = 0.03;
     const brick slab = {{5, 6, 2},  1.1 * e->edge,   0,   LAR_LAW_neo_hookean,
@@ -209,19 +222,12 @@ static double go_over(const end *e) {
     throw_nodes(model, first, model->mesh.node_count, (double[]){e->speed, 0, 0});
     model->gravity[2] = -9.81;
     lar_simulation *s = start(model);
-    double velocity[3], fall;
-    while (lar_simulation_time(s) < way / e->speed) {
-        lar_energy energy;
-        advance(s, 20);
-        lar_simulation_energy(s, &energy);
-        assert_true(energy.contact >= 0);
-    }
-    mean_motion(s, first, velocity, &fall);
+    double left = left_after(s, first, way, e->speed);
     print_message("%s, G %g Pa, elements of %g mm, %g m/s: %.3f of the speed\n",
                   e->seam ? "over a seam" : "off the end", e->modulus, 1e3 * e->edge, e->speed,
-                  velocity[0] / e->speed);
+                  left);
     finish(s, model);
-    return velocity[0] / e->speed;
+    return left;
 }
 
 /* Its front sinks there, for nothing bears it in the corner; what then lay in the block behind its
@@ -276,19 +282,12 @@ static double go_along(const side *e) {
     throw_nodes(model, first, model->mesh.node_count, (double[]){e->speed, 0, 0});
     model->gravity[2] = -9.81;
     lar_simulation *s = start(model);
-    double velocity[3], fall;
-    while (lar_simulation_time(s) < way / e->speed) {
-        lar_energy energy;
-        advance(s, 10);
-        lar_simulation_energy(s, &energy);
-        assert_true(energy.contact >= 0);
-    }
-    mean_motion(s, first, velocity, &fall);
+    double left = left_after(s, first, way, e->speed);
     print_message("along a side, %g mm of it beyond the middle, elements of %g mm, %g m/s: %.3f of "
                   "the speed\n",
-                  1e3 * e->overlap, 1e3 * e->cell[0], e->speed, velocity[0] / e->speed);
+                  1e3 * e->overlap, 1e3 * e->cell[0], e->speed, left);
     finish(s, model);
-    return velocity[0] / e->speed;
+    return left;
 }
 
 /* What of the slab's edge came into the block through its front was pushed out there. */
