@@ -150,10 +150,13 @@ bool lar_tool_name_problem(const char *name, char problem[LAR_PROBLEM_SIZE]) {
     return true;
 }
 
-static const double SIZE_MAX_M = 1e6;
-static const double PARTING = 0.0559; /* 3.2 degrees: more are no radians taken for them */
+bool lar_tool_jaws_part(const lar_tool *tool) {
+    static const double RADIANS = 3.2 * LAR_PI / 180; /* more degrees are no radians */
+    return tool->spread >= RADIANS || 0.5 * tool->length * tool->spread >= tool->radius;
+}
 
 const char *lar_tool_size_problem(const lar_tool *tool) {
+    static const double LARGEST = 1e6; /* [m] */
     bool long_one = tool->shape == LAR_TOOL_CAPSULE || tool->shape == LAR_TOOL_GRASPER;
     if (tool->shape != LAR_TOOL_SPHERE && !long_one)
         return "the shape must be a sphere, a capsule or a grasper";
@@ -166,10 +169,9 @@ const char *lar_tool_size_problem(const lar_tool *tool) {
         return tool->shape == LAR_TOOL_GRASPER
                    ? "the spread must be more than zero and less than 180 degrees"
                    : "only a grasper has a spread";
-    if (tool->shape == LAR_TOOL_GRASPER && 0.5 * tool->length * tool->spread < tool->radius &&
-        tool->spread < PARTING)
+    if (tool->shape == LAR_TOOL_GRASPER && !lar_tool_jaws_part(tool))
         return "its jaws do not part at that spread (radians here)";
-    if (tool->radius > SIZE_MAX_M || tool->length > SIZE_MAX_M)
+    if (tool->radius > LARGEST || tool->length > LARGEST)
         return "its radius and length must be below 1e6 m";
     for (int i = 0; i < 3; i++)
         if (!(fabs(tool->rest.position[i]) <= LAR_POSE_FARTHEST))

@@ -24,6 +24,8 @@ bool lar_contact_problem(const lar_model *model, const lar_contact *contact,
                          char problem[LAR_PROBLEM_SIZE]);
 bool lar_tool_name_problem(const char *name, char problem[LAR_PROBLEM_SIZE]);
 bool lar_tool_problem(const lar_model *model, const lar_tool *tool, char problem[LAR_PROBLEM_SIZE]);
+/* False: radians were written for degrees, or the other way round, and jaws are always closed. */
+bool lar_tool_jaws_part(const lar_tool *tool);
 /* Of its shape, size and pose alone; NULL: nothing. */
 const char *lar_tool_size_problem(const lar_tool *tool);
 

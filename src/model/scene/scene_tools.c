@@ -6,7 +6,7 @@
 #include "model/scene/scene.h"
 
 /* Open jaws of a grasper, where the scene does not say. */
-static const double SPREAD = 60, HALF_DEGREE = LAR_PI / 360;
+static const double SPREAD = 60;
 
 /* Which keys a shape takes, besides those of every tool. */
 typedef struct shape_keys {
@@ -221,14 +221,13 @@ static lar_status read_size(lar_scene *scene, const lar_yaml *entry, const shape
         status = lar_scene_need(scene, entry, shape->what, "length", "length: 0.02", &length);
     if (!status && length) status = lar_scene_positive(scene, length, LAR_IN_METRES, &tool->length);
     if (!status && spread) status = lar_scene_positive(scene, spread, LAR_IN_DEGREES, &degrees);
-    /* Radians written for degrees make jaws that are always closed: nothing fits between them. */
-    if (!status && spread && degrees < 3.2 && tool->length * degrees * HALF_DEGREE < tool->radius)
+    if (!status && shape->grasps) tool->spread = degrees * LAR_PI / 180;
+    if (!status && spread && !lar_tool_jaws_part(tool))
         status =
             lar_scene_fail(scene, spread, LAR_ERROR_MODEL,
                            "spread: these jaws do not part at that angle; if it is in radians, "
                            "write %.3g",
                            degrees * 180 / LAR_PI);
-    if (!status && shape->grasps) tool->spread = degrees * LAR_PI / 180;
     return status;
 }
 
