@@ -8,7 +8,7 @@ enum { HALF_ROW = LAR_BLOCK / 2 };
 
 /* What eight lanes of a kind of rows cost in a step, a row of eight being 1 (measured). */
 static const double rows_cost[LAR_ROWS_COUNT] = {
-    [LAR_ROWS_NONE] = 1.25, [LAR_ROWS_FOUR] = 1.05, [LAR_ROWS_EIGHT] = 1};
+    [LAR_ROWS_NONE] = 1.9, [LAR_ROWS_FOUR] = 1.08, [LAR_ROWS_EIGHT] = 1};
 
 double lar_layout_cost(const lar_layout *layout) {
     double cost = 0;
@@ -50,6 +50,7 @@ static void join_halves(lar_draft *draft, lar_lanes *first, lar_lanes *second) {
     lar_lanes *emptied = second ? second : first;
     for (int k = 0; k < HALF_ROW; k++) {
         lar_gid e = emptied->element[k];
+        if (e < 0) continue;
         draft->open[e] = true;
         emptied->element[k] = -1;
         if (second) lar_draft_put(draft, first, HALF_ROW + k, e);
@@ -166,16 +167,17 @@ static bool number_rest(lar_draft *draft) {
     return true;
 }
 
-/* Puts the owners' ranges one behind the other. Each is filled up to whole lanes, the last one with
- * at least one spare node. */
+/* Puts the owners' ranges one behind the other. Each is filled up to whole lanes, with at least one
+ * spare node: behind a line that ends a range may be a lane without an element (row_plan.c). */
 static bool join_ranges(lar_draft *draft) {
     lar_layout *layout = draft->layout;
     int32_t nodes = 0;
     layout->thread_count = draft->threads;
     for (int32_t t = 0; t < draft->threads; t++) {
         layout->first_node[t] = nodes;
+        if (draft->range[t].count == 0) continue;
         layout->node_count = nodes + draft->range[t].count;
-        nodes = lar_whole_lanes(layout->node_count);
+        nodes = lar_whole_lanes(layout->node_count + 1);
     }
     layout->node_padded = lar_whole_lanes(layout->node_count + 1);
     layout->axis_stride = lar_axis_stride((size_t)layout->node_padded);

@@ -8,11 +8,12 @@
  *
  * and the nodes of a row's four lines get consecutive numbers, beginning with an even one. A block
  * of such a row then reads and writes 36 nodes as a few whole vectors where loose elements touch
- * 64 nodes one by one (mechanics/hex8_block.h). Rows are looked for along all three directions of
- * every element (row_plan.h), starting along a Z curve (Morton 1966) so that neighbours in space
- * stay neighbours in memory; what is left over goes into loose blocks. Several ways of looking are
- * tried and the one whose blocks cost least is kept. Any hexahedral mesh has such rows; meshes
- * swept or voxelised from organs consist of little else.
+ * 64 nodes one by one (mechanics/hex8_block.h). The last lane may be without an element: a row of
+ * seven. Rows are looked for along all three directions of every element (row_plan.h), starting
+ * along a Z curve (Morton 1966) so that neighbours in space stay neighbours in memory; what is left
+ * over goes into loose blocks. Several ways of looking are tried and the one whose blocks cost
+ * least is kept. Any hexahedral mesh has such rows; meshes swept or voxelised from organs consist
+ * of little else.
  *
  * An element in a row is turned so that its xi runs along the row. The turn is decided from the
  * whole model, not from one domain, because the last bits of an element's forces depend on it.
@@ -52,8 +53,8 @@ typedef struct lar_layout {
     lar_gid *global;    /* [node_padded] node of the model, -1: spare */
     lar_lid *local;     /* [nodes of the model], -1: not in this layout */
     int32_t thread_count;
-    /* Nodes first_node[t] .. first_node[t + 1] - 1 are moved by thread t, all multiples of
-     * LAR_NODES_TOGETHER; node_padded from thread_count on. */
+    /* Nodes first_node[t] .. first_node[t + 1] - 1 are moved by thread t, the last one or more of
+     * them spare; all multiples of LAR_NODES_TOGETHER; node_padded from thread_count on. */
     lar_lid first_node[LAR_LAYOUT_THREADS + 1];
 } lar_layout;
 

@@ -59,7 +59,18 @@ static void begin_check(planner *plan) {
     plan->stamp_now++;
 }
 
-/* Longest part of the run from `from`, a multiple of four, whose lines can be consecutive: no node
+/* How many of a run's elements rows take: fours, and three more. The lane that then stays without
+ * an element reads the number behind each line, and adds nothing to it: that must be nobody's but
+ * the thread's own, for others may just be moving theirs. */
+static int held_by_rows(const planner *plan, const int32_t *run, corners corner, int length) {
+    bool alone = length % HALF_ROW == HALF_ROW - 1;
+    for (int line = 0; alone && line < 4; line++)
+        alone = lar_draft_owner(plan->draft, corner[0][lar_line_left[line]]) ==
+                lar_draft_thread(plan->draft, run[0]);
+    return alone ? length : length / HALF_ROW * HALF_ROW;
+}
+
+/* Longest part of the run from `from` that rows take and whose lines can be consecutive: no node
  * has a number yet, or they are numbered one after the other, by one owner. A run that closes on
  * itself or crosses itself must not give a node two numbers or an element two lanes. */
 static int feasible_length(planner *plan, int from, int length) {
@@ -75,12 +86,12 @@ static int feasible_length(planner *plan, int from, int length) {
             if (local[node] != (local[begin] < 0 ? -1 : local[begin] + k) ||
                 lar_draft_owner(plan->draft, node) != lar_draft_owner(plan->draft, begin) ||
                 plan->stamp[node] == plan->stamp_now)
-                return fits / HALF_ROW * HALF_ROW;
+                return held_by_rows(plan, plan->run + from, corner, fits);
             plan->stamp[node] = plan->stamp_now;
         }
         fits = k;
     }
-    return fits / HALF_ROW * HALF_ROW;
+    return held_by_rows(plan, plan->run + from, corner, fits);
 }
 
 /* The nodes that continue an edge of element e, from node to node, as long as they have no number
@@ -102,8 +113,8 @@ static int nodes_beyond(planner *plan, lar_gid e, lar_gid from, lar_gid to, lar_
 }
 
 /* Numbers a line of run[from..from+length) and what lies beyond its ends, but for the run's other
- * lines: around the core of a disc one line goes on in another. The row's own beginning gets an even
- * number. */
+ * lines: around the core of a disc one line goes on in another. The row's own beginning gets an
+ * even number. */
 static bool number_line(planner *plan, int from, int length, int line) {
     corners corner = (corners)plan->run_corner + from;
     const int32_t *run = plan->run + from;
@@ -133,7 +144,8 @@ static bool place_row(planner *plan, int from, int count) {
     lar_draft *draft = plan->draft;
     const int32_t *run = plan->run + from;
     lar_kind own = lar_draft_kind(draft, run, (corners)plan->run_corner + from, count);
-    lar_lanes *block = lar_draft_block(draft, own, count == ROW ? LAR_ROWS_EIGHT : LAR_ROWS_FOUR);
+    lar_lanes *block =
+        lar_draft_block(draft, own, count > HALF_ROW ? LAR_ROWS_EIGHT : LAR_ROWS_FOUR);
     if (!block) return false;
     for (int k = 0; k < count; k++) {
         lar_draft_put(draft, block, k, run[k]);
@@ -146,7 +158,7 @@ static bool place_row(planner *plan, int from, int count) {
 
 /* Cuts the traced run into rows and numbers their lines. */
 static bool place_run(planner *plan, int length) {
-    for (int from = 0; from + HALF_ROW <= length;) {
+    for (int from = 0; from + HALF_ROW - 1 <= length;) {
         int part = feasible_length(plan, from, length);
         if (part == 0) {
             from++;
@@ -157,7 +169,8 @@ static bool place_run(planner *plan, int length) {
                 !number_line(plan, from, part, line))
                 return false;
         for (int done = 0; done < part;) {
-            int count = part - done >= ROW ? ROW : HALF_ROW;
+            int left = part - done, most = left >= ROW - 1 ? ROW : HALF_ROW;
+            int count = left < most ? left : most;
             if (!place_row(plan, from + done, count)) return false;
             done += count;
         }
@@ -199,7 +212,7 @@ static void give_up(planner *plan, int length) {
 static double run_score(planner *plan, int length) {
     double held = 0;
     int shared = 0, lines = 0;
-    for (int from = 0; from + HALF_ROW <= length;) {
+    for (int from = 0; from + HALF_ROW - 1 <= length;) {
         int part = feasible_length(plan, from, length);
         for (int line = 0; part > 0 && line < 4; line++, lines++)
             shared += line_is_numbered(plan, (corners)plan->run_corner + from, line);

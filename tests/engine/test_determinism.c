@@ -9,7 +9,7 @@
  *
  * How elements are threaded into rows is a matter of speed and may change at any time, yet an
  * element in a row is turned, and its turn decides the last bits of its forces. The golden bodies
- * are therefore 3 x 3 x 3 elements: no row has four, nothing is turned (which is checked). Where
+ * are therefore 2 x 2 x 2 elements: no row has three, nothing is turned (which is checked). Where
  * rows do form, in longer bricks and in the demonstration organ, what is asked for is only that all
  * instruction sets agree. */
 #include "engine/engine_test.h"
@@ -17,22 +17,22 @@
 enum { GENERAL, BOXES, SHAPES };
 
 static const uint64_t golden[SHAPES][LAR_LAW_COUNT] = {
-    [GENERAL] = {[LAR_LAW_neo_hookean] = 0xdb821fb1a6eadafc,
-                 [LAR_LAW_coupled_neo_hookean] = 0xdc305067a2b3254d,
-                 [LAR_LAW_mooney_rivlin] = 0x15f44e0a4e33d1a0,
-                 [LAR_LAW_yeoh] = 0x8402a4d3efa350a1,
-                 [LAR_LAW_arruda_boyce] = 0xe825a023ed48fae5,
-                 [LAR_LAW_veronda_westmann] = 0x9e5cf896d1490f35,
-                 [LAR_LAW_holmes_mow] = 0xeea6d399a2783025,
-                 [LAR_LAW_ogden] = 0xe111be7d8aa249e5},
-    [BOXES] = {[LAR_LAW_neo_hookean] = 0xf11232da2d32fd7a,
-               [LAR_LAW_coupled_neo_hookean] = 0xadfa3d169a0a254a,
-               [LAR_LAW_mooney_rivlin] = 0xf72533778fe7cb83,
-               [LAR_LAW_yeoh] = 0xfc5e9ebb2abd38f7,
-               [LAR_LAW_arruda_boyce] = 0x15c0d895c2d200bf,
-               [LAR_LAW_veronda_westmann] = 0xd421d778ee7f4878,
-               [LAR_LAW_holmes_mow] = 0x21d3f8a4b226c551,
-               [LAR_LAW_ogden] = 0xd054367b2fb1ce5f},
+    [GENERAL] = {[LAR_LAW_neo_hookean] = 0xc44935768235c0a1,
+                 [LAR_LAW_coupled_neo_hookean] = 0xc779a3c71db8f4c3,
+                 [LAR_LAW_mooney_rivlin] = 0x02059b055efc0463,
+                 [LAR_LAW_yeoh] = 0xcc6a85697a65a356,
+                 [LAR_LAW_arruda_boyce] = 0xf5e5865d968e908c,
+                 [LAR_LAW_veronda_westmann] = 0x057a813394ce0a82,
+                 [LAR_LAW_holmes_mow] = 0xeaeb9dac86fd3005,
+                 [LAR_LAW_ogden] = 0x27483b650776d4ec},
+    [BOXES] = {[LAR_LAW_neo_hookean] = 0x920861e432d6a501,
+               [LAR_LAW_coupled_neo_hookean] = 0x1869882bfd8a6e24,
+               [LAR_LAW_mooney_rivlin] = 0x98460c2c92002b58,
+               [LAR_LAW_yeoh] = 0x10b1c3e6b688b146,
+               [LAR_LAW_arruda_boyce] = 0x815b8224c7f35164,
+               [LAR_LAW_veronda_westmann] = 0xef9c63b52233378c,
+               [LAR_LAW_holmes_mow] = 0xfabff7a16433f1ae,
+               [LAR_LAW_ogden] = 0x49d0a568bb0681c2},
 };
 
 static const lar_isa sets[] = {LAR_ISA_C, LAR_ISA_NEON, LAR_ISA_AVX2, LAR_ISA_AVX512};
@@ -57,7 +57,7 @@ static lar_model *busy_model(lar_law law, int shape, int x, int y, int z) {
 }
 
 static lar_model *golden_model(lar_law law, int shape) {
-    return busy_model(law, shape, 3, 3, 3);
+    return busy_model(law, shape, 2, 2, 2);
 }
 
 enum { STEPS = 500, FEW_STEPS = 120 };

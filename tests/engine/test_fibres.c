@@ -61,11 +61,11 @@ static lar_model *straight_tool_model(const brick *b) {
 
 /* ---- the same bits -------------------------------------------------------------------------- */
 
-static same_bits body = {fibrous_tool_model, PATH, {0x925d893a15a44ca8, 0x022038c38c18afb0}};
+static same_bits body = {fibrous_tool_model, PATH, {0x9f894947fc5079de, 0x001b5c25239ab59d}};
 
 static same_bits straight = {straight_tool_model,
                              LAR_TEST_BUILD "/straight.checkpoint",
-                             {0x90e9bde9c132f069, 0xcfe58de4436e0444}};
+                             {0x723dd391783795f9, 0xf5e7d4e3fd87337f}};
 
 /* Parameters of each law beside tissue of some kilopascal. */
 static const double LAWS[LAR_FIBRE_LAWS][LAR_FIBRE_PARAMETERS] = {

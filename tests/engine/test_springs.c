@@ -36,7 +36,7 @@ static lar_model *sprung_tool_model(const brick *b) {
 
 static same_bits body = {sprung_tool_model,
                          LAR_TEST_BUILD "/springs.checkpoint",
-                         {0x875b1c051a3af25c, 0x3fe2c02853e7c72a}};
+                         {0xf88776887cb2b124, 0xa35ad90ebaf92311}};
 
 /* Other springs are other supports. */
 static void a_saved_run_goes_on(void **unused) {
