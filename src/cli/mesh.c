@@ -228,7 +228,12 @@ static void doubt(const mesh_report *report, bool cubes) {
             "note: the body is %.4g m long; if the file is in millimetres, say --scale 0.001",
             size);
     doubt_bodies(report);
-    if (quality->true_volume > 0 && fabs(lost) > LOST)
+    if (quality->true_volume > 0 && lost < -LOST && report->info.pinholes > 0)
+        cli_complain(&cli_mesh, CLI_DONE,
+                     "note: the mesh holds %.0f %% more than the true surface, of which hollows of "
+                     "a few elements of %s are filled: take more elements or a smaller size",
+                     -100 * lost, cli_length(report->info.size).text);
+    else if (quality->true_volume > 0 && fabs(lost) > LOST)
         cli_complain(&cli_mesh, CLI_DONE,
                      "note: the mesh holds %.0f %% %s than the true surface, of which parts are "
                      "thinner than an element of %s: take more elements or a smaller size",

@@ -328,7 +328,8 @@ static bool fit_progress(void *context, double part) {
 
 static lar_status make_mesh(work *w) {
     lar_meshing *m = w->meshing;
-    const lar_fit_options fit = {.progress = fit_progress, .context = w};
+    const lar_fit_options fit = {
+        .filled = w->cleaning.filled, .progress = fit_progress, .context = w};
     lar_status status = tell(w, "laying the grid", 0);
     if (!status) status = fill_voxel_grid(w);
     lar_image_clear(&w->read);
@@ -400,7 +401,8 @@ static lar_status measure(const work *w, lar_error *error) {
 static lar_status check_volume(const work *w) {
     const lar_mesh_quality *quality = &w->meshing->info.quality;
     const double max = w->meshing->fitted ? 0.2 : 0.5;
-    const double off = quality->volume / quality->true_volume - 1;
+    const double filled = w->cleaning.pinhole_cells * pow(w->meshing->info.size, 3);
+    const double off = quality->volume / (quality->true_volume + filled) - 1;
     if (!(quality->true_volume > 0) || fabs(off) <= max) return LAR_OK;
     return lar_fail(w->error, LAR_ERROR_MODEL,
                     "%.300s: the mesh would hold %.3g mL, %.0f %% %s than the body, of which parts "

@@ -9,6 +9,7 @@
 #define BALLS     LAR_TEST_BUILD "/meshing_balls.nrrd"
 #define SPECK     LAR_TEST_BUILD "/meshing_speck.nrrd"
 #define BLOCKS    LAR_TEST_BUILD "/meshing_blocks.nrrd"
+#define TOMATO    LAR_TEST_BUILD "/meshing_tomato.nrrd"
 #define TORUS     LAR_TEST_BUILD "/meshing_torus.vtp"
 #define NUT       LAR_TEST_BUILD "/meshing_nut.vtp"
 
@@ -26,6 +27,16 @@ static int block_label(const double x[3]) {
     int at[3];
     for (int i = 0; i < 3; i++) at[i] = (int)floor((x[i] + 21.5e-3) / 7e-3);
     return 1 + at[0] + 7 * at[1] + 49 * at[2];
+}
+
+/* A ball of 18 mm with eight chambers. */
+static int tomato_label(const double x[3]) {
+    double chamber = 0, ball = 0;
+    for (int i = 0; i < 3; i++) {
+        chamber += (fabs(x[i]) - 7e-3) * (fabs(x[i]) - 7e-3);
+        ball += x[i] * x[i];
+    }
+    return ball < 18e-3 * 18e-3 && chamber > 3.7e-3 * 3.7e-3;
 }
 
 static void write_surface(lar_triangles *surface, const char *path) {
@@ -53,6 +64,9 @@ static int write_files(void **state) {
     const double voxel[3] = {1e-3, 1e-3, 1e-3};
     shape_image_of(&image, block_label, many, voxel, SHAPE_STRAIGHT);
     image_file(&image, BLOCKS, NULL, 0);
+    lar_image_clear(&image);
+    shape_image_of(&image, tomato_label, many, voxel, SHAPE_STRAIGHT);
+    image_file(&image, TOMATO, NULL, 0);
     lar_image_clear(&image);
     const double centre[3] = {0, 0, 0}, half[3] = {30, 24, 18};
     shape_torus_surface(&surface, 22, 8, centre, 24);
@@ -304,6 +318,22 @@ static void small_regions_follow_the_body(void **state) {
 /* ---- without files ----------------------------------------------------------------------------
  */
 
+/* Hollows that are filled are told, and the outer surface stays where it is. */
+static void filled_hollows_move_nothing_else(void **state) {
+    (void)state;
+    lar_meshing_options options = lar_meshing_options_default();
+    lar_meshing_info info;
+    options.elements = 1000;
+    lar_meshing *meshing = made(TOMATO, &options);
+    lar_meshing_inspect(meshing, &info);
+    const double ball = 4.0 / 3 * M_PI * pow(18e-3, 3), chambers = 8 * ball * pow(3.7 / 18, 3);
+    assert_int_equal(info.pinholes, 8);
+    assert_below(fabs(info.quality.volume / ball - 1), 0.015);
+    assert_below(fabs(info.quality.true_volume / (ball - chambers) - 1), 0.01);
+    assert_below(info.quality.deviation_mean, 0.08 * info.size);
+    lar_meshing_destroy(meshing);
+}
+
 static void same_mesh(const lar_meshing *left, const lar_meshing *right) {
     lar_mesh_arrays a, b;
     lar_surface_arrays s, t;
@@ -431,6 +461,7 @@ int main(void) {
         cmocka_unit_test(cubes_stay_cubes),
         cmocka_unit_test(what_makes_no_sense_is_refused),
         cmocka_unit_test(small_regions_follow_the_body),
+        cmocka_unit_test(filled_hollows_move_nothing_else),
         cmocka_unit_test(it_can_be_stopped),
         cmocka_unit_test(images_in_memory_become_what_their_files_do),
         cmocka_unit_test(surfaces_in_memory_become_what_their_files_do),

@@ -148,9 +148,11 @@ static lar_status fill_pinhole(lar_cleaner *cleaner, const piece *pinhole, bool 
     if (status) return status;
     *changed = true;
     if (!same) return close_piece(cleaner, pinhole, -1);
+    const uint8_t heir = heir_of(&around, 0);
     cleaner->cleaning->pinholes++;
     cleaner->cleaning->pinhole_cells += pinhole->size;
-    return close_piece(cleaner, pinhole, heir_of(&around, 0));
+    cleaner->cleaning->filled[heir] += pinhole->size;
+    return close_piece(cleaner, pinhole, heir);
 }
 
 lar_status lar_clean_islands(lar_cleaner *cleaner, bool *changed) {

@@ -32,8 +32,10 @@ void lar_unfitted_clear(lar_unfitted_mesh *unfitted);
 typedef bool lar_fit_progress(void *context, double part);
 
 typedef struct lar_fit_options {
-    double floor;               /* no element's scaled Jacobian falls below; 0: 0.25 */
-    double aim;                 /* nine of ten elements shall be above; 0: 0.55 */
+    double floor;          /* no element's scaled Jacobian falls below; 0: 0.25 */
+    double aim;            /* nine of ten elements shall be above; 0: 0.55 */
+    const int32_t *filled; /* [regions + 1] cells that a region has beside its volume: hollows that
+                              are filled, or outer faces would make room for them. May be NULL */
     lar_fit_progress *progress; /* may be NULL */
     void *context;
 } lar_fit_options;
