@@ -135,6 +135,8 @@ static void scenes_say_what_is_wrong(void **state) {
     (void)state;
     static const char *const wrong[][2] = {
         {SCENE("part: whole"), "fibres needs the key \"law\""},
+        {SCENE("part: whole, direction: mesh, active: {along: 1}"),
+         "part: of fibres that are only active there is none; remove it"},
         {SCENE("law: exp-pow, part: whole, ksi: 1, alpha: 0, beta: 2"),
          "fibres needs the key \"direction\""},
         {SCENE("law: exp-pov, part: whole, direction: mesh"), "did you mean exp-pow"},

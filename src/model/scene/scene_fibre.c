@@ -63,11 +63,16 @@ static lar_status read_passive(const lar_scene *scene, const lar_yaml *node, lar
     static const char what[] = "fibres";
     const lar_yaml *law = NULL, *part = NULL;
     lar_status status = LAR_OK;
-    if (!lar_yaml_get(node, "active") || lar_yaml_get(node, "law") || lar_yaml_get(node, "part")) {
+    part = lar_yaml_get(node, "part");
+    if (!lar_yaml_get(node, "active") || lar_yaml_get(node, "law")) {
         status = lar_scene_need(scene, node, what, "law", "law: exp-pow", &law);
         if (!status) status = lar_scene_need(scene, node, what, "part", "part: isochoric", &part);
         if (!status) status = read_law(scene, law, fibre);
         if (!status) status = read_part(scene, part, &fibre->isochoric);
+    } else if (part) {
+        status = lar_scene_fail(scene, part, LAR_ERROR_FORMAT,
+                                "part: of fibres that are only active there is none; remove it, or "
+                                "add a law");
     }
     return status ? status : read_parameters(scene, node, fibre);
 }
