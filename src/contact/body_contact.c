@@ -244,14 +244,48 @@ static double fade(const lar_body_contact *contact, const double x[3], const kno
     return part * all + (1 - part) * late;
 }
 
-/* The part of a spring that there is where the node's edge comes in through another face. */
+/* A node and the face that pushes it. */
+typedef struct meeting {
+    const double *x; /* [m] */
+    const known_face *known;
+    const lar_face_point *closest;
+    double full, rate; /* [m], [m/s] */
+    bool fades;        /* towards its edge */
+} meeting;
+
+/* What both springs push with; adds what they store to *energy [J]. */
+static double press(const lar_body_contact *contact, const meeting *m, const spring two[2],
+                    double *energy, touching *t) {
+    if (m->fades)
+        return fade(contact, m->x, m->known, m->closest, m->full, two, m->rate, energy, t);
+    double force = 0;
+    for (int i = 0; i < 2; i++) {
+        double one = lar_contact_force(&contact->law, two[i].mass, two[i].depth, m->rate);
+        force += one;
+        *energy += 0.5 * one * two[i].depth;
+    }
+    return force;
+}
+
+/* Where the node's edge comes in through another face, the border: on that it is as if it were
+ * before the face that it is behind, and the force, which is returned, goes over to what it is
+ * behind. What is stored on the way is paid at the border. */
 __attribute__((noinline, cold)) static double come_in(const lar_body_contact *contact, int32_t g,
-                                                      const lar_survey *s, double energy,
-                                                      touching *t) {
-    double part = lar_edge_part(s, energy, t->pay);
+                                                      const lar_survey *s, const meeting *m,
+                                                      const spring two[2], double together,
+                                                      double energy, double force, touching *t) {
+    const spring over[2] = {{two[0].mass, two[0].depth - 2 * two[1].depth}};
+    meeting back = *m;
+    touching there = {0};
+    double stored = 0;
+    back.rate = -m->rate;
+    const double up = press(contact, &back, over, &stored, &there);
+    double part = lar_edge_part(s, together * (energy - stored), t->pay);
     t->border = contact->list.face[contact->list.group[g].first + s->entry[s->border]];
-    for (int i = 0; i < 12; i++) t->fade[i / 3][i % 3] *= part;
-    return part;
+    for (int i = 0; i < 12; i++)
+        t->fade[i / 3][i % 3] =
+            part * t->fade[i / 3][i % 3] + (1 - part) * there.fade[i / 3][i % 3];
+    return part * force - (1 - part) * up;
 }
 
 /* The force on the node of group g by a face which it is behind, or before it by less than the
@@ -284,17 +318,10 @@ static bool push(lar_body_contact *contact, const lar_state *state, int32_t g, i
     double moved = moved_mass(&surface->node[node], &point);
     spring two[2];
     springs_of(contact, node, face, moved, depth, offset, two);
-    double force = 0, energy = 0;
-    if (f->fades && !own && !s->flush)
-        force =
-            fade(contact, x, &known, closest, full_of(contact, node, face), two, rate, &energy, t);
-    else
-        for (int i = 0; i < 2; i++) {
-            double one = lar_contact_force(&contact->law, two[i].mass, two[i].depth, rate);
-            force += one;
-            energy += 0.5 * one * two[i].depth;
-        }
-    if (s->border >= 0) force *= come_in(contact, g, s, together * energy, t);
+    const meeting m = {
+        x, &known, closest, full_of(contact, node, face), rate, f->fades && !own && !s->flush};
+    double energy = 0, force = press(contact, &m, two, &energy, t);
+    if (s->border >= 0) force = come_in(contact, g, s, &m, two, together, energy, force, t);
     t->depth = fmax(depth, 0);
     for (int i = 0; i < 3; i++) {
         t->force[i] = together * force * way[i];
@@ -309,7 +336,7 @@ static bool push(lar_body_contact *contact, const lar_state *state, int32_t g, i
                          .corner = (const double(*)[3])known.x,
                          .speed = (const double(*)[3])known.v,
                          .weight = closest->weight,
-                         .press = together * force,
+                         .press = together * fmax(force, 0),
                          .mass = moved};
     if (!lar_body_friction_rub(contact, state, &rub, t->fade)) return true;
     t->rubs = t->fading < 0 && t->count == 1 && t->face[0] == face;

@@ -244,6 +244,7 @@ typedef struct lar_survey {
     bool edge;      /* the node is on a sharp edge, and may not see all faces that it is behind */
     double across;  /* all faces are looked at that are nearer; 0: as `min` says [m] */
     int32_t border; /* the face through which the node's edge comes, of those above; -1: none */
+    bool over;      /* the node comes to that, and is pushed as if it were before the face */
     double inset;   /* how far the node is behind that [m] */
     double next;    /* travel at which the first of the others may matter [m] */
 } lar_survey;
@@ -292,13 +293,14 @@ bool lar_looks_away(const lar_body_contact *contact, const lar_state *state, int
 /* The edge of the node of group g may go into the other body through one face, the border, and lie
  * on another one, as that of a slab under a block that slides along it. Then only the other one is
  * in its way: of those that it goes through none is seen. The border takes part in what the other
- * one does, until the node is `across` behind it. */
+ * one does, until the node is `across` behind it; a node within the contact distance before it is
+ * `over` the other one. */
 void lar_edge_enters(const lar_body_contact *contact, const lar_state *state, int32_t g,
                      lar_survey *s);
 
-/* The part of a spring that there is so far behind the border, of one that stores `energy`: none on
- * it, or it would come from nowhere. on[]: the forces on the border's corners by which it is paid;
- * the node gets minus their sum [N]. */
+/* The part of a spring that there is so far behind the border, of one that stores `energy` more
+ * than on that: none on it, or it would come from nowhere. on[]: the forces on the border's corners
+ * by which it is paid; the node gets minus their sum [N]. */
 double lar_edge_part(const lar_survey *s, double energy, double on[4][3]);
 
 /* The node of group g touches no face of that other body, `gap` out of their reach [m] (INFINITY:

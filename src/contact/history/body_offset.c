@@ -134,14 +134,16 @@ void lar_edge_enters(const lar_body_contact *contact, const lar_state *state, in
     bool through[LAR_GROUP_FACES_MAX], lies = false;
     s->inset = s->across;
     for (int32_t k = 0; k < s->count; k++) {
+        const bool near = s->distance[k] < s->across;
+        const bool behind = near && s->point[k].height < 0;
         double deep = -1;
-        if (s->distance[k] < s->across && s->point[k].height < 0)
+        if (behind || (near && s->above > 0))
             lar_looks_away(contact, state, contact->list.group[g].node,
                            (const double(*)[3])s->corner[k], &deep);
         through[k] = deep > 0;
         if (!through[k] && s->distance[k] < least) {
             least = s->distance[k];
-            lies = deep == 0;
+            lies = behind && deep == 0;
         }
         if (through[k] && s->distance[k] < s->inset) {
             s->inset = s->distance[k];
@@ -154,6 +156,10 @@ void lar_edge_enters(const lar_body_contact *contact, const lar_state *state, in
     s->min = least;
     for (int32_t k = 0; k < s->count; k++)
         if (through[k]) s->distance[k] = INFINITY;
+    if (s->point[s->border].height < 0) return;
+    s->border = -1; /* it is before that still */
+    s->over = true;
+    s->gap = -INFINITY;
 }
 
 double lar_edge_part(const lar_survey *s, double energy, double on[4][3]) {

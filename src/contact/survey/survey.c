@@ -60,8 +60,7 @@ static double away_until(double travel, double distance, double tie, const lar_s
     return travel + 0.999 * (reach > min ? reach : min) / LAR_APPROACH;
 }
 
-/* Where an edge comes in through a face, of the depth of the layer. Bodies that keep a distance are
- * pushed before they get there. */
+/* Where an edge comes in through a face, of the depth of the layer. */
 static const double ACROSS = 0.25;
 
 /* The one that was closest the last time goes first: most others then need no more than a look. */
@@ -85,9 +84,8 @@ static void survey_group(lar_body_contact *contact, const lar_state *state, int3
     s->edge = !s->flush && !lar_same_body(contact, group->node, face[0]) &&
               contact->surface->node[group->node].inward[0] >= 0;
     s->border = -1;
-    s->across = s->edge && contact->surface->node[group->node].along < 3 && !(s->above > 0)
-                    ? ACROSS * s->reach
-                    : 0;
+    s->over = false;
+    s->across = s->edge && contact->surface->node[group->node].along < 3 ? ACROSS * s->reach : 0;
     lar_face_point of_first;
     double corner_of_first[4][3];
     lar_contact_place(contact, state, group->node, s->x, NULL);
@@ -152,6 +150,7 @@ int32_t lar_survey_closest(lar_body_contact *contact, const lar_state *state, in
     if (s->across > 0) lar_edge_enters(contact, state, g, s);
     int32_t chosen = choose_face(contact, g, s, point);
     if (chosen < 0) return -1;
+    if (s->over) point->height = -point->height;
     contact->last[g] = chosen;
     return contact->list.face[group->first + chosen];
 }
