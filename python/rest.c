@@ -53,8 +53,8 @@ static PyObject *restless(const lar_rest *rest, double time) {
     else if (rest->looked)
         snprintf(left, sizeof left, "its motion is still %.1e of the strain energy", rest->left);
     const char *remedy =
-        "give the scene more `damping` where it swings, less where it creeps, or a "
-        "time to end after (seconds=)";
+        "give the scene more `damping` where it swings, less where it creeps, a smaller time step "
+        "where it goes to and fro from step to step, or a time to end after (seconds=)";
     if (rest->looked == 2)
         remedy =
             "viscous terms still relax, for a dozen of their times and more; the scene without "

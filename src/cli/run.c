@@ -13,6 +13,7 @@
 #include "cli/commands.h"
 #include "cli/parallel.h"
 #include "cli/stop.h"
+#include "cli/report/rest_remedy.h"
 #include "cli/report/run.h"
 
 enum { PATH_SIZE = 4096 };
@@ -316,30 +317,12 @@ static int advance(run *r) {
     return status ? status : add_frame(r);
 }
 
-/* What would help. While a body swings, damping takes what is left of its motion and little more;
- * where it creeps, (damping / frequency)^2 times its kinetic energy is still to come. */
-static const char *remedy(const run *r) {
-    static const double CREEPS = 10;
-    if (!(lar_simulation_damping(r->simulation) > 0))
-        return "without damping nothing takes the motion away, give the scene a damping";
-    if (!r->rest.looked) return "give more time with --until-rest --time";
-    if (r->rest.looked == 2)
-        return "viscous terms still relax, for a dozen of their times and more; the scene without "
-               "`viscous` (moduli times g0) comes to the same rest sooner";
-    if (!(r->rest.left < 1))
-        return "look whether something still falls or turns freely, or give more time with "
-               "--until-rest --time";
-    if (r->rest.left * fabs(r->rest.strain) > CREEPS * r->rest.mean_before)
-        return "it creeps: less damping lets it come to rest sooner, or give more time with "
-               "--until-rest --time";
-    return "it swings: more damping lets it come to rest sooner, or give more time with "
-           "--until-rest --time";
-}
-
 /* A run that was to end at rest and did not has no answer, only a last state. */
 static int complain_restless(const run *r) {
     double time = lar_simulation_time(r->simulation);
-    char left[64] = "its motion could not be judged yet";
+    char left[64] = "its motion could not be judged yet", smaller[128];
+    lar_energy now;
+    lar_simulation_energy(r->simulation, &now);
     if (r->rest.looked && r->rest.kinetic > 1e6 * fabs(r->rest.strain))
         snprintf(left, sizeof left, "it moves, and next to nothing strains it");
     else if (r->rest.looked)
@@ -347,7 +330,9 @@ static int complain_restless(const run *r) {
     return cli_complain(&cli_run, CLI_RESTLESS,
                         "%s: not at rest after %.4g s, the limit of this run: %s, and at rest that "
                         "is below %.0e; %s",
-                        r->settings.scene, time, left, r->rest.share, remedy(r));
+                        r->settings.scene, time, left, r->rest.share,
+                        rest_remedy(&r->rest, now.kinetic, lar_simulation_damping(r->simulation),
+                                    lar_simulation_time_step(r->simulation), smaller));
 }
 
 /* Of the scene's duration; a scene without one is open. */

@@ -223,7 +223,7 @@ static double fade(const lar_body_contact *contact, const double x[3], const kno
     const lar_contact_face *f = &contact->surface->face[known->face];
     double blunt[4], change[5], slope[5][3], stored;
     for (int a = 0; a < 4; a++) blunt[a] = contact->surface->node[f->corner[a]].blunt;
-    double part = lar_face_firmness(closest, blunt, change);
+    double part = lar_face_firmness(closest->weight, blunt, change);
     double all = 0, late = 0, more = 0;
     for (int i = 0; i < 2 && two[i].mass > 0; i++) {
         double force = lar_contact_force(&contact->law, two[i].mass, two[i].depth, rate);

@@ -192,8 +192,9 @@ typedef struct wall_part {
     double share, count; /* facing; against those of the other triangles [m^2] */
 } wall_part;
 
-static wall_part part_of(lar_tool_contact_patch *patch, int triangle, lar_face_segment *at) {
-    double beyond = (1 - WALL) * patch->radius - at->distance;
+static wall_part part_of(lar_tool_contact_patch *patch, int triangle, double reach,
+                         lar_face_segment *at) {
+    double beyond = reach - at->distance;
     if (!(beyond > 0)) return (wall_part){0};
     if (!(at->distance > 0)) { /* the middle line goes through the face: out the way it came */
         normal_of(patch, triangle, at->normal);
@@ -211,12 +212,13 @@ static double touch_wall(lar_tool_contact_patch *patch, const lar_contact_law *l
                          const double *mass, int32_t s, double free_share) {
     lar_face_segment closest[4];
     wall_part parts[4];
-    double all = 0, min = INFINITY;
-    lar_face_segment_closest(&patch->body->now[s], (const double(*)[3])patch->x, closest);
+    const double reach = (1 - WALL) * patch->radius;
+    double all = 0;
+    double min = lar_face_segment_closest(&patch->body->now[s], (const double(*)[3])patch->x, reach,
+                                          closest);
     for (int t = 0; t < 4; t++) {
-        parts[t] = part_of(patch, t, &closest[t]);
+        parts[t] = part_of(patch, t, reach, &closest[t]);
         all += parts[t].count;
-        min = lar_lesser(min, closest[t].distance);
     }
     for (int t = 0; t < 4; t++) {
         const wall_part *part = &parts[t];
@@ -231,7 +233,7 @@ static double touch_wall(lar_tool_contact_patch *patch, const lar_contact_law *l
         if (patch->touches)
             note_point(patch, s, at->weight, at->normal, force, part->share * depth);
     }
-    return min - (1 - WALL) * patch->radius;
+    return min - reach;
 }
 
 /* How far a point of the face can be from the closest point of the grid: half of the diagonal

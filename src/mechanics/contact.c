@@ -1,6 +1,7 @@
 #include "mechanics/contact.h"
 
 #include <math.h>
+#include <stdbool.h>
 
 /* Where three kinds of springs of this law still leave a step of 0.8 of the stable one stable:
  * elements take 4 s^2 of the 4 that central differences allow, and a spring whose damper looks at
@@ -65,6 +66,37 @@ void lar_face_normal(const double x[4][3], double normal[3]) {
         normal[i] =
             (x[2][j] - x[0][j]) * (x[3][k] - x[1][k]) - (x[2][k] - x[0][k]) * (x[3][j] - x[1][j]);
     }
+}
+
+/* From 0 to 1, without a slope at either end. */
+static double ease(double t, double *slope) {
+    *slope = 6 * t * (1 - t);
+    return t * t * (3 - 2 * t);
+}
+
+/* Bilinear in coordinates that are eased, and a hill in the middle that ends on the sides without a
+ * slope. */
+double lar_face_firmness(const double weight[4], const double blunt[4], double change[5]) {
+    const double at[2] = {weight[1] + weight[2], weight[2] + weight[3]};
+    double eased[2], steep[2], hill[2], rise[2];
+    for (int d = 0; d < 2; d++) {
+        bool over = at[d] > 0.5;
+        eased[d] = ease(at[d], &steep[d]);
+        hill[d] = ease(over ? 2 * (1 - at[d]) : 2 * at[d], &rise[d]);
+        rise[d] *= over ? -2 : 2;
+    }
+    double low = blunt[1] - blunt[0], high = blunt[2] - blunt[3];
+    double side = (blunt[3] - blunt[0]) + eased[0] * (high - low);
+    double base = blunt[0] + eased[0] * low + eased[1] * side, top = hill[0] * hill[1];
+    double slope[2] = {(1 - top) * steep[0] * (low + eased[1] * (high - low)) +
+                           (1 - base) * rise[0] * hill[1],
+                       (1 - top) * steep[1] * side + (1 - base) * hill[0] * rise[1]};
+    change[0] = 0;
+    change[1] = slope[0];
+    change[2] = slope[0] + slope[1];
+    change[3] = slope[1];
+    change[4] = 0.5 * (slope[0] + slope[1]);
+    return base + (1 - base) * top;
 }
 
 double lar_segment_depth(const lar_segment *segment, double radius, const double point[3],

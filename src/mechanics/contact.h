@@ -92,6 +92,14 @@ static inline void lar_face_mean(const double x[4][3], const double weight[4], d
  * is flat, not of unit length. */
 void lar_face_normal(const double x[4][3], double normal[3]);
 
+/* What part of a spring there is at a point of a face, by its weights, from `blunt` at its corners
+ * to 1 in its middle, and change[]: the numbers of the corners and, last, of the middle that,
+ * linear in the triangles, have the same slope there. Along a side it depends on that side's ends
+ * alone, and across the side it has no slope: where two faces meet a spring is not driven from one
+ * to the other. Along the lines of bilinear coordinates, that is: of faces that are no
+ * parallelograms a part of the kink is left. */
+double lar_face_firmness(const double weight[4], const double blunt[4], double change[5]);
+
 /* ---- tools -----------------------------------------------------------------------------------
  * A tool is made of segments with a radius; a sphere's ends are one point. */
 

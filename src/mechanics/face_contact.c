@@ -1,14 +1,10 @@
 #include "mechanics/face_contact.h"
 
 #include <math.h>
-#include <stddef.h>
 #include <string.h>
 
+#include "base/vector.h"
 #include "mechanics/face_parts.h"
-
-static double dot(const double a[3], const double b[3]) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 
 static void between(const double from[3], const double to[3], double out[3]) {
     for (int i = 0; i < 3; i++) out[i] = to[i] - from[i];
@@ -31,9 +27,9 @@ static void closest_of_triangle(const double x[3], const double a[3], const doub
     between(a, x, from_a);
     between(b, x, from_b);
     between(c, x, from_c);
-    double a_ab = dot(ab, from_a), a_ac = dot(ac, from_a);
-    double b_ab = dot(ab, from_b), b_ac = dot(ac, from_b);
-    double c_ab = dot(ab, from_c), c_ac = dot(ac, from_c);
+    double a_ab = lar_dot(ab, from_a), a_ac = lar_dot(ac, from_a);
+    double b_ab = lar_dot(ab, from_b), b_ac = lar_dot(ac, from_b);
+    double c_ab = lar_dot(ab, from_c), c_ac = lar_dot(ac, from_c);
     double area_c = a_ab * b_ac - b_ab * a_ac; /* opposite to c, times the area of the whole */
     double area_b = c_ab * a_ac - a_ab * c_ac;
     double area_a = b_ab * c_ac - c_ab * b_ac;
@@ -72,7 +68,7 @@ static double distance_to(const double x[3], const double corner[4][3], const do
     double point[3], away[3];
     lar_face_mean(corner, weight, point);
     between(point, x, away);
-    return sqrt(dot(away, away));
+    return sqrt(lar_dot(away, away));
 }
 
 /* Of x over the plane of triangle t, seen from a point of the triangle. */
@@ -87,8 +83,8 @@ static double height_over(const double x[3], const double corner[4][3], const do
         int j = (i + 1) % 3, k = (i + 2) % 3;
         normal[i] = to_next[j] * to_middle[k] - to_next[k] * to_middle[j];
     }
-    double length = sqrt(dot(normal, normal));
-    return length > 0 ? dot(away, normal) / length : 0;
+    double length = sqrt(lar_dot(normal, normal));
+    return length > 0 ? lar_dot(away, normal) / length : 0;
 }
 
 /* See lar_face_point.toward: the ways along a triangle lie between those to its corners. The
@@ -102,11 +98,12 @@ static double toward_of(const double x[3], const double corner[4][3], const doub
     double point[3], away[3], along[3], max = -1;
     lar_face_mean(corner, weight, point);
     between(point, x, away);
-    double distance = sqrt(dot(away, away));
+    double distance = sqrt(lar_dot(away, away));
     for (int i = 0; i < 3; i++) {
         between(point, ends[i], along);
-        double length = sqrt(dot(along, along));
-        if (length > tie && distance > 0) max = fmax(max, dot(along, away) / (length * distance));
+        double length = sqrt(lar_dot(along, along));
+        if (length > tie && distance > 0)
+            max = fmax(max, lar_dot(along, away) / (length * distance));
     }
     return max;
 }
@@ -189,7 +186,7 @@ double lar_face_before_one_by_one(const double x[3], const double corner[4][3],
             volume += c[i] * (a[j] * b[k] - a[k] * b[j]);
         }
         if (!(volume > 0)) return 0;
-        double la = sqrt(dot(a, a)), lb = sqrt(dot(b, b)), lc = sqrt(dot(c, c));
+        double la = sqrt(lar_dot(a, a)), lb = sqrt(lar_dot(b, b)), lc = sqrt(lar_dot(c, c));
         double areas = la * lb + lb * lc + lc * la, most = volume / areas;
         min = fmin(min, volume / (areas + most * (la + lb + lc + most)));
     }
@@ -210,10 +207,6 @@ double lar_face_before(const double x[3], const double corner[4][3]) {
 /* Below, ways between nodes change by e at most, which is so small that second orders are no more
  * than the first: e is halved for them in the end. */
 
-static double length_of(const double a[3]) {
-    return sqrt(dot(a, a));
-}
-
 /* Until the closest point to x of what lies behind an edge, at q now, may leave the edge: some of
  * (y - q) (x - q) is no longer negative. q and x change by `rate` e against y. */
 static double edge_is_closest(const double x[3], const double q[3], const double y[3],
@@ -221,9 +214,9 @@ static double edge_is_closest(const double x[3], const double q[3], const double
     double to_y[3], to_x[3];
     between(q, y, to_y);
     between(q, x, to_x);
-    double behind = -dot(to_y, to_x);
+    double behind = -lar_dot(to_y, to_x);
     if (!(behind > 0)) return 0;
-    double lengths = length_of(to_y) + length_of(to_x);
+    double lengths = lar_length(to_y) + lar_length(to_x);
     return behind / (lengths + behind / lengths) / rate;
 }
 
@@ -239,21 +232,21 @@ static void best_way(const double x[3], const double end[3], const double face[4
     const double *to[3] = {face[(at + 1) % 4], face[(at + 3) % 4], middle};
     for (int i = 0; i < 3; i++) {
         between(end, to[i], way);
-        double turned = dot(way, to_x) / length_of(way);
+        double turned = lar_dot(way, to_x) / lar_length(way);
         if (!(turned > max)) continue;
         max = turned;
         memcpy(best, way, sizeof way);
     }
 }
 
-/* Until that to y may come closer than `way`. */
-static double turns_most(const double x[3], const double end[3], const double way[3],
-                         const double y[3]) {
+/* Until that to y may come closer than `way`. Not inlined: three of it take room, and no time. */
+static __attribute__((noinline)) double turns_most(const double x[3], const double end[3],
+                                                   const double way[3], const double y[3]) {
     double to_y[3], to_x[3];
     between(end, y, to_y);
     between(end, x, to_x);
-    double far = length_of(to_x), length = length_of(to_y), best = length_of(way);
-    double more = dot(way, to_x) / best - dot(to_y, to_x) / length;
+    double far = lar_length(to_x), length = lar_length(to_y), best = lar_length(way);
+    double more = lar_dot(way, to_x) / best - lar_dot(to_y, to_x) / length;
     return more > 0 ? more / (2 + 2 * far / best + 2 * far / length) : 0;
 }
 
@@ -267,14 +260,11 @@ static double least_height(const double x[3], const double corner[4][3], double 
         between(corner[t], corner[(t + 1) % 4], a);
         between(corner[t], middle, b);
         between(corner[t], x, c);
-        for (int i = 0; i < 3; i++) {
-            int j = (i + 1) % 3, k = (i + 2) % 3;
-            normal[i] = a[j] * b[k] - a[k] * b[j];
-        }
-        double twice = length_of(normal);
+        lar_cross(a, b, normal);
+        double twice = lar_length(normal);
         if (!(twice > 0)) return -INFINITY;
-        min = fmin(min, dot(c, normal) / twice);
-        *rate = fmax(*rate, 1 + 2 * length_of(c) * (length_of(a) + length_of(b)) / twice);
+        min = fmin(min, lar_dot(c, normal) / twice);
+        *rate = fmax(*rate, 1 + 2 * lar_length(c) * (lar_length(a) + lar_length(b)) / twice);
     }
     return min;
 }
@@ -287,13 +277,13 @@ double lar_face_outdone(const double x[3], const double face[4][3], int edge,
     const double *others[3] = {face[(edge + 2) % 4], face[(edge + 3) % 4], middle};
     between(end[0], end[1], along);
     between(end[0], x, u);
-    double length = length_of(along), part = dot(u, along) / (length * length);
+    double length = lar_length(along), part = lar_dot(u, along) / (length * length);
     if (!(length > 0)) return 0;
     part = fmin(fmax(part, 0), 1);
     for (int i = 0; i < 3; i++) q[i] = end[0][i] + part * along[i];
     between(q, x, to_x);
-    double slide = 3 + 4 * length_of(u) / length,
-           until = fmin(0.5 * length_of(to_x), 0.25 * length);
+    double slide = 3 + 4 * lar_length(u) / length,
+           until = fmin(0.5 * lar_length(to_x), 0.25 * length);
     for (int k = 0; k < 3; k++) until = fmin(until, edge_is_closest(x, q, others[k], slide));
     for (int k = 0; k < 2; k++) {
         double inside = (k == 0 ? part : 1 - part) * length / slide, turned = INFINITY;
@@ -319,33 +309,39 @@ lar_face_finders lar_face_finders_here(void) {
 
 /* ---- segments ------------------------------------------------------------------------------- */
 
-/* Takes a point of the face, by its weights, where it is closer than what was found before. */
-static void offer(const lar_segment *segment, const double corner[4][3], double along,
-                  const double weight[4], lar_face_segment *closest) {
+/* Takes a point of the face, by its weights, where it is closer than what was found before. Returns
+ * how far it is. */
+static double offer(const lar_segment *segment, const double corner[4][3], double along,
+                    const double weight[4], lar_face_segment *closest) {
     double point[3], away[3];
     lar_face_mean(corner, weight, point);
     for (int i = 0; i < 3; i++) {
         double on = segment->end[0][i] + along * (segment->end[1][i] - segment->end[0][i]);
         away[i] = point[i] - on;
     }
-    double distance = sqrt(dot(away, away));
-    if (!(distance < closest->distance)) return;
+    double distance = sqrt(lar_dot(away, away));
+    if (!(distance < closest->distance)) return distance;
     closest->distance = distance;
     closest->along = along;
     memcpy(closest->weight, weight, sizeof closest->weight);
     for (int i = 0; i < 3; i++) closest->normal[i] = distance > 0 ? away[i] / distance : 0;
+    return distance;
 }
 
 static double clamp(double x) {
     return x < 0 ? 0 : x > 1 ? 1 : x;
 }
 
-/* The closest points of two segments p + s d1, q + t d2 (Ericson 2005, 5.1.9). */
+/* The closest points of two segments p + s d1, q + t d2 (Ericson 2005, 5.1.9); and the s of points
+ * that are nearly as close and do not run away where both are nearly parallel: to the square of the
+ * distance is added `stiff` over that of d2's length times that of how far s is from the middle. */
 static void closest_of_segments(const double p[3], const double d1[3], const double q[3],
-                                const double d2[3], double *s, double *t) {
+                                const double d2[3], double stiff, double *s, double *t,
+                                double *steady) {
     double r[3];
     between(q, p, r);
-    double a = dot(d1, d1), e = dot(d2, d2), f = dot(d2, r), c = dot(d1, r), b = dot(d1, d2);
+    double a = lar_dot(d1, d1), e = lar_dot(d2, d2), f = lar_dot(d2, r), c = lar_dot(d1, r),
+           b = lar_dot(d1, d2);
     double denominator = a * e - b * b;
     *s = denominator > 0 ? clamp((b * f - c * e) / denominator) : 0;
     *t = e > 0 ? (b * *s + f) / e : 0;
@@ -353,29 +349,35 @@ static void closest_of_segments(const double p[3], const double d1[3], const dou
         *t = clamp(*t);
         *s = a > 0 ? clamp((b * *t - c) / a) : 0;
     }
+    double pull = stiff * (0.5 * b - c), all = a * (e + stiff);
+    double at = clamp((b * f - c * e + pull) / (all - b * b));
+    double part = e > 0 ? clamp((b * at + f) / e) : 0;
+    *steady = clamp(((b * part - c) * e + pull) / all);
 }
+
+/* Where on the segment the closest points of a triangle are, and how far [m]. */
+typedef struct lar_face_stations {
+    double along[5], distance[5];
+} lar_face_stations;
 
 /* Against the edge of triangle t from `from` to `to`, points of the face by their weights. */
 static void offer_edge(const lar_segment *segment, const double corner[4][3], const double from[4],
-                       const double to[4], lar_face_segment *closest) {
-    double begin[3], end[3], d1[3], d2[3], weight[4], along, part;
+                       const double to[4], double stiff, lar_face_segment *closest, double *along,
+                       double *distance) {
+    double begin[3], end[3], d1[3], d2[3], weight[4], at, part;
     lar_face_mean(corner, from, begin);
     lar_face_mean(corner, to, end);
     between(segment->end[0], segment->end[1], d1);
     between(begin, end, d2);
-    closest_of_segments(segment->end[0], d1, begin, d2, &along, &part);
+    closest_of_segments(segment->end[0], d1, begin, d2, stiff, &at, &part, along);
     for (int a = 0; a < 4; a++) weight[a] = (1 - part) * from[a] + part * to[a];
-    offer(segment, corner, along, weight, closest);
+    *distance = offer(segment, corner, at, weight, closest);
 }
 
-/* Where the segment goes through triangle t. */
-static void offer_crossing(const lar_segment *segment, const double corner[4][3],
-                           const double middle[3], int t, lar_face_segment *closest) {
-    double weight[4] = {0.25, 0.25, 0.25, 0.25}, on[3], wb, wc;
-    double below = height_over(segment->end[0], corner, middle, t, weight);
-    double above = height_over(segment->end[1], corner, middle, t, weight);
-    if (!(below * above < 0)) return;
-    double along = below / (below - above);
+/* The point of triangle t that is closest to a point of the segment's line. */
+static void offer_station(const lar_segment *segment, const double corner[4][3],
+                          const double middle[3], int t, double along, lar_face_segment *closest) {
+    double weight[4], on[3], wb, wc;
     for (int i = 0; i < 3; i++)
         on[i] = segment->end[0][i] + along * (segment->end[1][i] - segment->end[0][i]);
     int next = (t + 1) % 4;
@@ -386,38 +388,69 @@ static void offer_crossing(const lar_segment *segment, const double corner[4][3]
     offer(segment, corner, along, weight, closest);
 }
 
-void lar_face_segment_one_by_one(const lar_segment *segment, const double corner[4][3],
-                                 const double middle[3], lar_face_segment closest[4]) {
+/* Where the segment goes through triangle t, if it does. */
+static bool offer_crossing(const lar_segment *segment, const double corner[4][3],
+                           const double middle[3], int t, lar_face_segment *closest) {
+    double weight[4] = {0.25, 0.25, 0.25, 0.25};
+    double below = height_over(segment->end[0], corner, middle, t, weight);
+    double above = height_over(segment->end[1], corner, middle, t, weight);
+    if (!(below * above < 0)) return false;
+    offer_station(segment, corner, middle, t, below / (below - above), closest);
+    return true;
+}
+
+/* The mean of all stations that are less than half as deep again. */
+static void steady(const lar_segment *segment, const double corner[4][3], const double middle[3],
+                   int t, double reach, const lar_face_stations *list, lar_face_segment *closest) {
+    double least = 0.5 * (reach + closest->distance), all = 0, along = 0;
+    for (int k = 0; k < 5; k++) {
+        double count = least - list->distance[k];
+        if (!(count > 0)) continue;
+        all += count;
+        along += count * list->along[k];
+    }
+    closest->distance = INFINITY;
+    offer_station(segment, corner, middle, t, along / all, closest);
+}
+
+double lar_face_segment_one_by_one(const lar_segment *segment, const double corner[4][3],
+                                   const double middle[3], double reach,
+                                   lar_face_segment closest[4]) {
     static const double at_corner[4][4] = {{1}, {0, 1}, {0, 0, 1}, {0, 0, 0, 1}},
                         at_middle[4] = {0.25, 0.25, 0.25, 0.25};
     bool is_point = lar_segment_is_point(segment);
+    double least = INFINITY, stiff = 0.5 * reach * reach;
     for (int t = 0; t < 4; t++) {
-        const double *from = at_corner[t], *to = at_corner[(t + 1) % 4];
+        const double *edge[3][2] = {{at_corner[t], at_corner[(t + 1) % 4]},
+                                    {at_corner[t], at_middle},
+                                    {at_corner[(t + 1) % 4], at_middle}};
         double weight[4];
-        closest[t] = (lar_face_segment){.distance = INFINITY};
+        lar_face_stations list = {.along = {0, 1}};
+        lar_face_segment *of = &closest[t];
+        *of = (lar_face_segment){.distance = INFINITY};
         for (int e = 0; e < (is_point ? 1 : 2); e++) {
             closest_of_part(segment->end[e], corner, middle, t, weight);
-            offer(segment, corner, e, weight, &closest[t]);
+            list.distance[e] = offer(segment, corner, e, weight, of);
         }
-        if (is_point) continue;
-        offer_edge(segment, corner, from, to, &closest[t]);
-        offer_edge(segment, corner, from, at_middle, &closest[t]);
-        offer_edge(segment, corner, to, at_middle, &closest[t]);
-        offer_crossing(segment, corner, middle, t, &closest[t]);
+        for (int e = 0; e < 3 && !is_point; e++)
+            offer_edge(segment, corner, edge[e][0], edge[e][1], stiff, of, &list.along[2 + e],
+                       &list.distance[2 + e]);
+        bool crosses = !is_point && offer_crossing(segment, corner, middle, t, of);
+        least = fmin(least, of->distance);
+        if (!is_point && !crosses && of->distance < reach)
+            steady(segment, corner, middle, t, reach, &list, of);
     }
+    return least;
 }
 
-void lar_face_segment_closest(const lar_segment *segment, const double corner[4][3],
-                              lar_face_segment closest[4]) {
+double lar_face_segment_closest(const lar_segment *segment, const double corner[4][3], double reach,
+                                lar_face_segment closest[4]) {
     double middle[3];
     middle_of(corner, middle);
 #if defined(LAR_HAVE_FACE_LANES)
-    if (lar_face_lanes()) {
-        lar_face_segment_in_lanes(segment, corner, middle, closest);
-        return;
-    }
+    if (lar_face_lanes()) return lar_face_segment_in_lanes(segment, corner, middle, reach, closest);
 #endif
-    lar_face_segment_one_by_one(segment, corner, middle, closest);
+    return lar_face_segment_one_by_one(segment, corner, middle, reach, closest);
 }
 
 /* ---- grids ---------------------------------------------------------------------------------- */
@@ -461,9 +494,9 @@ static void triangle_slopes(const double corner[3][3], double slope[3][3]) {
         double side[3], up[3];
         between(corner[(c + 1) % 3], corner[(c + 2) % 3], side);
         between(corner[(c + 1) % 3], corner[c], up);
-        double along = share(dot(up, side), dot(side, side));
+        double along = share(lar_dot(up, side), lar_dot(side, side));
         for (int i = 0; i < 3; i++) up[i] -= along * side[i];
-        double square = dot(up, up);
+        double square = lar_dot(up, up);
         for (int i = 0; i < 3; i++) slope[c][i] = share(up[i], square);
     }
 }
@@ -479,7 +512,8 @@ static double within(const double x[3], const double corner[4][3], const double 
     memcpy(place[2], middle, sizeof place[2]);
     if (part[0] > NOTHING && part[1] > NOTHING && part[2] > NOTHING) {
         triangle_slopes((const double(*)[3])place, slope);
-        for (int c = 0; c < 3; c++) min = fmin(min, share(part[c], sqrt(dot(slope[c], slope[c]))));
+        for (int c = 0; c < 3; c++)
+            min = fmin(min, share(part[c], sqrt(lar_dot(slope[c], slope[c]))));
         return min;
     }
     if (!closest) return 0;
@@ -517,7 +551,7 @@ static void side_slopes(const double corner[3][3], const bool has[3], double slo
         if (!has[c] || !has[next]) continue;
         double side[3];
         between(corner[c], corner[next], side);
-        double square = dot(side, side);
+        double square = lar_dot(side, side);
         for (int i = 0; i < 3; i++) {
             slope[next][i] = share(side[i], square);
             slope[c][i] = -slope[next][i];
@@ -531,38 +565,6 @@ static void shares_of(const lar_face_point *point, double part[3]) {
     part[0] = point->weight[t] - point->weight[other];
     part[1] = point->weight[(t + 1) % 4] - point->weight[other];
     part[2] = 4 * point->weight[other];
-}
-
-/* From 0 to 1, without a slope at either end. */
-static double ease(double t, double *slope) {
-    *slope = 6 * t * (1 - t);
-    return t * t * (3 - 2 * t);
-}
-
-/* Bilinear in coordinates that are eased, and a hill in the middle that ends on the sides without a
- * slope. */
-double lar_face_firmness(const lar_face_point *point, const double blunt[4], double change[5]) {
-    const double *weight = point->weight;
-    const double at[2] = {weight[1] + weight[2], weight[2] + weight[3]};
-    double eased[2], steep[2], hill[2], rise[2];
-    for (int d = 0; d < 2; d++) {
-        bool over = at[d] > 0.5;
-        eased[d] = ease(at[d], &steep[d]);
-        hill[d] = ease(over ? 2 * (1 - at[d]) : 2 * at[d], &rise[d]);
-        rise[d] *= over ? -2 : 2;
-    }
-    double low = blunt[1] - blunt[0], high = blunt[2] - blunt[3];
-    double side = (blunt[3] - blunt[0]) + eased[0] * (high - low);
-    double base = blunt[0] + eased[0] * low + eased[1] * side, top = hill[0] * hill[1];
-    double slope[2] = {(1 - top) * steep[0] * (low + eased[1] * (high - low)) +
-                           (1 - base) * rise[0] * hill[1],
-                       (1 - top) * steep[1] * side + (1 - base) * hill[0] * rise[1]};
-    change[0] = 0;
-    change[1] = slope[0];
-    change[2] = slope[0] + slope[1];
-    change[3] = slope[1];
-    change[4] = 0.5 * (slope[0] + slope[1]);
-    return base + (1 - base) * top;
 }
 
 void lar_face_slope(const double x[3], const double corner[4][3], const lar_face_point *point,
@@ -587,7 +589,7 @@ void lar_face_slope(const double x[3], const double corner[4][3], const lar_face
         for (int i = 0; i < 3; i++) slope[4][i] += values[c] * of[c][i];
     /* Turning the triangle moves the foot of x as well. */
     for (int c = 0; c < 3; c++) {
-        double turn = dot(slope[4], of[c]);
+        double turn = lar_dot(slope[4], of[c]);
         for (int i = 0; i < 3; i++) {
             double own = turn * away[i] - part[c] * slope[4][i];
             for (int a = 0; a < 4; a++)

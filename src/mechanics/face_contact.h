@@ -80,7 +80,7 @@ double lar_face_before(const double x[3], const double corner[4][3]);
 double lar_face_outdone(const double x[3], const double face[4][3], int edge,
                         const double front[4][3]);
 
-/* Where a segment comes closest to a face. */
+/* Where a segment comes closest to a face, or nearly so. */
 typedef struct lar_face_segment {
     double distance;  /* at least 0; 0 where the segment goes through the face [m] */
     double along;     /* where on the segment, 0 to 1 */
@@ -88,9 +88,14 @@ typedef struct lar_face_segment {
     double normal[3]; /* unit, from the segment to that point; 0 where the distance is 0 */
 } lar_face_segment;
 
-/* To each of its triangles. */
-void lar_face_segment_closest(const lar_segment *segment, const double corner[4][3],
-                              lar_face_segment closest[4]);
+/* To each of its triangles. Of a triangle along which the segment lies many points are as close as
+ * each other, and the closest one runs from one end to the other when it turns by next to nothing.
+ * So where it is closer than `reach` it is asked for that point of the segment which is the mean of
+ * where it is closest to the triangle's edges and of its ends, the deeper (reach less distance) the
+ * more, those more than half as deep as the deepest; so that no point jumps (theory.md, tools).
+ * Not so where it goes through. Returns the least distance. */
+double lar_face_segment_closest(const lar_segment *segment, const double corner[4][3], double reach,
+                                lar_face_segment closest[4]);
 
 /* Points of a face by the weights of its corners, component by component. What fills the last four
  * is the last point again. */
@@ -118,14 +123,6 @@ void lar_face_grid_near(const lar_segment *segment, const double corner[4][3],
  * 1 - (distance - min) / fade, and next to nothing where x is not straight above it. */
 double lar_face_blend(const double x[3], const double corner[4][3], double min, double fade,
                       double sum[4], double *far);
-
-/* What part of a spring there is at the closest point of a face, from `blunt` at its corners to 1
- * in its middle, and change[]: the numbers of the corners and, last, of the middle that, linear in
- * the triangles, have the same slope there. Along a side it depends on that side's ends alone, and
- * across the side it has no slope: where two faces meet a spring is not driven from one to the
- * other. Along the lines of bilinear coordinates, that is: of faces that are no parallelograms a
- * part of the kink is left. */
-double lar_face_firmness(const lar_face_point *point, const double blunt[4], double change[5]);
 
 /* The slopes of a number that is `value` at the corners of a face and, last, in its middle, linear
  * in the triangles: with the places of the corners and, last, with x [1/m]. Forces and moments that

@@ -154,6 +154,7 @@ double lar_face_before_in_lanes(const double x[3], const double corner[4][3],
  * and, of the others, what each corner has of the middle. */
 typedef struct candidate {
     four along, own, next, rest;
+    four steady; /* where on the segment it is when it may not run away */
 } candidate;
 
 /* Not inlined: three of it take room, and no time. */
@@ -161,7 +162,7 @@ static __attribute__((noinline)) candidate candidate_of(const triangles *of, fou
     four wb, wc;
     closest_of(of, &wb, &wc);
     four rest = 0.25 * wc;
-    return (candidate){along, rest + (1 - wb - wc), rest + wb, rest};
+    return (candidate){along, rest + (1 - wb - wc), rest + wb, rest, along};
 }
 
 static inline four clamp(four x) {
@@ -171,21 +172,26 @@ static inline four clamp(four x) {
 /* closest_of_segments (face_contact.c): the segment along `way` and edges along `to`, from the
  * triangles' own corners; `of` is seen from the segment's first end. `to` is shared with the next
  * one or with the middle. */
-static inline candidate edge_of(const triangles *of, const four way[3], const four to[3],
-                                bool middle) {
+static __attribute__((noinline)) candidate edge_of(const triangles *of, const four way[3],
+                                                   const four to[3], four stiff, bool middle) {
     four a = dot(way, way), e = dot(to, to), f = dot(to, of->to_x), c = dot(way, of->to_x);
     four b = dot(way, to), denominator = a * e - b * b;
     four s = choose(denominator > 0, clamp((b * f - c * e) / denominator), all(0));
     four t = choose(e > 0, (b * s + f) / e, all(0)), part = clamp(t);
     s = choose((t < 0) | (t > 1), choose(a > 0, clamp((b * part - c) / a), all(0)), s);
+    four pull = stiff * (0.5 * b - c), whole = a * (e + stiff);
+    four at = clamp((b * f - c * e + pull) / (whole - b * b));
+    four on = choose(e > 0, clamp((b * at + f) / e), all(0));
+    four steady = clamp(((b * on - c) * e + pull) / whole);
     four rest = middle ? 0.25 * part : all(0);
-    return (candidate){s, rest + (1 - part), 0 + (middle ? rest : part), rest};
+    return (candidate){s, rest + (1 - part), 0 + (middle ? rest : part), rest, steady};
 }
 
 /* The edge to the middle that a triangle shares with the next one. */
 static inline candidate from_next(const candidate *of) {
     return (candidate){MIX(of->along, of->along, 1, 2, 3, 0), MIX(of->rest, of->rest, 1, 2, 3, 0),
-                       MIX(of->own, of->own, 1, 2, 3, 0), MIX(of->rest, of->rest, 1, 2, 3, 0)};
+                       MIX(of->own, of->own, 1, 2, 3, 0), MIX(of->rest, of->rest, 1, 2, 3, 0),
+                       MIX(of->steady, of->steady, 1, 2, 3, 0)};
 }
 
 /* Of x, a point of the segment's line, over the planes. */
@@ -195,34 +201,50 @@ static inline four height_of(const double x[3], const triangles *of, const four 
     return share(dot(away, normal), root(dot(normal, normal)));
 }
 
-/* Where the segment goes through triangles: nowhere of others. Whether it does through a plane;
- * `of` is seen from there then. */
-static inline bool crossing(const lar_segment *segment, const four way[3], triangles *of,
-                            candidate *out) {
-    four normal[3];
-    cross(of->to_next, of->to_middle, normal);
-    four below = height_of(segment->end[0], of, normal);
-    four above = height_of(segment->end[1], of, normal);
-    four_bits crosses = below * above < 0;
-    if (!__builtin_ia32_movmskpd256((four)crosses)) return false;
-    four along = choose(crosses, below / (below - above), all(NAN));
+/* The point of each triangle that is closest to a point of the segment. `of` is seen from there
+ * then. */
+static candidate station_at(const lar_segment *segment, const four way[3], four along,
+                            triangles *of) {
     for (int i = 0; i < 3; i++) {
         of->x[i] = segment->end[0][i] + along * way[i];
         of->to_x[i] = of->x[i] - of->own[i];
     }
-    *out = candidate_of(of, along);
+    return candidate_of(of, along);
+}
+
+/* Where the segment goes through triangles: nowhere of others. Whether it does through a plane. */
+static inline bool crossing(const lar_segment *segment, const four way[3], triangles *of,
+                            four_bits *crosses, candidate *out) {
+    four normal[3];
+    cross(of->to_next, of->to_middle, normal);
+    four below = height_of(segment->end[0], of, normal);
+    four above = height_of(segment->end[1], of, normal);
+    *crosses = below * above < 0;
+    if (!__builtin_ia32_movmskpd256((four)*crosses)) return false;
+    *out = station_at(segment, way, choose(*crosses, below / (below - above), all(NAN)), of);
     return true;
 }
 
-/* The closest of the candidates, the first of equals. */
-static inline candidate closest_candidate(const lar_segment *segment, const four way[3],
-                                          const double corner[4][3], const candidate *list,
-                                          int count, four away[3], four *distance) {
-    candidate best = {0};
-    *distance = all(INFINITY);
-    for (int i = 0; i < 3; i++) away[i] = all(0);
-    for (int k = 0; k < count; k++) {
-        const candidate *at = &list[k];
+/* What is offered, how far each is, and how many there are. */
+typedef struct offers {
+    candidate of[6];
+    four far[6];
+    int count;
+} offers;
+
+/* What is closest of these, and the way there. */
+typedef struct closest_yet {
+    candidate of;
+    four away[3], distance;
+} closest_yet;
+
+/* The first of equals. Not inlined, as above. */
+static __attribute__((noinline)) void closest_offer(const lar_segment *segment, const four way[3],
+                                                    const double corner[4][3], offers *list,
+                                                    closest_yet *best) {
+    *best = (closest_yet){.distance = all(INFINITY)};
+    for (int k = 0; k < list->count; k++) {
+        const candidate *at = &list->of[k];
         four weight[4], to[3];
         corners_of(at->own, at->next, at->rest, weight);
         for (int i = 0; i < 3; i++)
@@ -230,44 +252,75 @@ static inline candidate closest_candidate(const lar_segment *segment, const four
                      (weight[2] * corner[2][i] + weight[3] * corner[3][i])) -
                     (segment->end[0][i] + at->along * way[i]);
         four far = root(dot(to, to));
-        four_bits closer = far < *distance;
-        *distance = choose(closer, far, *distance);
-        best.along = choose(closer, at->along, best.along);
-        best.own = choose(closer, at->own, best.own);
-        best.next = choose(closer, at->next, best.next);
-        best.rest = choose(closer, at->rest, best.rest);
-        for (int i = 0; i < 3; i++) away[i] = choose(closer, to[i], away[i]);
+        list->far[k] = far;
+        four_bits closer = far < best->distance;
+        best->distance = choose(closer, far, best->distance);
+        best->of.along = choose(closer, at->along, best->of.along);
+        best->of.own = choose(closer, at->own, best->of.own);
+        best->of.next = choose(closer, at->next, best->of.next);
+        best->of.rest = choose(closer, at->rest, best->of.rest);
+        for (int i = 0; i < 3; i++) best->away[i] = choose(closer, to[i], best->away[i]);
     }
-    return best;
 }
 
-void lar_face_segment_in_lanes(const lar_segment *segment, const double corner[4][3],
-                               const double middle[3], lar_face_segment closest[4]) {
+/* Of triangles that are `steady` the point over the mean of the stations (face_contact.c), of
+ * others what is closest. */
+static inline void hold_steady(const lar_segment *segment, const four way[3],
+                               const double corner[4][3], triangles *of, offers *list,
+                               four_bits steady, double reach, closest_yet *best) {
+    four least = 0.5 * (reach + best->distance), sum = all(0), along = all(0);
+    for (int k = 0; k < 5; k++) {
+        four count = least - list->far[k];
+        count = choose(count > 0, count, all(0));
+        sum += count;
+        along += count * list->of[k].steady;
+    }
+    candidate mean = station_at(segment, way, along / sum, of);
+    list->of[0].along = choose(steady, mean.along, best->of.along);
+    list->of[0].own = choose(steady, mean.own, best->of.own);
+    list->of[0].next = choose(steady, mean.next, best->of.next);
+    list->of[0].rest = choose(steady, mean.rest, best->of.rest);
+    list->count = 1;
+    four min = best->distance;
+    closest_offer(segment, way, corner, list, best);
+    best->distance = choose(steady, best->distance, min);
+}
+
+double lar_face_segment_in_lanes(const lar_segment *segment, const double corner[4][3],
+                                 const double middle[3], double reach,
+                                 lar_face_segment closest[4]) {
     triangles of[2];
-    candidate list[6];
-    int count = 0;
-    four way[3], away[3], distance, weight[4];
+    offers list = {.count = 0};
+    closest_yet best;
+    four way[3], weight[4];
+    four_bits crosses = {0};
     for (int i = 0; i < 3; i++) way[i] = all(segment->end[1][i] - segment->end[0][i]);
     bool is_point = lar_segment_is_point(segment);
     for (int e = 0; e < (is_point ? 1 : 2); e++) {
         look_up(segment->end[e], corner, middle, &of[e]);
-        list[count++] = candidate_of(&of[e], all(e));
+        list.of[list.count++] = candidate_of(&of[e], all(e));
     }
     if (!is_point) {
-        list[2] = edge_of(&of[0], way, of[0].to_next, false);
-        list[3] = edge_of(&of[0], way, of[0].to_middle, true);
-        list[4] = from_next(&list[3]);
-        count = crossing(segment, way, &of[0], &list[5]) ? 6 : 5;
+        const four stiff = all(0.5 * reach * reach);
+        list.of[2] = edge_of(&of[0], way, of[0].to_next, stiff, false);
+        list.of[3] = edge_of(&of[0], way, of[0].to_middle, stiff, true);
+        list.of[4] = from_next(&list.of[3]);
+        list.count = crossing(segment, way, &of[0], &crosses, &list.of[5]) ? 6 : 5;
     }
-    candidate best = closest_candidate(segment, way, corner, list, count, away, &distance);
-    corners_of(best.own, best.next, best.rest, weight);
-    for (int i = 0; i < 3; i++) away[i] = share(away[i], distance);
+    closest_offer(segment, way, corner, &list, &best);
+    four min = best.distance;
+    four_bits steady = (min < reach) & ~crosses;
+    if (!is_point && __builtin_ia32_movmskpd256((four)steady))
+        hold_steady(segment, way, corner, &of[0], &list, steady, reach, &best);
+    corners_of(best.of.own, best.of.next, best.of.rest, weight);
+    for (int i = 0; i < 3; i++) best.away[i] = share(best.away[i], best.distance);
     for (int t = 0; t < 4; t++) {
-        closest[t].distance = distance[t];
-        closest[t].along = best.along[t];
+        closest[t].distance = best.distance[t];
+        closest[t].along = best.of.along[t];
         for (int a = 0; a < 4; a++) closest[t].weight[a] = weight[a][t];
-        for (int i = 0; i < 3; i++) closest[t].normal[i] = away[i][t];
+        for (int i = 0; i < 3; i++) closest[t].normal[i] = best.away[i][t];
     }
+    return fmin(fmin(min[0], min[1]), fmin(min[2], min[3]));
 }
 
 /* ---- grids ---------------------------------------------------------------------------------- */

@@ -34,9 +34,9 @@ LAR_ONE_BY_ONE double lar_face_before_one_by_one(const double x[3], const double
                                                  const double middle[3]);
 
 /* Where a segment comes closest to each: lar_face_segment_closest. */
-LAR_ONE_BY_ONE void lar_face_segment_one_by_one(const lar_segment *segment,
-                                                const double corner[4][3], const double middle[3],
-                                                lar_face_segment closest[4]);
+LAR_ONE_BY_ONE double lar_face_segment_one_by_one(const lar_segment *segment,
+                                                  const double corner[4][3], const double middle[3],
+                                                  double reach, lar_face_segment closest[4]);
 
 /* The points of a grid: lar_face_grid_near. */
 LAR_ONE_BY_ONE void lar_face_grid_one_by_one(const lar_segment *segment, const double corner[4][3],
@@ -48,8 +48,8 @@ void lar_face_parts_in_lanes(const double x[3], const double corner[4][3], const
                              lar_face_parts *parts);
 double lar_face_before_in_lanes(const double x[3], const double corner[4][3],
                                 const double middle[3]);
-void lar_face_segment_in_lanes(const lar_segment *segment, const double corner[4][3],
-                               const double middle[3], lar_face_segment closest[4]);
+double lar_face_segment_in_lanes(const lar_segment *segment, const double corner[4][3],
+                                 const double middle[3], double reach, lar_face_segment closest[4]);
 void lar_face_grid_in_lanes(const lar_segment *segment, const double corner[4][3],
                             const lar_face_grid *grid, double within, lar_face_near *near);
 
@@ -58,8 +58,8 @@ typedef struct lar_face_finders {
     void (*parts)(const double x[3], const double corner[4][3], const double middle[3],
                   lar_face_parts *parts);
     double (*before)(const double x[3], const double corner[4][3], const double middle[3]);
-    void (*segment)(const lar_segment *segment, const double corner[4][3], const double middle[3],
-                    lar_face_segment closest[4]);
+    double (*segment)(const lar_segment *segment, const double corner[4][3], const double middle[3],
+                      double reach, lar_face_segment closest[4]);
     void (*grid)(const lar_segment *segment, const double corner[4][3], const lar_face_grid *grid,
                  double within, lar_face_near *near);
 } lar_face_finders;

@@ -142,11 +142,57 @@ static void what_looks_elsewhere_comes_to_rest(void **unused) {
     lie(0, 0.02, NULL);
 }
 
+/* A bar that lies along faces is as near to one end of them as to the other, wherever it pushes. */
+static void lie_along(double nu, lar_law law, double deep) {
+    static const double E = 2e4, radius = 0.008;
+    brick pad = {{5, 7, 3}, 0.01, 0, law, 0, 0, 100};
+    pad.shear = E / 2 / (1 + nu);
+    pad.bulk = E / 3 / (1 - 2 * nu);
+    lar_model *model = brick_model(&pad);
+    fix_nodes(model, brick_side(&pad, 2, 0), LAR_AXIS_ALL);
+    touch_tool(model, "bar",
+               (lar_tool){.shape = LAR_TOOL_CAPSULE, .radius = radius, .length = 0.09},
+               (double[]){0.07, 0.035, 0.03 + radius + 1e-4});
+    memcpy(model->tool[0].rest.orientation, along_x, sizeof along_x);
+    model->damping = 380;
+    lar_simulation *simulation = start(model);
+    uint64_t steps = (uint64_t)(0.2 / lar_simulation_time_step(simulation));
+    place(simulation, 0, (double[]){0.07, 0.035, 0.03 + radius - deep}, along_x, 1, steps);
+    while (lar_simulation_time(simulation) < 0.5) advance(simulation, 100);
+    double fastest = 0, v[3];
+    lar_tool_force force;
+    lar_error error;
+    for (int i = 0; i < 20; i++) {
+        advance(simulation, 1);
+        const lar_state *state = lar_simulation_state(simulation);
+        for (int32_t node = 0; node < 6 * 8 * 4; node++) {
+            lar_state_velocity(state, node, v);
+            fastest = fmax(fastest, fmax(fabs(v[0]), fmax(fabs(v[1]), fabs(v[2]))));
+        }
+    }
+    assert_int_equal(lar_simulation_tool_force(simulation, 0, &force, &error), LAR_OK);
+    print_message("a bar along faces, nu %g, %g mm deep: %.4g N, %.1e m/s\n", nu, 1e3 * deep,
+                  force.force[2], fastest);
+    assert_true(force.force[2] > 5 && force.limited == 0);
+    assert_below(fastest, 1e-6);
+    finish(simulation, model);
+}
+
+static void what_lies_along_faces_comes_to_rest(void **unused) {
+    (void)unused;
+    lie_along(0, LAR_LAW_coupled_neo_hookean, 0.012);
+    lie_along(0.35, LAR_LAW_coupled_neo_hookean, 0.011);
+    lie_along(0.35, LAR_LAW_coupled_neo_hookean, 0.012);
+    lie_along(0.35, LAR_LAW_coupled_neo_hookean, 0.015);
+    lie_along(0.45, LAR_LAW_neo_hookean, 0.012);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(tissue_comes_to_rest),
         cmocka_unit_test(a_pinch_is_straight),
         cmocka_unit_test(what_looks_elsewhere_comes_to_rest),
+        cmocka_unit_test(what_lies_along_faces_comes_to_rest),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -322,8 +322,10 @@ static void segments_have_the_same_bits(void **unused) {
         any_segment(n, corner, &segment);
         lar_face_mean((const double(*)[3])corner, (const double[4]){0.25, 0.25, 0.25, 0.25},
                       middle);
-        lar_face_segment_one_by_one(&segment, (const double(*)[3])corner, middle, one);
-        here.segment(&segment, (const double(*)[3])corner, middle, wide);
+        double reach = fabs(noise());
+        assert_same(
+            lar_face_segment_one_by_one(&segment, (const double(*)[3])corner, middle, reach, one),
+            here.segment(&segment, (const double(*)[3])corner, middle, reach, wide));
         for (int t = 0; t < 4; t++) {
             assert_same(one[t].distance, wide[t].distance);
             assert_same(one[t].along, wide[t].along);
@@ -333,6 +335,35 @@ static void segments_have_the_same_bits(void **unused) {
         }
     }
     assert_true(through > 1000);
+}
+
+/* A segment that lies along a face, its edges or its diagonals turns by next to nothing: no point
+ * of the face at which it pushes moves by more. */
+static void points_beside_a_segment_do_not_jump(void **unused) {
+    (void)unused;
+    static const double square[4][3] = {{0, 0, 0}, {0.01, 0, 0}, {0.01, 0.01, 0}, {0, 0.01, 0}};
+    double most = 0;
+    for (int n = 0; n < 3000; n++) {
+        double angle = n % 3 == 0 ? 0 : n % 3 == 1 ? atan(1) : 3 * noise();
+        double x = 0.005 * (n % 4), reach = 0.0015 + 0.006 * fabs(noise());
+        double high = reach * fabs(noise()), turned = 1e-7 * noise(), least = 0;
+        lar_face_segment at[2][4];
+        for (int k = 0; k < 2; k++) {
+            double tilt = k == 0 ? turned : -turned, c = 0.05 * cos(angle), s = 0.05 * sin(angle);
+            lar_segment segment = {{{x - s + tilt * c, 0.005 - c - tilt * s, high - 0.05 * tilt},
+                                    {x + s - tilt * c, 0.005 + c + tilt * s, high + 0.05 * tilt}}};
+            least = lar_face_segment_closest(&segment, square, reach, at[k]);
+        }
+        for (int t = 0; t < 4; t++) {
+            assert_true(at[1][t].distance >= least - 1e-12);
+            if (at[0][t].distance < reach)
+                for (int a = 0; a < 4; a++)
+                    most = fmax(most, (reach - at[0][t].distance) / reach *
+                                          fabs(at[1][t].weight[a] - at[0][t].weight[a]));
+        }
+    }
+    print_message("no weight of a point moves by more than %.1e\n", most);
+    assert_below(most, 1e-5);
 }
 
 static void grids_have_the_same_bits(void **unused) {
@@ -384,7 +415,7 @@ static void springs_fade_without_kinks(void **unused) {
             }
             lar_face_point found;
             lar_face_closest(point, (const double(*)[3])corner, 1e-9, &found);
-            part[k] = lar_face_firmness(&found, blunt[face], change);
+            part[k] = lar_face_firmness(found.weight, blunt[face], change);
             memcpy(value, change, sizeof value);
             lar_face_slope(point, (const double(*)[3])corner, &found, value, by);
             for (int i = 0; i < 2 && k == 0; i++) slope[i] = by[4][i];
@@ -407,6 +438,7 @@ int main(void) {
         cmocka_unit_test(springs_fade_without_kinks),
         cmocka_unit_test(the_widest_has_the_same_bits),
         cmocka_unit_test(segments_have_the_same_bits),
+        cmocka_unit_test(points_beside_a_segment_do_not_jump),
         cmocka_unit_test(grids_have_the_same_bits),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
