@@ -95,19 +95,25 @@ static void a_pinch_is_straight(void **unused) {
     finish(simulation, model);
 }
 
-/* A bar across a pad of foam stands over the pad's ends, whose faces look along it: they are in the
- * bar although they do not look at it. The same on every grid. */
-static uint64_t lie(double nu, double y, const char *grid) {
-    static const double E = 2e5, deep = 0.01, radius = 0.015;
-    brick pad = {{8, 8, 4}, 0.005, 0, LAR_LAW_coupled_neo_hookean, 0, 0, 80};
+/* A bar along x at some place over a pad that stands on a ground. */
+static lar_model *bar_over(brick pad, double E, double nu, const lar_tool *bar,
+                           const double at[3]) {
     pad.shear = E / 2 / (1 + nu);
     pad.bulk = E / 3 / (1 - 2 * nu);
     lar_model *model = brick_model(&pad);
     fix_nodes(model, brick_side(&pad, 2, 0), LAR_AXIS_ALL);
-    touch_tool(model, "bar",
-               (lar_tool){.shape = LAR_TOOL_CAPSULE, .radius = radius, .length = 0.06},
-               (double[]){0.05, y, height + radius + 0.0002});
+    touch_tool(model, "bar", *bar, at);
     memcpy(model->tool[0].rest.orientation, along_x, sizeof along_x);
+    return model;
+}
+
+/* A bar across a pad of foam stands over the pad's ends, whose faces look along it: they are in the
+ * bar although they do not look at it. The same on every grid. */
+static uint64_t lie(double nu, double y, const char *grid) {
+    static const double E = 2e5, deep = 0.01, radius = 0.015;
+    static const brick pad = {{8, 8, 4}, 0.005, 0, LAR_LAW_coupled_neo_hookean, 0, 0, 80};
+    const lar_tool bar = {.shape = LAR_TOOL_CAPSULE, .radius = radius, .length = 0.06};
+    lar_model *model = bar_over(pad, E, nu, &bar, (double[]){0.05, y, height + radius + 0.0002});
     model->damping = 20;
     lar_options options = lar_options_default();
     options.grid = grid;
@@ -145,15 +151,9 @@ static void what_looks_elsewhere_comes_to_rest(void **unused) {
 /* A bar that lies along faces is as near to one end of them as to the other, wherever it pushes. */
 static void lie_along(double nu, lar_law law, double deep) {
     static const double E = 2e4, radius = 0.008;
-    brick pad = {{5, 7, 3}, 0.01, 0, law, 0, 0, 100};
-    pad.shear = E / 2 / (1 + nu);
-    pad.bulk = E / 3 / (1 - 2 * nu);
-    lar_model *model = brick_model(&pad);
-    fix_nodes(model, brick_side(&pad, 2, 0), LAR_AXIS_ALL);
-    touch_tool(model, "bar",
-               (lar_tool){.shape = LAR_TOOL_CAPSULE, .radius = radius, .length = 0.09},
-               (double[]){0.07, 0.035, 0.03 + radius + 1e-4});
-    memcpy(model->tool[0].rest.orientation, along_x, sizeof along_x);
+    const brick pad = {{5, 7, 3}, 0.01, 0, law, 0, 0, 100};
+    const lar_tool bar = {.shape = LAR_TOOL_CAPSULE, .radius = radius, .length = 0.09};
+    lar_model *model = bar_over(pad, E, nu, &bar, (double[]){0.07, 0.035, 0.03 + radius + 1e-4});
     model->damping = 380;
     lar_simulation *simulation = start(model);
     uint64_t steps = (uint64_t)(0.2 / lar_simulation_time_step(simulation));
