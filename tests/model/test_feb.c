@@ -531,6 +531,45 @@ static void test_entities(void **state) {
     lar_model_destroy(model);
 }
 
+/* A range in a set, as FEBio reads it: both ends belong to it. */
+static void test_ranges(void **state) {
+    (void)state;
+    lar_model *model = read_deck(
+        HEAD4 CONTROL("DYNAMIC") MATERIAL
+        "<Mesh>" NODES PARTS "<NodeSet name=\"some\">2:4, 5:8:2 9</NodeSet></Mesh>" DOMAINS
+        "<Boundary><bc type=\"zero displacement\" node_set=\"some\"><x_dof>1</x_dof>"
+        "</bc></Boundary>" TAIL);
+    assert_int_equal(model->fix[0].nodes.count, 6); /* 2 3 4, 5 7, 9 */
+    lar_model_destroy(model);
+    static const char *const bad[] = {"4:2", "2:4:0", "2:", ":2", "1:2:1:1", "-1:2", "2:4:-1"};
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        char text[4000], words[80];
+        snprintf(text, sizeof text,
+                 HEAD4 "<Mesh>" NODES PARTS "<NodeSet name=\"a\">%s</NodeSet></Mesh>" TAIL, bad[i]);
+        snprintf(words, sizeof words, "'%s' in a set is no id", bad[i]);
+        expect_failure(text, LAR_ERROR_FORMAT, 0, words);
+    }
+    expect_failure(WITH_MESH(NODES PARTS "<NodeSet name=\"a\">1:9223372036854775807</NodeSet>"),
+                   LAR_ERROR_FORMAT, 0, "names more ids than a deck of this size can have");
+}
+
+/* FEBio's explicit solver integrates inertia, whatever the analysis is called. */
+static void test_explicit_solver(void **state) {
+    (void)state;
+#define EXPLICIT(words)                                                                            \
+    HEAD4 "<Control>" words "<time_steps>10</time_steps><step_size>0.1</step_size>"                \
+          "<solver type=\"explicit-solid\"/></Control>\n" MATERIAL MESH4 DOMAINS TAIL
+    lar_model *model = read_deck(EXPLICIT(""));
+    assert_false(model->until_rest);
+    assert_int_equal(notices_with(model, "the explicit solver has inertia"), 0);
+    lar_model_destroy(model);
+    model = read_deck(EXPLICIT("<analysis>STATIC</analysis>"));
+    assert_false(model->until_rest);
+    assert_int_equal(notices_with(model, "the explicit solver has inertia"), 1);
+    lar_model_destroy(model);
+#undef EXPLICIT
+}
+
 /* Every prefix and every damaged byte ends in a result or a message. */
 static void test_damage(void **state) {
     (void)state;
@@ -567,7 +606,8 @@ int main(void) {
         cmocka_unit_test(test_bad_materials),   cmocka_unit_test(test_bad_meshes),
         cmocka_unit_test(test_static_and_step), cmocka_unit_test(test_wrong_words),
         cmocka_unit_test(test_sections),        cmocka_unit_test(test_mesh_only),
-        cmocka_unit_test(test_entities),        cmocka_unit_test(test_damage),
+        cmocka_unit_test(test_entities),        cmocka_unit_test(test_ranges),
+        cmocka_unit_test(test_explicit_solver), cmocka_unit_test(test_damage),
     };
     return cmocka_run_group_tests_name("feb", tests, NULL, NULL);
 }

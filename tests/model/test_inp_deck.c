@@ -60,36 +60,41 @@ static void test_supports(void **state) {
     lar_model_destroy(model);
 }
 
-/* Abaqus's own amplitude of a dynamic step is a jump; the first displacement that jumps is named.
- */
-static void test_displaced_at_once(void **state) {
+/* Abaqus/Standard ramps displacements in steps of all kinds, CalculiX lets them jump in *DYNAMIC;
+ * which of both it is is told once. */
+static void test_displaced_over_the_step(void **state) {
     (void)state;
-    static const char words[] = "this displacement is there at once";
+    static const char ramps[] = "this displacement grows linearly over the step";
+    static const char jumps[] = "this displacement is there at once";
     lar_model *model = read_deck(MESH SOFT DYNAMIC "*BOUNDARY\nWALL, 1, 3\nTIP, 1, 1, 0.1\n"
                                                    "TIP, 2, 2, 0.1\n" END);
-    assert_int_equal(notices_with(model, words), 1);
+    assert_int_equal(notices_with(model, ramps), 1);
     assert_int_equal(notices_with(model, "deck.inp:40: this displacement"), 1);
-    near(at(model, model->move[0].curve, 0), 1);
+    near(at(model, model->move[0].curve, 0), 0);
+    near(at(model, model->move[0].curve, 1), 0.5);
     lar_model_destroy(model);
-    model = read_deck(MESH SOFT "*STEP, NLGEOM\n*DYNAMIC, EXPLICIT\n, 2\n*BOUNDARY\n"
-                                "TIP, 1, 1, 0.1\n" END);
-    assert_int_equal(notices_with(model, words), 1);
-    lar_model_destroy(model);
-    model = read_deck(MESH SOFT "*AMPLITUDE, NAME=late\n1, 1, 2, 2\n" DYNAMIC
-                                "*BOUNDARY, AMPLITUDE=late\nTIP, 1, 1, 0.1\n" END);
-    assert_int_equal(notices_with(model, words), 1);
-    lar_model_destroy(model);
-    static const char *const ramped[] = {
+    static const char *const jumping[] = {
+        MESH SOFT "*STEP, NLGEOM, AMPLITUDE=STEP\n*DYNAMIC\n, 2\n*BOUNDARY\nTIP, 1, 1, 1\n" END,
+        MESH SOFT "*STEP, AMPLITUDE=STEP\n*DYNAMIC, EXPLICIT\n, 2\n*BOUNDARY\nTIP, 1, 1, 1\n" END,
+        MESH SOFT "*AMPLITUDE, NAME=late\n1, 1, 2, 2\n" DYNAMIC
+                  "*BOUNDARY, AMPLITUDE=late\nTIP, 1, 1, 0.1\n" END};
+    static const char *const quiet[] = {
         MESH SOFT STATIC "*BOUNDARY\nTIP, 1, 1, 0.1\n" END,
         MESH SOFT DYNAMIC "*BOUNDARY\nTIP, 1, 1\nTIP, 4, 6, 1\n" END,
+        MESH SOFT "*STEP, NLGEOM\n*VISCO\n0.1, 2\n*BOUNDARY\nTIP, 1, 1, 0.1\n" END,
         MESH SOFT "*AMPLITUDE, NAME=up\n0, 0, 1, 1\n" DYNAMIC
                   "*BOUNDARY, AMPLITUDE=up\nTIP, 1, 1, 0.1\n" END,
         MESH SOFT "*STEP, NLGEOM, AMPLITUDE=RAMP\n*DYNAMIC\n, 2\n*BOUNDARY\nTIP, 1, 1, 1\n" END};
-    for (size_t i = 0; i < sizeof ramped / sizeof *ramped; i++) {
-        model = read_deck(ramped[i]);
-        assert_int_equal(notices_with(model, words), 0);
+    const size_t jump_count = sizeof jumping / sizeof *jumping;
+    for (size_t i = 0; i < jump_count + sizeof quiet / sizeof *quiet; i++) {
+        bool jump = i < jump_count;
+        model = read_deck(jump ? jumping[i] : quiet[i - jump_count]);
+        assert_int_equal(notices_with(model, jumps), jump);
+        assert_int_equal(notices_with(model, ramps), 0);
         lar_model_destroy(model);
     }
+    refused(MESH SOFT "*STEP, NLGEOM\n*DYNAMIC, EXPLICIT\n, 2\n*BOUNDARY\nTIP, 1, 1, 0.1\n" END,
+            LAR_ERROR_UNSUPPORTED, AFTER_SOFT + 4, "Abaqus holds these nodes at 0");
 }
 
 static void test_bad_supports(void **state) {
@@ -406,6 +411,18 @@ static void test_ranges(void **state) {
 
 /* ---- steps --------------------------------------------------------------------------------- */
 
+static void test_what_goes_on_from_elsewhere(void **state) {
+    (void)state;
+    refused(MESH SOFT "*RESTART, READ, STEP=1\n" STATIC END, LAR_ERROR_UNSUPPORTED, AFTER_SOFT,
+            "*RESTART, READ goes on from the results of another run");
+    refused("*NODE\n1, 0, 0, 0\n2, 1, 0, 0\n3, 1, 1, 0\n4, 0, 1, 0\n5, 0, 0, 1\n6, 1, 0, 1\n"
+            "7, 1, 1, 1\n8, 0, 1, 1\n*ELEMENT, TYPE=C3D8RP\n1, 1, 2, 3, 4, 5, 6, 7, 8\n" STATIC END,
+            LAR_ERROR_UNSUPPORTED, 10, "elements of type 'C3D8RP' compute more than displacements");
+    lar_model *model = read_deck(MESH SOFT "*STEP, NLGEOM\n*STATIC, STABILIZE=0.01\n" END);
+    assert_int_equal(notices_with(model, "STABILIZE, a damping, was left out"), 1);
+    lar_model_destroy(model);
+}
+
 static void test_steps(void **state) {
     (void)state;
     lar_model *model =
@@ -564,7 +581,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_supports),
         cmocka_unit_test(test_bad_supports),
-        cmocka_unit_test(test_displaced_at_once),
+        cmocka_unit_test(test_displaced_over_the_step),
         cmocka_unit_test(test_pressure_twice),
         cmocka_unit_test(test_ranges),
         cmocka_unit_test(test_loads),
@@ -573,6 +590,7 @@ int main(void) {
         cmocka_unit_test(test_initial_velocity),
         cmocka_unit_test(test_contact),
         cmocka_unit_test(test_friction),
+        cmocka_unit_test(test_what_goes_on_from_elsewhere),
         cmocka_unit_test(test_steps),
         cmocka_unit_test(test_parts),
         cmocka_unit_test(test_forces_on_supports),

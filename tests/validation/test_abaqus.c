@@ -69,8 +69,8 @@ static void a_cube_that_relaxes(void **unused) {
         near(at_once.stress, 0.07436, 1e-4);
         near(in_the_end.stress, 0.02990, 1e-4);
         double relaxes = at_once.stress - in_the_end.stress;
-        answer sudden = viscous(tau, "", "*VISCO", PULL);
-        answer grown = viscous(tau, ", AMPLITUDE=RAMP", "*VISCO", PULL);
+        answer sudden = viscous(tau, ", AMPLITUDE=STEP", "*VISCO", PULL);
+        answer grown = viscous(tau, "", "*VISCO", PULL);
         near(sudden.stress, in_the_end.stress + relaxes * exp(-1 / tau), 3e-3);
         near(grown.stress, in_the_end.stress + relaxes * tau * (1 - exp(-1 / tau)), 1e-3);
         print_message("tau %g s: %.5f sudden, %.5f grown\n", tau, sudden.stress, grown.stress);

@@ -264,13 +264,15 @@ static lar_status list_ids(lar_feb *feb, const xmlNode *set, id_list *list) {
         status = lar_feb_id_attribute(feb, child, "id", &list->id[list->count++]);
     }
     if (list->count > 0 || status) return status;
-    lar_feb_list text = lar_feb_list_of(feb, set);
-    for (lar_span item; lar_feb_list_next(&text, &item);) {
+    lar_feb_id_list text = lar_feb_id_list_of(feb, set);
+    for (bool found = true; !status;) {
+        int64_t id;
+        status = lar_feb_next_id(feb, &text, &id, &found);
+        if (status || !found) return status;
         if (!LAR_GROW(list->id, list->room, list->count)) return lar_feb_no_memory(feb, "a set");
-        if (!lar_span_int64(item, &list->id[list->count++]))
-            return lar_feb_fail(feb, set, LAR_ERROR_FORMAT, "an entry of the set is no id");
+        list->id[list->count++] = id;
     }
-    return LAR_OK;
+    return status;
 }
 
 /* The element set of that name, or the part; NULL: there is none. */

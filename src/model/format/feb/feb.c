@@ -42,14 +42,29 @@ static lar_status check_control(lar_feb *feb, const xmlNode *control) {
     return lar_feb_notice_others(feb, control, known);
 }
 
+/* FEBio's explicit solver has inertia whatever <analysis> says. */
+static bool is_explicit(lar_feb *feb, const xmlNode *control) {
+    const xmlNode *by[] = {lar_feb_child(feb->root, "Module"),
+                           control ? lar_feb_child(control, "solver") : NULL};
+    for (int i = 0; i < 2; i++) {
+        const char *type = by[i] ? lar_feb_attribute(feb, by[i], "type") : NULL;
+        if (type && strcmp(type, "explicit-solid") == 0) return true;
+    }
+    return false;
+}
+
 /* The word in <analysis>, or in its attribute type. */
 static lar_status read_analysis(lar_feb *feb, const xmlNode *control) {
     const xmlNode *analysis = control ? lar_feb_child(control, "analysis") : NULL;
-    feb->is_static = true; /* FEBio's default */
+    feb->is_static = !is_explicit(feb, control); /* FEBio's default */
     if (!analysis) return LAR_OK;
     const char *type = lar_feb_attribute(feb, analysis, "type");
     lar_span word = type ? (lar_span){type, strlen(type)} : lar_feb_text(feb, analysis);
-    if (lar_span_equal_nocase(word, "STATIC") || lar_span_equal(word, "0")) return LAR_OK;
+    if (lar_span_equal_nocase(word, "STATIC") || lar_span_equal(word, "0"))
+        return feb->is_static ? LAR_OK
+                              : lar_feb_notice(feb, analysis,
+                                               "the explicit solver has inertia in an analysis of "
+                                               "any kind: the deck is dynamic");
     feb->is_static = false;
     if (lar_span_equal_nocase(word, "DYNAMIC") || lar_span_equal(word, "1")) return LAR_OK;
     return lar_feb_fail(feb, analysis, LAR_ERROR_UNSUPPORTED,

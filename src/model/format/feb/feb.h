@@ -48,6 +48,7 @@ typedef struct lar_feb {
     xmlDoc *document;
     xmlNode *root;
     xmlDict *strings; /* owns text that had to be put together */
+    int64_t ids_left; /* that ranges in sets may still name */
 
     lar_mesh *mesh;
     lar_model *model;   /* NULL when only the mesh is wanted */
@@ -121,6 +122,17 @@ typedef struct lar_feb_list {
 } lar_feb_list;
 lar_feb_list lar_feb_list_of(lar_feb *feb, const xmlNode *element);
 bool lar_feb_list_next(lar_feb_list *list, lar_span *item);
+
+/* The ids in the text of a set: numbers, and ranges first:last and first:last:step as FEBio reads
+ * them. */
+typedef struct lar_feb_id_list {
+    const xmlNode *set;
+    lar_feb_list text;
+    int64_t next, last, step; /* what is left of a range */
+} lar_feb_id_list;
+lar_feb_id_list lar_feb_id_list_of(lar_feb *feb, const xmlNode *set);
+/* *found: false at the end. */
+lar_status lar_feb_next_id(lar_feb *feb, lar_feb_id_list *list, int64_t *id, bool *found);
 
 /* Exactly `count` finite numbers, or ids, in the text of an element. */
 lar_status lar_feb_doubles(lar_feb *feb, const xmlNode *element, double *value, int count);

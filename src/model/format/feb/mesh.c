@@ -159,16 +159,11 @@ static lar_status read_set_ids(mesh_reader *reader, const xmlNode *set, const ch
         }
         return status;
     }
-    lar_feb_list list = lar_feb_list_of(feb, set);
-    lar_span item;
-    while (!status && lar_feb_list_next(&list, &item)) {
-        if (!lar_span_int64(item, &id))
-            return lar_fail(feb->error, LAR_ERROR_FORMAT,
-                            "%s:%d: '%.*s' in a set is no id; write whole numbers separated by "
-                            "commas",
-                            feb->path, list.line, (int)(item.length < 40 ? item.length : 40),
-                            item.at);
-        status = lar_mesh_builder_set_id(reader->builder, id, list.line, feb->error);
+    lar_feb_id_list list = lar_feb_id_list_of(feb, set);
+    for (bool found = true; !status;) {
+        status = lar_feb_next_id(feb, &list, &id, &found);
+        if (status || !found) return status;
+        status = lar_mesh_builder_set_id(reader->builder, id, list.text.line, feb->error);
     }
     return status;
 }

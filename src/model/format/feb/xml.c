@@ -70,6 +70,8 @@ lar_status lar_feb_open(lar_feb *feb, const char *path, const lar_bytes *bytes, 
     feb->path = path;
     feb->error = error;
     feb->constant_curve = -1;
+    enum { SPARE_IDS = 1000000 };
+    feb->ids_left = SPARE_IDS + (int64_t)(bytes->size < INT_MAX ? bytes->size : INT_MAX);
     if (bytes->size == 0 || bytes->size > INT_MAX)
         return lar_fail(error, LAR_ERROR_FORMAT,
                         "%s: %zu bytes are %s for a FEBio deck; check the file", path, bytes->size,
@@ -305,6 +307,55 @@ bool lar_feb_list_next(lar_feb_list *list, lar_span *item) {
     item->length = strcspn(list->at, separators);
     list->at += item->length;
     return true;
+}
+
+lar_feb_id_list lar_feb_id_list_of(lar_feb *feb, const xmlNode *set) {
+    return (lar_feb_id_list){.set = set, .text = lar_feb_list_of(feb, set), .last = -1, .step = 1};
+}
+
+/* first, first:last or first:last:step. */
+static bool parse_range(lar_span item, lar_feb_id_list *range) {
+    int64_t value[3] = {0, 0, 1};
+    int count = 0;
+    for (bool more = true; more; count++) {
+        lar_span one;
+        if (count == 3) return false;
+        more = lar_span_split(item, ':', &one, &item);
+        if (!lar_span_int64(one, &value[count])) return false;
+    }
+    range->next = value[0];
+    range->last = value[count > 1];
+    range->step = value[2];
+    return range->step > 0 && range->next >= 0 && (count == 1 || range->last >= range->next);
+}
+
+lar_status lar_feb_next_id(lar_feb *feb, lar_feb_id_list *list, int64_t *id, bool *found) {
+    lar_span item;
+    *found = list->next <= list->last;
+    if (!*found) {
+        *found = lar_feb_list_next(&list->text, &item);
+        if (!*found) return LAR_OK;
+        if (!parse_range(item, list))
+            return lar_fail(feb->error, LAR_ERROR_FORMAT,
+                            "%s:%d: '%.*s' in a set is no id; write whole numbers, or first:last "
+                            "or first:last:step, separated by commas",
+                            feb->path, list->text.line, (int)(item.length < 40 ? item.length : 40),
+                            item.at);
+        int64_t more = (list->last - list->next) / list->step;
+        if (more > feb->ids_left)
+            return lar_fail(feb->error, LAR_ERROR_FORMAT,
+                            "%s:%d: '%.*s' names more ids than a deck of this size can have; "
+                            "correct the range",
+                            feb->path, list->text.line, (int)(item.length < 40 ? item.length : 40),
+                            item.at);
+        feb->ids_left -= more;
+    }
+    *id = list->next;
+    if (list->last - list->next < list->step)
+        list->next = 0, list->last = -1;
+    else
+        list->next += list->step;
+    return LAR_OK;
 }
 
 /* `count` values by `parse` (which returns false for a bad one). */

@@ -168,19 +168,39 @@ static lar_status hold_of(inp_deck *deck, double value, int curve, int32_t *hold
     return LAR_OK;
 }
 
-/* The curve of a displacement. In all but static steps Abaqus's own is a jump, which few mean. */
+/* Abaqus/Explicit takes such a displacement for 0, CalculiX does not. */
+static lar_status refuse_explicit(const inp_deck *deck, const inp_card *card) {
+    lar_span name;
+    if (!deck->step.explicit || deck->step.amplitude || inp_parameter(card, "AMPLITUDE", &name))
+        return LAR_OK;
+    return inp_fail(deck, deck->reader.line, LAR_ERROR_UNSUPPORTED,
+                    "a displacement without AMPLITUDE in *DYNAMIC, EXPLICIT: Abaqus holds these "
+                    "nodes at 0, CalculiX displaces them at once; name the *AMPLITUDE that is "
+                    "meant (AMPLITUDE=)");
+}
+
+/* The curve of a displacement. Abaqus/Standard ramps those that name none in steps of all kinds;
+ * CalculiX lets them jump in *DYNAMIC. */
 static lar_status read_curve(inp_deck *deck, const inp_card *card, int *curve) {
+    const bool dynamic = deck->step.procedure == INP_DYNAMIC;
+    lar_span name;
     lar_status status = inp_in_step(deck, card);
-    if (!status) status = inp_curve_of(deck, card, curve);
-    if (status || deck->step.at_once || deck->step.procedure == INP_STATIC ||
-        lar_curve_value(&deck->model->curve[*curve], 0.0) == 0.0)
-        return status;
-    deck->step.at_once = true;
-    return inp_notice(
-        deck, deck->reader.line,
-        "this displacement is there at once, as in Abaqus without AMPLITUDE in a "
-        "*DYNAMIC or *VISCO step: the body starts with these nodes displaced, and shakes; to "
-        "ramp it, name an *AMPLITUDE that rises from 0 (AMPLITUDE=)");
+    if (!status) status = refuse_explicit(deck, card);
+    if (!status) status = inp_curve_of(deck, card, true, curve);
+    if (status || deck->step.told || deck->step.procedure == INP_STATIC) return status;
+    if (lar_curve_value(&deck->model->curve[*curve], 0.0) != 0.0) {
+        deck->step.told = true;
+        return inp_notice(deck, deck->reader.line,
+                          "this displacement is there at once: the body starts with these nodes "
+                          "displaced, and shakes; to ramp it, name an *AMPLITUDE that rises from 0 "
+                          "(AMPLITUDE=)");
+    }
+    if (!dynamic || deck->step.amplitude || inp_parameter(card, "AMPLITUDE", &name)) return LAR_OK;
+    deck->step.told = true;
+    return inp_notice(deck, deck->reader.line,
+                      "this displacement grows linearly over the step, as in Abaqus without "
+                      "AMPLITUDE; in CalculiX it is there at once, and here with AMPLITUDE=STEP "
+                      "of *STEP");
 }
 
 static lar_status read_support(inp_deck *deck, const inp_card *card, lar_span line) {

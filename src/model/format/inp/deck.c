@@ -75,7 +75,11 @@ static lar_status read_procedure(inp_deck *deck, const inp_card *card, inp_proce
                         "a second procedure in the step of line %d; keep one", deck->step.line);
     deck->step.procedure = procedure;
     deck->step.long_term = inp_parameter(card, "LONG TERM", &ignored);
-    if (inp_data_line(&deck->reader, &line)) status = inp_fields(deck, line, field, 8, &count);
+    deck->step.explicit = inp_parameter(card, "EXPLICIT", &ignored);
+    if (inp_parameter(card, "STABILIZE", &ignored))
+        status = inp_notice(deck, card->line, "STABILIZE, a damping, was left out");
+    if (!status && inp_data_line(&deck->reader, &line))
+        status = inp_fields(deck, line, field, 8, &count);
     if (!status)
         status = inp_optional(deck, field, count, 1, "the period of the step, a number in seconds",
                               1.0, &deck->step.period);
@@ -106,6 +110,32 @@ static lar_status enter_step(inp_deck *deck, const inp_card *card) {
 static lar_status leave_step(inp_deck *deck, const inp_card *card) {
     (void)card;
     deck->step.open = false;
+    return LAR_OK;
+}
+
+/* A run that goes on from the results of another one begins elsewhere. */
+static lar_status read_restart(inp_deck *deck, const inp_card *card) {
+    lar_span value;
+    if (!inp_parameter(card, "READ", &value)) return LAR_OK;
+    return inp_fail(deck, card->line, LAR_ERROR_UNSUPPORTED,
+                    "*RESTART, READ goes on from the results of another run, which Lariat does not "
+                    "read; remove it, or put both steps' conditions into one");
+}
+
+/* Letters behind C3D8 that only say how it computes displacements. */
+static lar_status check_element(inp_deck *deck, const inp_card *card) {
+    static const char hexahedron[] = "C3D8", how[] = "RHISrhis";
+    lar_span type;
+    if (!inp_parameter(card, "TYPE", &type)) return LAR_OK;
+    const size_t length = strlen(hexahedron);
+    if (type.length <= length || strncasecmp(type.at, hexahedron, length) != 0) return LAR_OK;
+    for (size_t c = length; c < type.length; c++)
+        if (!memchr(how, type.at[c], strlen(how)))
+            return inp_fail(deck, card->line, LAR_ERROR_UNSUPPORTED,
+                            "elements of type '%.*s' compute more than displacements (P: pore "
+                            "pressure, T: temperature, E: voltage), Lariat does not; name "
+                            "another type, or take only the mesh into a scene (mesh: FILE)",
+                            inp_shown(type), type.at);
     return LAR_OK;
 }
 
@@ -153,7 +183,7 @@ static const keyword_row keywords[] = {
     {"SURFACE BEHAVIOR", inp_read_surface_behavior, NULL, OF_DECK},
     {"FRICTION", inp_read_friction, NULL, OF_DECK},
     {"NODE", NULL, NULL, OF_MESH},
-    {"ELEMENT", NULL, NULL, OF_MESH},
+    {"ELEMENT", check_element, NULL, OF_MESH},
     {"NSET", NULL, NULL, OF_MESH},
     {"ELSET", NULL, NULL, OF_MESH},
     {"SURFACE", NULL, NULL, OF_MESH},
@@ -164,7 +194,7 @@ static const keyword_row keywords[] = {
     {"INSTANCE", NULL, NULL, OF_MESH},
     {"END INSTANCE", NULL, NULL, OF_MESH},
     {"PREPRINT", NULL, NULL, HARMLESS},
-    {"RESTART", NULL, NULL, HARMLESS},
+    {"RESTART", read_restart, NULL, HARMLESS},
     {"OUTPUT", NULL, NULL, RESULTS},
     {"NODE OUTPUT", NULL, NULL, HARMLESS},
     {"ELEMENT OUTPUT", NULL, NULL, HARMLESS},

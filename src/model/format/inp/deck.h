@@ -92,11 +92,12 @@ typedef struct inp_step {
     bool open; /* between *STEP and *END STEP */
     inp_procedure procedure;
     bool long_term; /* of *STATIC: what is viscous has relaxed */
+    bool explicit;  /* of *DYNAMIC */
     double period;  /* [s] */
     int amplitude;  /* AMPLITUDE of *STEP: 0 not given, 1 STEP, 2 RAMP */
     bool large;     /* NLGEOM */
     bool supports;  /* a *BOUNDARY has been read in it */
-    bool at_once;   /* a notice says that displacements are there at once */
+    bool told;      /* a notice says when displacements are there */
 } inp_step;
 
 typedef struct inp_deck {
@@ -187,8 +188,8 @@ static inline bool inp_is_static(const inp_deck *deck) {
     return deck->step.procedure == INP_STATIC || deck->step.procedure == INP_VISCO;
 }
 
-/* The curve of a load: AMPLITUDE of its card, else what the step says. */
-lar_status inp_curve_of(inp_deck *deck, const inp_card *card, int *curve);
+/* The curve of a condition: AMPLITUDE of its card, else what *STEP says, else `ramps`. */
+lar_status inp_curve_of(inp_deck *deck, const inp_card *card, bool ramps, int *curve);
 /* Refuses a load that stands outside of a step. */
 lar_status inp_in_step(const inp_deck *deck, const inp_card *card);
 

@@ -14,7 +14,7 @@ static lar_status read_load_card(inp_deck *deck, const inp_card *card, int *curv
     static const char known[] = "OP,AMPLITUDE";
     lar_status status = inp_only(deck, card, known);
     if (!status) status = inp_in_step(deck, card);
-    return status ? status : inp_curve_of(deck, card, curve);
+    return status ? status : inp_curve_of(deck, card, deck->step.procedure == INP_STATIC, curve);
 }
 
 /* ---- *CLOAD -------------------------------------------------------------------------------- */

@@ -249,10 +249,9 @@ static lar_status step_curve(inp_deck *deck, bool ramps, int *curve) {
     return status;
 }
 
-lar_status inp_curve_of(inp_deck *deck, const inp_card *card, int *curve) {
+lar_status inp_curve_of(inp_deck *deck, const inp_card *card, bool ramps, int *curve) {
     lar_span name;
-    bool ramps =
-        deck->step.amplitude ? deck->step.amplitude == 2 : deck->step.procedure == INP_STATIC;
+    if (deck->step.amplitude) ramps = deck->step.amplitude == 2;
     if (!inp_parameter(card, "AMPLITUDE", &name)) return step_curve(deck, ramps, curve);
     const inp_amplitude *amplitude = INP_FIND(deck, amplitude, name);
     if (amplitude) {
