@@ -45,4 +45,9 @@ lar_rest_words lar_model_follow_static(lar_model *model, const char *what);
 double lar_model_loads_end(const lar_model *model);
 bool lar_model_repeats(const lar_model *model);
 
+/* What readers say of a displacement in a deck with time; %s: what to name, and by which word. */
+#define LAR_DISPLACED_AT_ONCE                                                                      \
+    "this displacement is there at once: the body starts with these nodes displaced, and shakes; " \
+    "to ramp it, name %s that rises from 0 (%s=)"
+
 #endif

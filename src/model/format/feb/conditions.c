@@ -8,6 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "model/rest.h"
+
 lar_status lar_feb_need_child(lar_feb *feb, const xmlNode *parent, const char *name,
                               const xmlNode **child) {
     *child = lar_feb_child(parent, name);
@@ -193,10 +195,7 @@ static lar_status read_fix(lar_feb *feb, const xmlNode *at) {
 static lar_status notice_at_once(lar_feb *feb, const xmlNode *value, double by, int curve) {
     const lar_model *model = feb->model;
     if (by * lar_curve_value(&model->curve[curve], 0.0) == 0.0 || feb->is_static) return LAR_OK;
-    return lar_feb_notice(feb, value,
-                          "this displacement is there at once: the body starts with these nodes "
-                          "displaced, and shakes; to ramp it, name a load curve that rises from 0 "
-                          "(lc=)");
+    return lar_feb_notice(feb, value, LAR_DISPLACED_AT_ONCE, "a load curve", "lc");
 }
 
 /* Its size stands in <value> in version 4, in <scale> in version 3. */

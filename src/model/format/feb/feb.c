@@ -61,10 +61,10 @@ static lar_status read_analysis(lar_feb *feb, const xmlNode *control) {
     const char *type = lar_feb_attribute(feb, analysis, "type");
     lar_span word = type ? (lar_span){type, strlen(type)} : lar_feb_text(feb, analysis);
     if (lar_span_equal_nocase(word, "STATIC") || lar_span_equal(word, "0"))
-        return feb->is_static ? LAR_OK
-                              : lar_feb_notice(feb, analysis,
-                                               "the explicit solver has inertia in an analysis of "
-                                               "any kind: the deck is dynamic");
+        return feb->is_static
+                   ? LAR_OK
+                   : lar_feb_notice(feb, analysis,
+                                    "the explicit solver has inertia: the deck is dynamic");
     feb->is_static = false;
     if (lar_span_equal_nocase(word, "DYNAMIC") || lar_span_equal(word, "1")) return LAR_OK;
     return lar_feb_fail(feb, analysis, LAR_ERROR_UNSUPPORTED,

@@ -337,15 +337,14 @@ lar_status lar_feb_next_id(lar_feb *feb, lar_feb_id_list *list, int64_t *id, boo
         if (!*found) return LAR_OK;
         if (!parse_range(item, list))
             return lar_fail(feb->error, LAR_ERROR_FORMAT,
-                            "%s:%d: '%.*s' in a set is no id; write whole numbers, or first:last "
-                            "or first:last:step, separated by commas",
+                            "%s:%d: '%.*s' in a set is no id; write whole numbers separated by "
+                            "commas, or first:last:step",
                             feb->path, list->text.line, (int)(item.length < 40 ? item.length : 40),
                             item.at);
         int64_t more = (list->last - list->next) / list->step;
         if (more > feb->ids_left)
             return lar_fail(feb->error, LAR_ERROR_FORMAT,
-                            "%s:%d: '%.*s' names more ids than a deck of this size can have; "
-                            "correct the range",
+                            "%s:%d: '%.*s' names more ids than such a deck can have; correct it",
                             feb->path, list->text.line, (int)(item.length < 40 ? item.length : 40),
                             item.at);
         feb->ids_left -= more;

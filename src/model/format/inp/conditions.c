@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "model/format/inp/deck.h"
+#include "model/rest.h"
 
 /* ---- *AMPLITUDE ---------------------------------------------------------------------------- */
 
@@ -174,9 +175,8 @@ static lar_status refuse_explicit(const inp_deck *deck, const inp_card *card) {
     if (!deck->step.explicit || deck->step.amplitude || inp_parameter(card, "AMPLITUDE", &name))
         return LAR_OK;
     return inp_fail(deck, deck->reader.line, LAR_ERROR_UNSUPPORTED,
-                    "a displacement without AMPLITUDE in *DYNAMIC, EXPLICIT: Abaqus holds these "
-                    "nodes at 0, CalculiX displaces them at once; name the *AMPLITUDE that is "
-                    "meant (AMPLITUDE=)");
+                    "a displacement without AMPLITUDE in *DYNAMIC, EXPLICIT is 0 in Abaqus and "
+                    "there at once in CalculiX; name the one that is meant (AMPLITUDE=)");
 }
 
 /* The curve of a displacement. Abaqus/Standard ramps those that name none in steps of all kinds;
@@ -190,17 +190,15 @@ static lar_status read_curve(inp_deck *deck, const inp_card *card, int *curve) {
     if (status || deck->step.told || deck->step.procedure == INP_STATIC) return status;
     if (lar_curve_value(&deck->model->curve[*curve], 0.0) != 0.0) {
         deck->step.told = true;
-        return inp_notice(deck, deck->reader.line,
-                          "this displacement is there at once: the body starts with these nodes "
-                          "displaced, and shakes; to ramp it, name an *AMPLITUDE that rises from 0 "
-                          "(AMPLITUDE=)");
+        return inp_notice(deck, deck->reader.line, LAR_DISPLACED_AT_ONCE, "an *AMPLITUDE",
+                          "AMPLITUDE");
     }
     if (!dynamic || deck->step.amplitude || inp_parameter(card, "AMPLITUDE", &name)) return LAR_OK;
     deck->step.told = true;
-    return inp_notice(deck, deck->reader.line,
-                      "this displacement grows linearly over the step, as in Abaqus without "
-                      "AMPLITUDE; in CalculiX it is there at once, and here with AMPLITUDE=STEP "
-                      "of *STEP");
+    return inp_notice(
+        deck, deck->reader.line,
+        "this displacement grows linearly over the step, as in Abaqus without "
+        "AMPLITUDE; with AMPLITUDE=STEP of *STEP it is there at once, as in CalculiX");
 }
 
 static lar_status read_support(inp_deck *deck, const inp_card *card, lar_span line) {

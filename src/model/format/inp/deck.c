@@ -118,8 +118,8 @@ static lar_status read_restart(inp_deck *deck, const inp_card *card) {
     lar_span value;
     if (!inp_parameter(card, "READ", &value)) return LAR_OK;
     return inp_fail(deck, card->line, LAR_ERROR_UNSUPPORTED,
-                    "*RESTART, READ goes on from the results of another run, which Lariat does not "
-                    "read; remove it, or put both steps' conditions into one");
+                    "*RESTART, READ goes on from the results of another run, which are not read; "
+                    "remove it");
 }
 
 /* Letters behind C3D8 that only say how it computes displacements. */
@@ -132,9 +132,8 @@ static lar_status check_element(inp_deck *deck, const inp_card *card) {
     for (size_t c = length; c < type.length; c++)
         if (!memchr(how, type.at[c], strlen(how)))
             return inp_fail(deck, card->line, LAR_ERROR_UNSUPPORTED,
-                            "elements of type '%.*s' compute more than displacements (P: pore "
-                            "pressure, T: temperature, E: voltage), Lariat does not; name "
-                            "another type, or take only the mesh into a scene (mesh: FILE)",
+                            "elements of type '%.*s' compute more than displacements, which "
+                            "Lariat does not; take only the mesh into a scene (mesh: FILE)",
                             inp_shown(type), type.at);
     return LAR_OK;
 }
