@@ -7,8 +7,6 @@
 #include <unistd.h>
 
 #include "base/memory.h"
-#include "base/union_find.h"
-#include "base/vector.h"
 #include "cli/commands.h"
 #include "cli/mesh_real_time.h"
 #include "cli/report/mesh.h"
@@ -127,6 +125,12 @@ static int inspect(mesh_report *report) {
     else
         report->speed = cli_measure_speed(model);
     lar_model_destroy(model);
+    lar_mesh_arrays mesh;
+    lar_surface_arrays surface;
+    lar_meshing_arrays(report->meshing, &mesh, &surface);
+    if (!status && !(mesh_shape_of_surface(&surface, &report->surface) &&
+                     mesh_shape_of_mesh(&mesh, &report->mesh)))
+        status = cli_complain(&cli_mesh, CLI_FAILED, "out of memory");
     return status;
 }
 
@@ -160,53 +164,26 @@ static bool doubt_units(const mesh_report *report) {
     return true;
 }
 
-/* Bodies of a surface: its pieces that hang together and have an inside, for a hollow in a body has
- * a volume below zero. Negative: no memory. */
-static int32_t surface_bodies(const lar_surface_arrays *s) {
-    int32_t *parent = lar_calloc((size_t)s->vertices + 1, sizeof *parent), bodies = 0;
-    double *volume = lar_calloc((size_t)s->vertices + 1, sizeof *volume);
-    const bool done = parent && volume;
-    if (done) lar_union_start(parent, s->vertices);
-    for (int32_t i = 0; done && i < s->triangles; i++)
-        for (int k = 1; k < 3; k++) lar_union_join(parent, s->triangle[i][0], s->triangle[i][k]);
-    for (int32_t i = 0; done && i < s->triangles; i++) {
-        const int32_t *corner = s->triangle[i];
-        double across[3];
-        lar_cross(s->vertex[corner[1]], s->vertex[corner[2]], across);
-        volume[lar_union_root(parent, corner[0])] += lar_dot(s->vertex[corner[0]], across);
-    }
-    for (int32_t n = 0; done && n < s->vertices; n++) bodies += volume[n] > 0;
-    free(parent);
-    free(volume);
-    return done ? bodies : -1;
-}
-
-/* Of a mesh, each of whose nodes an element has. */
-static int32_t mesh_bodies(const lar_mesh_arrays *m) {
-    int32_t *parent = lar_calloc((size_t)m->nodes + 1, sizeof *parent), bodies = 0;
-    if (!parent) return -1;
-    lar_union_start(parent, m->nodes);
-    for (int32_t e = 0; e < m->elements; e++)
-        for (int a = 1; a < 8; a++) lar_union_join(parent, m->element[e][0], m->element[e][a]);
-    for (int32_t n = 0; n < m->nodes; n++) bodies += parent[n] == n;
-    free(parent);
-    return bodies;
-}
-
-/* Two bodies with a gap between them that become one are held together where nothing holds them. */
-static void doubt_bodies(const mesh_report *report) {
-    if (report->info.image || report->info.regions != 1) return;
-    lar_mesh_arrays mesh;
-    lar_surface_arrays surface;
-    lar_meshing_arrays(report->meshing, &mesh, &surface);
-    const int32_t of_surface = surface_bodies(&surface), of_mesh = mesh_bodies(&mesh);
-    if (of_mesh > 0 && of_mesh < of_surface)
+/* Two bodies with a gap between them that become one are held together where nothing holds them;
+ * sheets about as thick as an element have holes where two halves of it are lost. */
+static void doubt_shape(const mesh_report *report) {
+    const mesh_shape mesh = report->mesh, surface = report->surface;
+    if (report->info.regions != 1) return; /* surfaces of several are open where these meet */
+    if (!report->info.image && mesh.bodies < surface.bodies)
         cli_complain(&cli_mesh, CLI_DONE,
                      "note: the surface has %d bodies and the mesh %d: gaps between them that are "
                      "thinner than an element of %s are closed, or such bodies left out; take more "
                      "elements or a smaller size, or give each body a file of its own and say "
                      "--apart",
-                     (int)of_surface, (int)of_mesh, cli_length(report->info.size).text);
+                     (int)surface.bodies, (int)mesh.bodies, cli_length(report->info.size).text);
+    const int32_t holes = mesh.holes - surface.holes;
+    if (holes > 0)
+        cli_complain(&cli_mesh, CLI_DONE,
+                     "note: the mesh has %d hole%s that the surface has not: walls are about as "
+                     "thin as an element of %s, or gaps bridged in places; there it is softer or "
+                     "stiffer than the body: take elements of two thirds of a wall's thickness or "
+                     "less",
+                     (int)holes, holes > 1 ? "s" : "", cli_length(report->info.size).text);
 }
 
 /* What the user should look at twice: another unit, parts that the grid is too coarse for. */
@@ -227,7 +204,7 @@ static void doubt(const mesh_report *report, bool cubes) {
             &cli_mesh, CLI_DONE,
             "note: the body is %.4g m long; if the file is in millimetres, say --scale 0.001",
             size);
-    doubt_bodies(report);
+    doubt_shape(report);
     if (quality->true_volume > 0 && lost < -LOST && report->info.pinholes > 0)
         cli_complain(&cli_mesh, CLI_DONE,
                      "note: the mesh holds %.0f %% more than the true surface, of which hollows of "

@@ -252,4 +252,22 @@ expect 0 "$LARIAT" mesh near.stl --elements 500 --title near
 complains 'note: the surface has 2 bodies and the mesh 1: gaps between them .* are closed'
 expect 0 "$LARIAT" mesh top.obj --scale 0.001 --elements 500 --title whole
 if grep -q 'bodies and the mesh' "$SCRATCH/err"; then fail "$(cat "$SCRATCH/err")"; fi
+# A plate aslant, about as thick as an element, has holes; with smaller elements none.
+awk 'function tri(a, b, c) { print "facet normal 0 0 0\nouter loop\nvertex " p[a] "\nvertex " p[b] "\nvertex " p[c] "\nendloop\nendfacet" }
+    BEGIN {
+        print "solid plate"
+        for (i = 0; i < 8; i++) {
+            x = 0.03 * (i % 2); y = 0.03 * (int(i / 2) % 2); z = 0.002 * int(i / 4)
+            u = x * cos(0.5) - z * sin(0.5); w = x * sin(0.5) + z * cos(0.5)
+            p[i] = sprintf("%.9g %.9g %.9g", u * cos(0.7) - y * sin(0.7), u * sin(0.7) + y * cos(0.7), w)
+        }
+        split("0 2 3 1 4 5 7 6 0 1 5 4 2 6 7 3 0 4 6 2 1 3 7 5", q, " ")
+        for (f = 0; f < 6; f++) { tri(q[4*f+1], q[4*f+2], q[4*f+3]); tri(q[4*f+1], q[4*f+3], q[4*f+4]) }
+        print "endsolid plate"
+    }' > plate.stl
+expect 0 "$LARIAT" mesh plate.stl --size 0.0022 --title plate
+complains 'note: the mesh has [0-9]* holes that the surface has not: walls are about as thin'
+expect 0 "$LARIAT" mesh plate.stl --size 0.0013 --title plate --force
+if grep -q 'holes' "$SCRATCH/err"; then fail "$(cat "$SCRATCH/err")"; fi
+
 finish "mesh: images, surfaces, figures, scenes that run"

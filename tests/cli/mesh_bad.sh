@@ -161,7 +161,8 @@ in_short_if_sanitized || {
     complains 'm long; if the file is in millimetres, say --scale 0.001'
     leaf 0.02 >leaf_thin.obj
     expect 0 "$LARIAT" mesh leaf_thin.obj --scale 0.05 --size 0.0015 --out thin
-    [ ! -s "$SCRATCH/err" ] || fail "doubts about a leaf that is meshed"
+    complains 'the mesh has [0-9]* holes that the surface has not' # its rim is as thin as an element
+    [ "$(wc -l <"$SCRATCH/err")" -eq 1 ] || fail "other doubts about a leaf that is meshed"
     leaf 0.01 >leaf_thinner.obj
     expect 0 "$LARIAT" mesh leaf_thinner.obj --scale 0.05 --size 0.0015 --out thinner
     complains 'off the true surface in the mean: parts of it are thinner than an element'

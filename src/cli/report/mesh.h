@@ -3,6 +3,7 @@
 #define LAR_CLI_REPORT_MESH_H
 
 #include "cli/report/mesh_quality.h"
+#include "cli/report/mesh_shape.h"
 #include "study/label_list.h"
 
 typedef struct mesh_report {
@@ -12,6 +13,7 @@ typedef struct mesh_report {
     lar_model_info model; /* of that scene */
     cli_speed speed;
     double seconds; /* that meshing took */
+    mesh_shape mesh, surface;
 } mesh_report;
 
 void mesh_report_table(const mesh_report *report);
