@@ -36,7 +36,10 @@ static void write_place(lar_recorder *recorder, place *p) {
         lar_recording_put_state(&recorder->writer, p->record.step, &p->state);
     else
         lar_recording_put(&recorder->writer, &p->record);
-    lar_bytes_free(&p->state);
+    /* Out of the ring before it is freed: a child that is forked in between would free it again. */
+    void *data = p->state.data;
+    __atomic_store_n(&p->state.data, NULL, __ATOMIC_SEQ_CST);
+    free(data);
 }
 
 /* Under the lock. */
