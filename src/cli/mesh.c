@@ -115,6 +115,18 @@ static int check_free(const mesh_settings *s, const char *folder, const char *st
 }
 
 /* Reads back what was written, as every other command will. */
+/* Of a single region: surfaces of several are open where these meet. */
+static int find_shape(mesh_report *report) {
+    if (report->info.regions != 1) return CLI_DONE;
+    lar_mesh_arrays mesh;
+    lar_surface_arrays surface;
+    lar_meshing_arrays(report->meshing, &mesh, &surface);
+    if (mesh_shape_of_surface(&surface, &report->surface) &&
+        mesh_shape_of_mesh(&mesh, &report->mesh))
+        return CLI_DONE;
+    return cli_complain(&cli_mesh, CLI_FAILED, "out of memory");
+}
+
 static int inspect(mesh_report *report) {
     lar_model *model = NULL;
     lar_error error;
@@ -125,12 +137,6 @@ static int inspect(mesh_report *report) {
     else
         report->speed = cli_measure_speed(model);
     lar_model_destroy(model);
-    lar_mesh_arrays mesh;
-    lar_surface_arrays surface;
-    lar_meshing_arrays(report->meshing, &mesh, &surface);
-    if (!status && !(mesh_shape_of_surface(&surface, &report->surface) &&
-                     mesh_shape_of_mesh(&mesh, &report->mesh)))
-        status = cli_complain(&cli_mesh, CLI_FAILED, "out of memory");
     return status;
 }
 
@@ -168,7 +174,6 @@ static bool doubt_units(const mesh_report *report) {
  * sheets about as thick as an element have holes where two halves of it are lost. */
 static void doubt_shape(const mesh_report *report) {
     const mesh_shape mesh = report->mesh, surface = report->surface;
-    if (report->info.regions != 1) return; /* surfaces of several are open where these meet */
     if (!report->info.image && mesh.bodies < surface.bodies)
         cli_complain(&cli_mesh, CLI_DONE,
                      "note: the surface has %d bodies and the mesh %d: gaps between them that are "
@@ -234,6 +239,7 @@ static int write_and_tell(const mesh_settings *s, lar_meshing *meshing, double s
     if (!status && lar_meshing_write(meshing, folder, &report.scene, &error))
         status = cli_complain(&cli_mesh, CLI_FAILED, "%s", error.message);
     if (!status) status = inspect(&report);
+    if (!status) status = find_shape(&report);
     if (status) return status;
     if (s->json)
         mesh_report_json(&report);

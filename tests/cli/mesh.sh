@@ -235,36 +235,30 @@ says 'core (1): left out: a later surface covers all of it; name the outer one f
 expect 0 "$LARIAT" mesh top.obj core.obj --scale 0.001 --elements 500 --title kept
 says 'core (2): [0-9]* elements'
 
-# Two boxes 1 um apart become one body, and that is said.
-awk 'function tri(a, b, c) { printf "facet normal 0 0 0\nouter loop\nvertex %s\nvertex %s\nvertex %s\nendloop\nendfacet\n", p[a], p[b], p[c] }
+# box X Y Z LOW: facets of a box with its least corner at LOW, 0, 0.
+box() {
+    awk -v x="$1" -v y="$2" -v z="$3" -v low="$4" '
+    function facet(a, b, c) { print "facet normal 0 0 0\nouter loop\nvertex " p[a] "\nvertex " p[b] "\nvertex " p[c] "\nendloop\nendfacet" }
     BEGIN {
-        print "solid near"
-        for (box = 0; box < 2; box++) {
-            low = box * 0.040001
-            for (i = 0; i < 8; i++)
-                p[i] = sprintf("%.9g %.9g %.9g", low + 0.04 * (i % 2), 0.04 * (int(i / 2) % 2), 0.04 * int(i / 4))
-            split("0 2 3 1 4 5 7 6 0 1 5 4 2 6 7 3 0 4 6 2 1 3 7 5", q, " ")
-            for (f = 0; f < 6; f++) { tri(q[4*f+1], q[4*f+2], q[4*f+3]); tri(q[4*f+1], q[4*f+3], q[4*f+4]) }
-        }
-        print "endsolid near"
-    }' > near.stl
+        for (i = 0; i < 8; i++)
+            p[i] = sprintf("%.9g %.9g %.9g", low + x * (i % 2), y * (int(i / 2) % 2), z * int(i / 4))
+        split("0 2 3 1 4 5 7 6 0 1 5 4 2 6 7 3 0 4 6 2 1 3 7 5", q, " ")
+        for (f = 0; f < 6; f++) { facet(q[4*f+1], q[4*f+2], q[4*f+3]); facet(q[4*f+1], q[4*f+3], q[4*f+4]) }
+    }'
+}
+# Two boxes 1 um apart become one body, and that is said.
+{ echo 'solid near'; box 0.04 0.04 0.04 0; box 0.04 0.04 0.04 0.040001; echo 'endsolid near'; } >near.stl
 expect 0 "$LARIAT" mesh near.stl --elements 500 --title near
 complains 'note: the surface has 2 bodies and the mesh 1: gaps between them .* are closed'
 expect 0 "$LARIAT" mesh top.obj --scale 0.001 --elements 500 --title whole
 if grep -q 'bodies and the mesh' "$SCRATCH/err"; then fail "$(cat "$SCRATCH/err")"; fi
 # A plate aslant, about as thick as an element, has holes; with smaller elements none.
-awk 'function tri(a, b, c) { print "facet normal 0 0 0\nouter loop\nvertex " p[a] "\nvertex " p[b] "\nvertex " p[c] "\nendloop\nendfacet" }
-    BEGIN {
-        print "solid plate"
-        for (i = 0; i < 8; i++) {
-            x = 0.03 * (i % 2); y = 0.03 * (int(i / 2) % 2); z = 0.002 * int(i / 4)
-            u = x * cos(0.5) - z * sin(0.5); w = x * sin(0.5) + z * cos(0.5)
-            p[i] = sprintf("%.9g %.9g %.9g", u * cos(0.7) - y * sin(0.7), u * sin(0.7) + y * cos(0.7), w)
-        }
-        split("0 2 3 1 4 5 7 6 0 1 5 4 2 6 7 3 0 4 6 2 1 3 7 5", q, " ")
-        for (f = 0; f < 6; f++) { tri(q[4*f+1], q[4*f+2], q[4*f+3]); tri(q[4*f+1], q[4*f+3], q[4*f+4]) }
-        print "endsolid plate"
-    }' > plate.stl
+{ echo 'solid plate'; box 0.03 0.03 0.002 0; echo 'endsolid plate'; } | awk '
+    $1 == "vertex" {
+        u = $2 * cos(0.5) - $4 * sin(0.5); w = $2 * sin(0.5) + $4 * cos(0.5)
+        $0 = sprintf("vertex %.9g %.9g %.9g", u * cos(0.7) - $3 * sin(0.7), u * sin(0.7) + $3 * cos(0.7), w)
+    }
+    { print }' >plate.stl
 expect 0 "$LARIAT" mesh plate.stl --size 0.0022 --title plate
 complains 'note: the mesh has [0-9]* holes that the surface has not: walls are about as thin'
 expect 0 "$LARIAT" mesh plate.stl --size 0.0013 --title plate --force

@@ -48,7 +48,7 @@ void mesh_report_json(const mesh_report *report) {
     lar_json_close(&json);
     lar_json_integer(&json, "parted", info->parted);
     lar_json_integer(&json, "cuts", info->cuts);
-    if (info->regions == 1) { /* surfaces of several are open where these meet */
+    if (info->regions == 1) {
         lar_json_open(&json, "holes", '{');
         lar_json_integer(&json, "mesh", report->mesh.holes);
         lar_json_integer(&json, "surface", report->surface.holes);

@@ -12,8 +12,8 @@ typedef struct mesh_report {
     const char *scene;    /* as written */
     lar_model_info model; /* of that scene */
     cli_speed speed;
-    double seconds; /* that meshing took */
-    mesh_shape mesh, surface;
+    double seconds;           /* that meshing took */
+    mesh_shape mesh, surface; /* of a single region */
 } mesh_report;
 
 void mesh_report_table(const mesh_report *report);

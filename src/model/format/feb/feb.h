@@ -126,7 +126,6 @@ bool lar_feb_list_next(lar_feb_list *list, lar_span *item);
 /* The ids in the text of a set: numbers, and ranges first:last and first:last:step as FEBio reads
  * them. */
 typedef struct lar_feb_id_list {
-    const xmlNode *set;
     lar_feb_list text;
     int64_t next, last, step; /* what is left of a range */
 } lar_feb_id_list;

@@ -310,7 +310,7 @@ bool lar_feb_list_next(lar_feb_list *list, lar_span *item) {
 }
 
 lar_feb_id_list lar_feb_id_list_of(lar_feb *feb, const xmlNode *set) {
-    return (lar_feb_id_list){.set = set, .text = lar_feb_list_of(feb, set), .last = -1, .step = 1};
+    return (lar_feb_id_list){.text = lar_feb_list_of(feb, set), .last = -1, .step = 1};
 }
 
 /* first, first:last or first:last:step. */
