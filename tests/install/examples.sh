@@ -69,9 +69,10 @@ found >"$scratch/cmake.log" 2>&1 || { cat "$scratch/cmake.log"; fail "find_packa
     fail "Lariat::lariat_static differs"
 "$scratch/cmake/organ" | cmp -s - "$scratch/organ.out" || fail "organ differs with find_package"
 
+# How strong the force is depends on how late the machine is; that there is one does not.
 "$scratch/simulator" 1 >"$scratch/simulator.out" || fail "simulator failed"
 tail -n 3 "$scratch/simulator.out"
-grep -Eq '^haptic   [1-9][0-9]{2,} times in 1.0 s, strongest force 0\.[0-9]*[1-9]' "$scratch/simulator.out" ||
+grep -Eq '^haptic   [1-9][0-9]{2,} times in 1.0 s, strongest force [0-9.]*[1-9]' "$scratch/simulator.out" ||
     fail "the haptic thread feels nothing"
 grep -q '[#%@=+*]\{20\}' "$scratch/simulator.out" || fail "nothing is drawn"
 
