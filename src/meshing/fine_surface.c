@@ -6,6 +6,7 @@
 
 #include "base/parallel_for.h"
 #include "base/union_find.h"
+#include "base/vector.h"
 #include "model/triangles/surface_tree.h"
 
 /* In cells. */
@@ -20,6 +21,8 @@ enum { PORTION = 1024 };
 typedef struct shells {
     int32_t *parent, *count; /* [vertices] a shell is named by its root */
     int32_t *near;           /* [vertices] of these near the mesh */
+    double *volume;          /* [vertices] of the shell; below zero: a hollow */
+    int32_t *tag;            /* [vertices] of its last triangle */
 } shells;
 
 /* Asking where the mesh is, for every vertex. */
@@ -49,36 +52,64 @@ static void find_shells(question *q, shells *found) {
         found->count[root]++;
         found->near[root] += q->is_near[v];
     }
+    for (int32_t t = 0; t < surface->triangle_count; t++) {
+        const int32_t *corner = surface->corner[t], root = lar_union_root(found->parent, corner[0]);
+        const double *origin = surface->vertex[root];
+        double edge[3][3], across[3];
+        for (int k = 0; k < 3; k++) lar_minus(surface->vertex[corner[k]], origin, edge[k]);
+        lar_cross(edge[1], edge[2], across);
+        found->volume[root] += lar_dot(edge[0], across) / 6;
+        found->tag[root] = surface->tag[t];
+    }
+}
+
+/* What is dropped has a count of 0 then. */
+static void choose_dropped(const question *q, const shells *found, const lar_boundary *boundary,
+                           lar_dropped *dropped) {
+    const double cell = q->size * q->size * q->size;
+    const int32_t vertices = q->surface->vertex_count;
+    int32_t largest = 0;
+    for (int32_t v = 0; v < vertices; v++)
+        if (found->count[v] > found->count[largest]) largest = v;
+    for (int32_t v = 0; v < vertices; v++) {
+        const double volume = found->volume[v];
+        const bool small = volume < 0 && volume > -cell; /* at most one cell, which is filled */
+        if (found->count[v] == 0 || v == largest) continue;
+        if (found->near[v] >= HAS * found->count[v] && !small) continue;
+        found->count[v] = 0;
+        dropped->hollows += volume < 0;
+        for (int32_t r = 1; r <= boundary->region_count; r++)
+            if (boundary->region[r].tag == found->tag[v]) dropped->volume[r] += volume;
+    }
 }
 
 static void drop_shells(lar_triangles *surface, const shells *found) {
-    int32_t kept = 0, largest = 0;
-    for (int32_t v = 0; v < surface->vertex_count; v++)
-        if (found->count[v] > found->count[largest]) largest = v;
+    int32_t kept = 0;
     for (int32_t t = 0; t < surface->triangle_count; t++) {
-        int32_t root = lar_union_root(found->parent, surface->corner[t][0]);
-        bool apart = found->near[root] < HAS * found->count[root];
-        if (apart && root != largest) continue;
-        if (surface->tag) surface->tag[kept] = surface->tag[t];
+        if (found->count[lar_union_root(found->parent, surface->corner[t][0])] == 0) continue;
+        surface->tag[kept] = surface->tag[t];
         memmove(surface->corner[kept++], surface->corner[t], sizeof *surface->corner);
     }
     surface->triangle_count = kept;
 }
 
-lar_status lar_fine_surface_drop(const lar_mesh *mesh, double size, lar_triangles *surface,
-                                 lar_error *error) {
+lar_status lar_fine_surface_drop(const lar_mesh *mesh, double size, const lar_boundary *boundary,
+                                 lar_triangles *surface, lar_dropped *dropped, lar_error *error) {
     size_t vertices = (size_t)surface->vertex_count;
     int32_t before = surface->triangle_count;
     question q = {
         .surface = surface, .size = size, .is_near = lar_calloc(vertices, sizeof *q.is_near)};
     shells found = {.parent = lar_calloc(vertices, sizeof *found.parent),
                     .count = lar_calloc(vertices, sizeof *found.count),
-                    .near = lar_calloc(vertices, sizeof *found.near)};
-    bool good = q.is_near && found.parent && found.count && found.near;
+                    .near = lar_calloc(vertices, sizeof *found.near),
+                    .volume = lar_calloc(vertices, sizeof *found.volume),
+                    .tag = lar_calloc(vertices, sizeof *found.tag)};
+    bool good = q.is_near && found.parent && found.count && found.near && found.volume && found.tag;
     lar_status status = good ? lar_surface_tree_create(mesh, &q.outer, error)
                              : lar_fail_memory(error, 3 * vertices * sizeof(int32_t), "shells");
     if (!status) {
         find_shells(&q, &found);
+        choose_dropped(&q, &found, boundary, dropped);
         drop_shells(surface, &found);
     }
     if (!status && surface->triangle_count < before) status = lar_triangles_join(surface, error);
@@ -87,6 +118,8 @@ lar_status lar_fine_surface_drop(const lar_mesh *mesh, double size, lar_triangle
     free(found.parent);
     free(found.count);
     free(found.near);
+    free(found.volume);
+    free(found.tag);
     return status;
 }
 

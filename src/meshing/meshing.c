@@ -51,6 +51,7 @@ typedef struct work {
     lar_voxel_grid voxel_grid;
     lar_cleaning cleaning;
     lar_unfitted_mesh unfitted;
+    lar_dropped dropped;
     lar_error *error;
 } work;
 
@@ -329,7 +330,7 @@ static bool fit_progress(void *context, double part) {
 static lar_status make_mesh(work *w) {
     lar_meshing *m = w->meshing;
     const lar_fit_options fit = {
-        .filled = w->cleaning.filled, .progress = fit_progress, .context = w};
+        .dropped = w->dropped.volume, .progress = fit_progress, .context = w};
     lar_status status = tell(w, "laying the grid", 0);
     if (!status) status = fill_voxel_grid(w);
     lar_image_clear(&w->read);
@@ -340,6 +341,9 @@ static lar_status make_mesh(work *w) {
     if (!status) status = lar_unfitted_create(&w->voxel_grid, &m->boundary, &w->unfitted, w->error);
     lar_voxel_grid_clear(&w->voxel_grid);
     if (!status) status = check_count(w);
+    if (!status)
+        status = lar_fine_surface_drop(&w->unfitted.mesh, w->unfitted.size, &m->boundary, &m->outer,
+                                       &w->dropped, w->error);
     m->fitted = !w->options.voxel;
     if (!status && m->fitted) status = lar_fit(&m->boundary, &w->unfitted, &fit, w->error);
     m->info.size = w->unfitted.size;
@@ -387,13 +391,11 @@ static void count_regions(lar_meshing *m) {
 
 static lar_status measure(const work *w, lar_error *error) {
     lar_meshing *m = w->meshing;
-    const double size = m->info.size;
     /* Bodies that come apart show what no outer surface has: where they met. */
     if (m->apart)
         return lar_quality_measure(&m->mesh, &m->boundary.triangles, &m->info.quality, error);
-    lar_status status = lar_fine_surface_drop(&m->mesh, size, &m->outer, error);
-    if (!status) status = lar_quality_measure(&m->mesh, &m->outer, &m->info.quality, error);
-    return status ? status : lar_fine_surface_draw(&m->mesh, size, &m->outer, error);
+    lar_status status = lar_quality_measure(&m->mesh, &m->outer, &m->info.quality, error);
+    return status ? status : lar_fine_surface_draw(&m->mesh, m->info.size, &m->outer, error);
 }
 
 /* A mesh that holds so much less, or more, than the body is not the body's. Cubes stand off more.
@@ -401,9 +403,10 @@ static lar_status measure(const work *w, lar_error *error) {
 static lar_status check_volume(const work *w) {
     const lar_mesh_quality *quality = &w->meshing->info.quality;
     const double max = w->meshing->fitted ? 0.2 : 0.5;
-    const double filled = w->cleaning.pinhole_cells * pow(w->meshing->info.size, 3);
-    const double off = quality->volume / (quality->true_volume + filled) - 1;
-    if (!(quality->true_volume > 0) || fabs(off) <= max) return LAR_OK;
+    double aim = quality->true_volume;
+    for (int r = 1; r <= w->meshing->info.regions; r++) aim -= w->dropped.volume[r];
+    const double off = quality->volume / aim - 1;
+    if (!(aim > 0) || fabs(off) <= max) return LAR_OK;
     return lar_fail(w->error, LAR_ERROR_MODEL,
                     "%.300s: the mesh would hold %.3g mL, %.0f %% %s than the body, of which parts "
                     "are thinner than an element of %.3g mm; ask for more elements or a smaller "
@@ -469,7 +472,8 @@ static lar_status describe(work *w) {
     info->elements = m->mesh.element_count;
     info->regions = m->boundary.region_count;
     info->islands = did->islands, info->island_cells = did->island_cells;
-    info->pinholes = did->pinholes, info->pinhole_cells = did->pinhole_cells;
+    info->pinholes = w->dropped.hollows > did->pinholes ? w->dropped.hollows : did->pinholes;
+    info->pinhole_cells = did->pinhole_cells;
     info->added = did->added, info->removed = did->removed;
     info->cuts = m->boundary.cut_count;
     m->region = lar_calloc((size_t)info->regions, sizeof *m->region);

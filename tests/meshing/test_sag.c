@@ -56,7 +56,7 @@ static void what_nothing_holds_is_left_out(void **state) {
     (void)state;
     lar_meshing m = bar(BAR_SIDE);
     lar_sag motion;
-    const bool none[BAR_NODES] = {false};
+    bool none[BAR_NODES] = {false};
     assert_int_equal(lar_sag_estimate(&m, none, none, 0, &motion, sag, &error), LAR_OK);
     assert_true(motion.slowest == 0 && motion.compliance == 0 && sag[0] == 0);
     bar_mark(&m, 0, held);
@@ -66,12 +66,32 @@ static void what_nothing_holds_is_left_out(void **state) {
     assert_true(motion.slowest == 0 && motion.compliance == 0);
 }
 
+/* Bent by its left half and its end, the end goes 10 times as far as most: the half is pulled. */
+static void what_sits_on_something_thin_is_not_pulled(void **state) {
+    (void)state;
+    lar_meshing m = bar(BAR_SIDE);
+    lar_sag motion, half;
+    for (int whole = 1; whole >= 0; whole--) {
+        bar_mark(&m, 0, held);
+        for (int n = 0; n < BAR_NODES; n++) {
+            const double x = m.mesh.position[n][0] / BAR_LENGTH;
+            handle[n] = (x > 0 && x < 0.2) || (whole && x > 0.99);
+        }
+        assert_int_equal(
+            lar_sag_estimate(&m, held, handle, 2, whole ? &motion : &half, sag, &error), LAR_OK);
+        assert_false(handle[BAR_NODES - 1]);
+        assert_true(handle[BAR_NODES / 10]);
+    }
+    assert_true(motion.compliance == half.compliance);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_bar_swings_as_it_is_thick),
         cmocka_unit_test(a_bar_gives_way_as_a_beam_does),
         cmocka_unit_test(its_end_sags_most),
         cmocka_unit_test(what_nothing_holds_is_left_out),
+        cmocka_unit_test(what_sits_on_something_thin_is_not_pulled),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -206,10 +206,11 @@ static double way_of_handle(int32_t elements) {
 }
 
 /* A pancreas has a thin end, whose elements have another cross-section on every mesh, and extra
- * supports near it; the way is the same. */
+ * supports near it; the way is the same. It is some 6 % more than the 2 % of the length that the
+ * pull is chosen for, by the stiffness at rest: drawn out, the thin end gets softer. */
 static void a_pull_is_alike_on_every_mesh(void **state) {
     (void)state;
-    static const int32_t elements[] = {500, 1000, 2500};
+    static const int32_t elements[] = {500, 600, 800, 1000, 2500};
     if (access(ORGANS, R_OK) != 0) {
         print_message("skipped: no shared data\n");
         skip();
@@ -220,7 +221,7 @@ static void a_pull_is_alike_on_every_mesh(void **state) {
 #endif
     for (size_t i = 0; i < sizeof elements / sizeof *elements; i++) {
         const double way = way_of_handle(elements[i]);
-        if (!(fabs(way - 0.02) < 0.002))
+        if (!(fabs(way - 0.0213) < 0.0013))
             fail_msg("%d elements: %.4f of the length", elements[i], way);
     }
 }

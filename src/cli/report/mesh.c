@@ -127,9 +127,14 @@ static void print_cleaning(const lar_meshing_info *info) {
         printf("%-17s%d loose piece%s left out (%d cells)\n", label, (int)info->islands,
                info->islands == 1 ? "" : "s", (int)info->island_cells);
     if (info->islands > 0) label = "";
-    if (info->pinholes > 0)
-        printf("%-17s%d small hollow%s filled (%d cells)\n", label, (int)info->pinholes,
-               info->pinholes == 1 ? "" : "s", (int)info->pinhole_cells);
+    if (info->pinholes > 0) {
+        printf("%-17s%d small hollow%s filled", label, (int)info->pinholes,
+               info->pinholes == 1 ? "" : "s");
+        if (info->pinhole_cells > 0)
+            printf(" (%d cells)\n", (int)info->pinhole_cells);
+        else
+            puts(", smaller than a cell each");
+    }
     if (info->pinholes > 0) label = "";
     if (info->added + info->removed > 0)
         printf("%-17s%d cells added and %d removed, where parts would hang together by an edge or\n"

@@ -151,7 +151,6 @@ static lar_status fill_pinhole(lar_cleaner *cleaner, const piece *pinhole, bool 
     const uint8_t heir = heir_of(&around, 0);
     cleaner->cleaning->pinholes++;
     cleaner->cleaning->pinhole_cells += pinhole->size;
-    cleaner->cleaning->filled[heir] += pinhole->size;
     return close_piece(cleaner, pinhole, heir);
 }
 

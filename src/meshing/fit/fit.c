@@ -73,7 +73,7 @@ lar_status lar_fit(const lar_boundary *boundary, lar_unfitted_mesh *unfitted,
         .law = usual, .slot_law = lenient, .face_weight = FACE_WEIGHT, .node_weight = NODE_WEIGHT};
     if (options && options->floor > 0) work.law.floor = options->floor;
     if (options && options->aim > 0) work.law.aim = options->aim;
-    if (options) work.filled = options->filled;
+    if (options) work.dropped = options->dropped;
     lar_status status = lar_fit_work_create(boundary, unfitted, &work, error);
     if (status == LAR_OK) status = check_start(&work, error);
     if (status == LAR_OK) status = lar_fit_targets_create(&work, error);

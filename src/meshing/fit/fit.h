@@ -34,8 +34,9 @@ typedef bool lar_fit_progress(void *context, double part);
 typedef struct lar_fit_options {
     double floor;          /* no element's scaled Jacobian falls below; 0: 0.25 */
     double aim;            /* nine of ten elements shall be above; 0: 0.55 */
-    const int32_t *filled; /* [regions + 1] cells that a region has beside its volume: hollows that
-                              are filled, or outer faces would make room for them. May be NULL */
+    const double *dropped; /* [regions + 1; m3] of a region's volume what the mesh has nothing of,
+                              below zero for hollows that it fills: outer faces would make up for
+                              it otherwise. May be NULL */
     lar_fit_progress *progress; /* may be NULL */
     void *context;
 } lar_fit_options;

@@ -43,7 +43,8 @@ static void measure_missing(const lar_fit_work *work, double *missing) {
     const lar_mesh *mesh = work->mesh;
     const double cell = work->size * work->size * work->size;
     for (int32_t r = 1; r <= work->boundary->region_count; r++)
-        missing[r] = work->boundary->region[r].volume / cell + (work->filled ? work->filled[r] : 0);
+        missing[r] =
+            (work->boundary->region[r].volume - (work->dropped ? work->dropped[r] : 0)) / cell;
     for (int32_t e = 0; e < mesh->element_count; e++) {
         double corner[8][3];
         lar_fit_corners(work, e, corner);

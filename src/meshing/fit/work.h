@@ -99,7 +99,7 @@ typedef struct lar_fit_rows {
 
 typedef struct lar_fit_work {
     const lar_boundary *boundary;
-    const int32_t *filled; /* of lar_fit_options */
+    const double *dropped; /* of lar_fit_options */
     const lar_mesh *mesh;  /* its elements; positions are in `x` */
     double size, origin[3];
     double (*x)[3];

@@ -59,10 +59,9 @@ lar_status lar_voxel_grid_measure(const lar_boundary *boundary, double size, dou
 
 /* What cleaning did, to be told. */
 typedef struct lar_cleaning {
-    int32_t islands, island_cells;       /* pieces that hang on nothing large, left out */
-    int32_t pinholes, pinhole_cells;     /* hollows of few cells, filled */
-    int32_t filled[LAR_REGIONS_MAX + 1]; /* these cells by the region that has them now */
-    int32_t added, removed;              /* cells flipped so that none hang together by an edge or a
+    int32_t islands, island_cells;   /* pieces that hang on nothing large, left out */
+    int32_t pinholes, pinhole_cells; /* hollows of few cells, filled */
+    int32_t added, removed;          /* cells flipped so that none hang together by an edge or a
                                             corner only, and lone bumps and dents */
 } lar_cleaning;
 

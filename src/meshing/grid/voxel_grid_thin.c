@@ -18,6 +18,10 @@ static const double REACH = 1.5;
  * have cells that hang together by faces. */
 static const double SLOT_MIN = 0.12, SLOT_MIN_REGIONS = 0.2, SLOT_WIDE = 1.2, PART_KEPT = 0.5;
 static const double PART_MIN = 0.15, PART_WIDE = 1, SLOT_KEPT = 0.5;
+/* A sheet of cells without holes is as thick as a cell is across the sheet, the sum of its normal's
+ * parts along the grid's axes (a standard plane: Andres, Acharya and Sibata 1997). And what is added
+ * must reach middles of cells' parts, however little it is. */
+static const double ASLANT_MAX = 1.74, PART_MOVE_MIN = 0.4;
 
 /* Where a ball touches the surface a second time it must be so far on its other side: the cosine of
  * the angle between the normal and the way from the one place to the other. */
@@ -105,7 +109,7 @@ static void measure_place(const search *s, lar_thin_place *place) {
     const double *normal = place->normal, size = s->thin->size;
     const double behind[3] = {-normal[0], -normal[1], -normal[2]};
     double slot = measure_thickness(s, place->point, normal, SLOT_WIDE * size);
-    double part = measure_thickness(s, place->point, behind, PART_WIDE * size);
+    double part = measure_thickness(s, place->point, behind, ASLANT_MAX * PART_WIDE * size);
     if (isinf(slot) && !isinf(part))
         slot = measure_thickness(s, place->point, normal, REACH * size);
     if (isinf(part) && !isinf(slot))
@@ -227,14 +231,21 @@ typedef struct widening {
     size_t count, capacity;
 } widening;
 
+static double aslant(const lar_thin_place *place, const lar_voxel_grid *voxel_grid) {
+    double sum = 0;
+    for (int a = 0; a < 3; a++) sum += fabs(lar_dot(voxel_grid->axis[a], place->normal));
+    return sum;
+}
+
 /* How far the surface counts as moved [cells]: outwards when it is positive. A slot goes before a
  * part. */
-static double way_of(const lar_thin_place *place, double min, double size) {
-    const double slot = place->slot / size, part = place->part / size;
+static double way_of(const lar_thin_place *place, double min, const lar_voxel_grid *voxel_grid) {
+    const double size = voxel_grid->size, slot = place->slot / size, part = place->part / size;
+    const double wide = PART_WIDE * aslant(place, voxel_grid);
     if (slot > min && slot < SLOT_WIDE && part > PART_KEPT)
         return -fmin(SLOT_WIDE - slot, part - PART_KEPT) / 2;
-    if (part > PART_MIN && part < PART_WIDE && slot > SLOT_KEPT)
-        return fmin(PART_WIDE - part, slot - SLOT_KEPT) / 2;
+    if (part > PART_MIN && part < wide && slot > SLOT_KEPT)
+        return fmin(fmax(wide - part, 2 * PART_MOVE_MIN), slot - SLOT_KEPT) / 2;
     return 0;
 }
 
@@ -331,7 +342,7 @@ lar_status lar_thin_widen(const lar_thin *thin, const lar_boundary *boundary,
     for (size_t c = 0; c < cells; c++) w.of[c] = -1;
     for (int a = 0; a < 3; a++) w.origin[a] = lar_dot(voxel_grid->axis[a], voxel_grid->origin);
     for (size_t p = 0; !status && p < thin->count; p++) {
-        const double way = way_of(&thin->place[p], min, voxel_grid->size);
+        const double way = way_of(&thin->place[p], min, voxel_grid);
         if (way != 0 && !add_half_ball(&w, &thin->place[p], way))
             status =
                 lar_fail_memory(error, 2 * w.capacity * sizeof *w.fine, "what is thin of the body");

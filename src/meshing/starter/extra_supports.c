@@ -174,13 +174,17 @@ lar_status lar_extra_supports_choose(const lar_meshing *meshing, const bool *hel
                                      int32_t *count, bool *carried, lar_sag *motion,
                                      lar_error *error) {
     search s;
+    const size_t nodes = (size_t)meshing->mesh.node_count;
     double apart = APART;
     int round = 0;
     *count = 0;
     *carried = false;
+    bool *kept = lar_calloc(nodes, sizeof *kept); /* of the handle, as it is carried so far */
+    if (!kept) return lar_fail_memory(error, nodes, "marks of nodes");
     lar_status status = begin(&s, meshing, held, handle, axis, sign, error);
     for (int32_t put = 1; !status && put > 0; *count += put) {
-        status = lar_sag_estimate(meshing, s.all, handle, pulled, motion, s.sag, error);
+        memcpy(kept, handle, nodes * sizeof *kept);
+        status = lar_sag_estimate(meshing, s.all, kept, pulled, motion, s.sag, error);
         *carried = !status && is_carried(&s);
         put = 0;
         for (; !status && !*carried && put == 0 && round < ROUNDS; round++, apart /= 2) {
@@ -191,5 +195,7 @@ lar_status lar_extra_supports_choose(const lar_meshing *meshing, const bool *hel
         }
     }
     end(&s);
+    memcpy(handle, kept, nodes * sizeof *kept);
+    free(kept);
     return status;
 }

@@ -1,6 +1,7 @@
 #include "meshing/starter/sag.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 #include "meshing/starter/slowest.h"
 
@@ -35,7 +36,7 @@ static void apply_loads(lar_ways *s, const bool *handle, int axis) {
     for (int32_t n = 0; n < s->mesh->node_count; n++) {
         if (s->still[n]) continue;
         for (int i = 0; i < 3; i++) s->load[n][i][i] = s->mass[n] * GRAVITY;
-        if (handle[n]) s->load[n][axis][PULL] = 1. / pulled;
+        s->load[n][axis][PULL] = handle[n] ? 1. / pulled : 0;
     }
 }
 
@@ -51,15 +52,48 @@ static void find_sag(const lar_ways *s, double *sag) {
     }
 }
 
-lar_status lar_sag_estimate(const lar_meshing *meshing, const bool *held, const bool *handle,
-                            int axis, lar_sag *motion, double *sag, lar_error *error) {
+static int by_way(const void *a, const void *b) {
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* Takes out of the handle what would go more than LOOSE times its median way. */
+static lar_status drop_loose(const lar_ways *s, bool *handle, int axis, bool *dropped,
+                             lar_error *error) {
+    static const double LOOSE = 3;
+    size_t count = 0;
+    double *way = lar_calloc((size_t)s->mesh->node_count + 1, sizeof *way);
+    if (!way) return lar_fail_memory(error, (size_t)s->mesh->node_count * sizeof *way, "ways");
+    for (int32_t n = 0; n < s->mesh->node_count; n++)
+        if (handle[n] && !s->still[n]) way[count++] = s->way[n][axis][PULL];
+    qsort(way, count, sizeof *way, by_way);
+    const double far = LOOSE * way[count / 2];
+    free(way);
+    *dropped = false;
+    for (int32_t n = 0; far > 0 && n < s->mesh->node_count; n++)
+        if (handle[n] && !s->still[n] && s->way[n][axis][PULL] > far) {
+            handle[n] = false;
+            *dropped = true;
+        }
+    return LAR_OK;
+}
+
+static lar_status solve(lar_ways *s, const bool *handle, int axis, lar_error *error) {
+    apply_loads(s, handle, axis);
+    return lar_elastic_solve(&s->elastic, (const lar_load_vectors *)s->load, s->way, s->work,
+                             error);
+}
+
+lar_status lar_sag_estimate(const lar_meshing *meshing, const bool *held, bool *handle, int axis,
+                            lar_sag *motion, double *sag, lar_error *error) {
     lar_ways s;
     *motion = (lar_sag){0};
     lar_status status = prepare(&s, meshing, held, error);
     if (!status) {
-        apply_loads(&s, handle, axis);
-        status =
-            lar_elastic_solve(&s.elastic, (const lar_load_vectors *)s.load, s.way, s.work, error);
+        bool dropped = false;
+        status = solve(&s, handle, axis, error);
+        if (!status) status = drop_loose(&s, handle, axis, &dropped, error);
+        if (!status && dropped) status = solve(&s, handle, axis, error);
     }
     if (!status) {
         motion->slowest = lar_ways_slowest(&s);

@@ -14,10 +14,12 @@ typedef struct lar_sag {
 } lar_sag;
 
 /* held, handle: [nodes]; the handle is pulled along this axis of the world. What hangs together
- * with nothing that is held is left out. sag: [nodes], or NULL: how far the weight would move each
- * node, the worst of three directions [m], were it that stiff all the way. The regions' information
- * must be there. */
-lar_status lar_sag_estimate(const lar_meshing *meshing, const bool *held, const bool *handle,
-                            int axis, lar_sag *motion, double *sag, lar_error *error);
+ * with nothing that is held is left out. Nodes that would go several times as far as half of the
+ * handle does are taken out of it: they sit on something thin, which is drawn out and not the body,
+ * and the way of the rest would be another on every mesh. sag: [nodes], or NULL: how far the weight
+ * would move each node, the worst of three directions [m], were it that stiff all the way. The
+ * regions' information must be there. */
+lar_status lar_sag_estimate(const lar_meshing *meshing, const bool *held, bool *handle, int axis,
+                            lar_sag *motion, double *sag, lar_error *error);
 
 #endif
