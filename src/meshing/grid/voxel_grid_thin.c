@@ -19,9 +19,14 @@ static const double REACH = 1.5;
 static const double SLOT_MIN = 0.12, SLOT_MIN_REGIONS = 0.2, SLOT_WIDE = 1.2, PART_KEPT = 0.5;
 static const double PART_MIN = 0.15, PART_WIDE = 1, SLOT_KEPT = 0.5;
 /* A sheet of cells without holes is as thick as a cell is across the sheet, the sum of its normal's
- * parts along the grid's axes (a standard plane: Andres, Acharya and Sibata 1997). And what is added
- * must reach middles of cells' parts, however little it is. */
-static const double ASLANT_MAX = 1.74, PART_MOVE_MIN = 0.4;
+ * parts along the grid's axes (a standard plane: Andres, Acharya and Sibata 1997), and a little
+ * more where the body is one region. What is thinner than SHEET_MIN is left with a cell's edge:
+ * fitting could not make it thin again, and ribs and lobes would stand off. */
+static const double SHEET_MIN = 0.45, SHEET_ROOM = 1.05, SHEET_ROOM_REGIONS = 1;
+static const double SHEET_MAX = 1.82; /* that of a sheet across the cells' diagonal */
+
+/* Parts of cells are counted around a place as far as others lie from it. */
+static const double AROUND = 0.4;
 
 /* Where a ball touches the surface a second time it must be so far on its other side: the cosine of
  * the angle between the normal and the way from the one place to the other. */
@@ -109,7 +114,7 @@ static void measure_place(const search *s, lar_thin_place *place) {
     const double *normal = place->normal, size = s->thin->size;
     const double behind[3] = {-normal[0], -normal[1], -normal[2]};
     double slot = measure_thickness(s, place->point, normal, SLOT_WIDE * size);
-    double part = measure_thickness(s, place->point, behind, ASLANT_MAX * PART_WIDE * size);
+    double part = measure_thickness(s, place->point, behind, SHEET_MAX * size);
     if (isinf(slot) && !isinf(part))
         slot = measure_thickness(s, place->point, normal, REACH * size);
     if (isinf(part) && !isinf(slot))
@@ -231,6 +236,7 @@ typedef struct widening {
     size_t count, capacity;
 } widening;
 
+/* The thickness of a sheet of cells without holes through a place [cells]. */
 static double aslant(const lar_thin_place *place, const lar_voxel_grid *voxel_grid) {
     double sum = 0;
     for (int a = 0; a < 3; a++) sum += fabs(lar_dot(voxel_grid->axis[a], place->normal));
@@ -239,13 +245,15 @@ static double aslant(const lar_thin_place *place, const lar_voxel_grid *voxel_gr
 
 /* How far the surface counts as moved [cells]: outwards when it is positive. A slot goes before a
  * part. */
-static double way_of(const lar_thin_place *place, double min, const lar_voxel_grid *voxel_grid) {
+static double way_of(const lar_thin_place *place, bool regions, const lar_voxel_grid *voxel_grid) {
     const double size = voxel_grid->size, slot = place->slot / size, part = place->part / size;
-    const double wide = PART_WIDE * aslant(place, voxel_grid);
+    const double min = regions ? SLOT_MIN_REGIONS : SLOT_MIN;
+    const double room = regions ? SHEET_ROOM_REGIONS : SHEET_ROOM;
+    const double wide = part > SHEET_MIN ? room * aslant(place, voxel_grid) : PART_WIDE;
     if (slot > min && slot < SLOT_WIDE && part > PART_KEPT)
         return -fmin(SLOT_WIDE - slot, part - PART_KEPT) / 2;
     if (part > PART_MIN && part < wide && slot > SLOT_KEPT)
-        return fmin(fmax(wide - part, 2 * PART_MOVE_MIN), slot - SLOT_KEPT) / 2;
+        return fmin(wide - part, slot - SLOT_KEPT) / 2;
     return 0;
 }
 
@@ -266,11 +274,12 @@ static void fine_middle(const widening *w, const int at[3], double middle[3]) {
             middle[d] += (at[a] + 0.5) / FINE * voxel_grid->size * voxel_grid->axis[a][d];
 }
 
-/* What of the half ball around a place, on the side that it moves to, lies in the grid's cells
- * but the outermost ones. */
+/* What of the half ball around a place, on the side that it moves to and no farther off than it
+ * moves, lies in the grid's cells but the outermost ones. */
 static bool add_half_ball(widening *w, const lar_thin_place *place, double way) {
     const lar_voxel_grid *voxel_grid = w->voxel_grid;
-    const double radius = FINE * fabs(way), side = way < 0 ? -1 : 1;
+    const double far = FINE * fabs(way), radius = fmax(far, FINE * AROUND);
+    const double side = way < 0 ? -1 : 1;
     double centre[3], normal[3];
     int low[3], high[3];
     for (int a = 0; a < 3; a++) {
@@ -284,7 +293,8 @@ static bool add_half_ball(widening *w, const lar_thin_place *place, double way) 
         for (int j = low[1]; j <= high[1]; j++)
             for (int i = low[0]; i <= high[0]; i++) {
                 const double away[3] = {i - centre[0], j - centre[1], k - centre[2]};
-                if (lar_dot(away, away) > radius * radius || lar_dot(away, normal) < 0) continue;
+                const double above = lar_dot(away, normal);
+                if (lar_dot(away, away) > radius * radius || above < 0 || above > far) continue;
                 double middle[3];
                 fine_middle(w, (const int[]){i, j, k}, middle);
                 if (way > 0 && beyond_cut(w->boundary, middle)) continue;
@@ -332,7 +342,7 @@ lar_status lar_thin_widen(const lar_thin *thin, const lar_boundary *boundary,
                           const lar_voxel_grid *voxel_grid, lar_thin_changes *changes,
                           lar_error *error) {
     if (!thin || thin->count == 0) return LAR_OK;
-    const double min = boundary->region_count > 1 ? SLOT_MIN_REGIONS : SLOT_MIN;
+    const bool regions = boundary->region_count > 1;
     widening w = {.boundary = boundary, .voxel_grid = voxel_grid};
     const size_t cells =
         (size_t)voxel_grid->cells[0] * (size_t)voxel_grid->cells[1] * (size_t)voxel_grid->cells[2];
@@ -342,7 +352,7 @@ lar_status lar_thin_widen(const lar_thin *thin, const lar_boundary *boundary,
     for (size_t c = 0; c < cells; c++) w.of[c] = -1;
     for (int a = 0; a < 3; a++) w.origin[a] = lar_dot(voxel_grid->axis[a], voxel_grid->origin);
     for (size_t p = 0; !status && p < thin->count; p++) {
-        const double way = way_of(&thin->place[p], min, voxel_grid);
+        const double way = way_of(&thin->place[p], regions, voxel_grid);
         if (way != 0 && !add_half_ball(&w, &thin->place[p], way))
             status =
                 lar_fail_memory(error, 2 * w.capacity * sizeof *w.fine, "what is thin of the body");
