@@ -11,82 +11,88 @@
 
 /* In cells. */
 static const double NEAR = 0.5, FAR = 1;
-/* The mesh has nothing of a shell with less than this part of its corners near. */
+/* The mesh has nothing of a shell with less than this part of its area near. */
 static const double HAS = 0.1;
 
-enum { PORTION = 1024 };
+enum { PORTION = 1024, CUTS_MAX = 32 };
 
 /* ---- shells ------------------------------------------------------------------------------- */
 
-typedef struct shells {
-    int32_t *parent, *count; /* [vertices] a shell is named by its root */
-    int32_t *near;           /* [vertices] of these near the mesh */
-    double *volume;          /* [vertices] of the shell; below zero: a hollow */
-    int32_t *tag;            /* [vertices] of its last triangle */
-} shells;
+typedef struct shell {
+    double area, near; /* of it what is near the mesh */
+    double volume;     /* below zero: a hollow */
+    int32_t tag;       /* of its last triangle */
+    bool dropped;
+} shell;
 
-/* Asking where the mesh is, for every vertex. */
+/* Asking where the mesh is, for every vertex, or for parts of every triangle as large as a cell's
+ * face. */
 typedef struct question {
     lar_triangles *surface;
     lar_surface_tree outer;
     double size;
-    bool *is_near; /* [vertices] */
+    float *near; /* [triangles] which part of it */
 } question;
 
 static void find_near(void *context, int32_t first, int32_t end) {
     const question *q = context;
-    for (int32_t v = first; v < end; v++)
-        q->is_near[v] =
-            lar_triangle_tree_is_near(q->outer.tree, q->surface->vertex[v], NEAR * q->size);
+    for (int32_t t = first; t < end; t++) {
+        double normal[3], middle[3];
+        lar_triangles_normal(q->surface, t, normal);
+        const int cuts = (int)fmin(1 + sqrt(lar_length(normal)) / q->size, CUTS_MAX);
+        int near = 0;
+        for (int part = 0; part < cuts * cuts; part++) {
+            lar_triangles_part(q->surface, t, cuts, part, middle);
+            near += lar_triangle_tree_is_near(q->outer.tree, middle, NEAR * q->size);
+        }
+        q->near[t] = (float)near / (float)(cuts * cuts);
+    }
 }
 
-static void find_shells(question *q, shells *found) {
+/* A shell is named by its root. */
+static void find_shells(const question *q, int32_t *parent, shell *found) {
     const lar_triangles *surface = q->surface;
-    lar_parallel_for(surface->vertex_count, PORTION, find_near, q);
-    lar_union_start(found->parent, surface->vertex_count);
+    lar_union_start(parent, surface->vertex_count);
     for (int32_t t = 0; t < surface->triangle_count; t++)
         for (int k = 1; k < 3; k++)
-            lar_union_join(found->parent, surface->corner[t][0], surface->corner[t][k]);
-    for (int32_t v = 0; v < surface->vertex_count; v++) {
-        int32_t root = lar_union_root(found->parent, v);
-        found->count[root]++;
-        found->near[root] += q->is_near[v];
-    }
+            lar_union_join(parent, surface->corner[t][0], surface->corner[t][k]);
     for (int32_t t = 0; t < surface->triangle_count; t++) {
-        const int32_t *corner = surface->corner[t], root = lar_union_root(found->parent, corner[0]);
-        const double *origin = surface->vertex[root];
-        double edge[3][3], across[3];
-        for (int k = 0; k < 3; k++) lar_minus(surface->vertex[corner[k]], origin, edge[k]);
-        lar_cross(edge[1], edge[2], across);
-        found->volume[root] += lar_dot(edge[0], across) / 6;
-        found->tag[root] = surface->tag[t];
+        const int32_t *corner = surface->corner[t], root = lar_union_root(parent, corner[0]);
+        shell *one = &found[root];
+        double normal[3], from[3];
+        lar_triangles_normal(surface, t, normal);
+        lar_minus(surface->vertex[corner[0]], surface->vertex[root], from);
+        const double area = lar_length(normal) / 2;
+        one->area += area;
+        one->near += area * (double)q->near[t];
+        one->volume += lar_dot(from, normal) / 6;
+        one->tag = surface->tag[t];
     }
 }
 
-/* What is dropped has a count of 0 then. */
-static void choose_dropped(const question *q, const shells *found, const lar_boundary *boundary,
+static void choose_dropped(const question *q, shell *found, const lar_boundary *boundary,
                            lar_dropped *dropped) {
     const double cell = q->size * q->size * q->size;
     const int32_t vertices = q->surface->vertex_count;
     int32_t largest = 0;
     for (int32_t v = 0; v < vertices; v++)
-        if (found->count[v] > found->count[largest]) largest = v;
+        if (found[v].area > found[largest].area) largest = v;
     for (int32_t v = 0; v < vertices; v++) {
-        const double volume = found->volume[v];
+        shell *one = &found[v];
+        const double volume = one->volume;
         const bool small = volume < 0 && volume > -cell; /* at most one cell, which is filled */
-        if (found->count[v] == 0 || v == largest) continue;
-        if (found->near[v] >= HAS * found->count[v] && !small) continue;
-        found->count[v] = 0;
+        if (one->area == 0 || v == largest || (one->near >= HAS * one->area && !small)) continue;
+        one->dropped = true;
         dropped->hollows += volume < 0;
         for (int32_t r = 1; r <= boundary->region_count; r++)
-            if (boundary->region[r].tag == found->tag[v]) dropped->volume[r] += volume;
+            if (boundary->region[r].tag == one->tag) dropped->volume[r] += volume;
     }
 }
 
-static void drop_shells(lar_triangles *surface, const shells *found) {
+static void drop_shells(lar_triangles *surface, int32_t *parent, const shell *found) {
     int32_t kept = 0;
     for (int32_t t = 0; t < surface->triangle_count; t++) {
-        if (found->count[lar_union_root(found->parent, surface->corner[t][0])] == 0) continue;
+        if (found[lar_union_root(parent, surface->corner[t][0])].dropped) continue;
         surface->tag[kept] = surface->tag[t];
         memmove(surface->corner[kept++], surface->corner[t], sizeof *surface->corner);
     }
@@ -95,31 +101,26 @@ static void drop_shells(lar_triangles *surface, const shells *found) {
 
 lar_status lar_fine_surface_drop(const lar_mesh *mesh, double size, const lar_boundary *boundary,
                                  lar_triangles *surface, lar_dropped *dropped, lar_error *error) {
-    size_t vertices = (size_t)surface->vertex_count;
-    int32_t before = surface->triangle_count;
+    const size_t vertices = (size_t)surface->vertex_count;
+    const int32_t before = surface->triangle_count;
     question q = {
-        .surface = surface, .size = size, .is_near = lar_calloc(vertices, sizeof *q.is_near)};
-    shells found = {.parent = lar_calloc(vertices, sizeof *found.parent),
-                    .count = lar_calloc(vertices, sizeof *found.count),
-                    .near = lar_calloc(vertices, sizeof *found.near),
-                    .volume = lar_calloc(vertices, sizeof *found.volume),
-                    .tag = lar_calloc(vertices, sizeof *found.tag)};
-    bool good = q.is_near && found.parent && found.count && found.near && found.volume && found.tag;
-    lar_status status = good ? lar_surface_tree_create(mesh, &q.outer, error)
-                             : lar_fail_memory(error, 3 * vertices * sizeof(int32_t), "shells");
+        .surface = surface, .size = size, .near = lar_calloc((size_t)before, sizeof *q.near)};
+    int32_t *parent = lar_calloc(vertices, sizeof *parent);
+    shell *found = lar_calloc(vertices, sizeof *found);
+    lar_status status = q.near && parent && found
+                            ? lar_surface_tree_create(mesh, &q.outer, error)
+                            : lar_fail_memory(error, vertices * sizeof *found, "shells");
     if (!status) {
-        find_shells(&q, &found);
-        choose_dropped(&q, &found, boundary, dropped);
-        drop_shells(surface, &found);
+        lar_parallel_for(before, PORTION, find_near, &q);
+        find_shells(&q, parent, found);
+        choose_dropped(&q, found, boundary, dropped);
+        drop_shells(surface, parent, found);
     }
     if (!status && surface->triangle_count < before) status = lar_triangles_join(surface, error);
     lar_surface_tree_clear(&q.outer);
-    free(q.is_near);
-    free(found.parent);
-    free(found.count);
-    free(found.near);
-    free(found.volume);
-    free(found.tag);
+    free(q.near);
+    free(parent);
+    free(found);
     return status;
 }
 

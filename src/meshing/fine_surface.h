@@ -13,9 +13,9 @@ typedef struct lar_dropped {
 } lar_dropped;
 
 /* Leaves out the shells that the mesh has nothing of: loose pieces and hollows that cleaning left
- * out or filled, or cells are too large for. A shell is such a one when hardly any of its vertices
- * are nearer to the mesh's surface than half a cell, or when it is a hollow of less than a cell;
- * the one with the most vertices stays. The surface has the tags of the boundary's regions. */
+ * out or filled, or cells are too large for. A shell is such a one when hardly any of it is nearer
+ * to the mesh's surface than half a cell, or when it is a hollow of less than a cell; the largest
+ * one stays. The surface has the tags of the boundary's regions. */
 lar_status lar_fine_surface_drop(const lar_mesh *mesh, double size, const lar_boundary *boundary,
                                  lar_triangles *surface, lar_dropped *dropped, lar_error *error);
 

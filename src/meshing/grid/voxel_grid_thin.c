@@ -156,19 +156,11 @@ static bool add_places(search *s, int32_t t) {
     if (!(length > 0)) return true;
     for (int d = 0; d < 3; d++) normal[d] /= length;
     const int cuts = (int)fmin(fmax(1, ceil(sqrt(area / each))), CUTS_MAX);
-    const int32_t *corner = s->outer.corner[t];
-    const double *x[3];
-    for (int c = 0; c < 3; c++) x[c] = s->outer.vertex[corner[c]];
     for (int k = 0; k < cuts * cuts; k++) {
         s->due += area / (cuts * cuts);
         if (s->due < PLACE_MIN * each) continue;
         s->due = 0;
-        const int i = k / cuts, j = k % cuts;
-        const bool upright = i + j < cuts;
-        const double a = (upright ? i + 1.0 / 3 : cuts - i - 1.0 / 3) / cuts;
-        const double b = (upright ? j + 1.0 / 3 : cuts - j - 1.0 / 3) / cuts;
-        for (int d = 0; d < 3; d++)
-            point[d] = x[0][d] + a * (x[1][d] - x[0][d]) + b * (x[2][d] - x[0][d]);
+        lar_triangles_part(&s->outer, t, cuts, k, point);
         if (!add_place(s, point, normal, t)) return false;
     }
     return true;

@@ -25,6 +25,19 @@ void lar_triangles_normal(const lar_triangles *triangles, int32_t triangle, doub
     lar_cross(e, f, normal);
 }
 
+void lar_triangles_part(const lar_triangles *triangles, int32_t triangle, int cuts, int part,
+                        double middle[3]) {
+    const int32_t *corner = triangles->corner[triangle];
+    const double *x[3];
+    for (int c = 0; c < 3; c++) x[c] = triangles->vertex[corner[c]];
+    const int i = part / cuts, j = part % cuts;
+    const bool upright = i + j < cuts;
+    const double a = (upright ? i + 1.0 / 3 : cuts - i - 1.0 / 3) / cuts;
+    const double b = (upright ? j + 1.0 / 3 : cuts - j - 1.0 / 3) / cuts;
+    for (int d = 0; d < 3; d++)
+        middle[d] = x[0][d] + a * (x[1][d] - x[0][d]) + b * (x[2][d] - x[0][d]);
+}
+
 /* Seen from the first vertex, not from the origin: a body far from it would lose its digits. */
 double lar_triangles_volume(const lar_triangles *triangles) {
     double volume = 0;

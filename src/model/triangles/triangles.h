@@ -65,6 +65,11 @@ lar_status lar_vtp_write_small(const char *path, const lar_triangles *triangles,
 /* Twice the area times the unit normal of a triangle. */
 void lar_triangles_normal(const lar_triangles *triangles, int32_t triangle, double normal[3]);
 
+/* The middle of one of the cuts * cuts equal parts, counted from 0, into which lines parallel to
+ * its sides cut a triangle. */
+void lar_triangles_part(const lar_triangles *triangles, int32_t triangle, int cuts, int part,
+                        double middle[3]);
+
 /* Enclosed volume, positive when the corners stand counter-clockwise seen from outside; area. */
 double lar_triangles_volume(const lar_triangles *triangles);
 double lar_triangles_area(const lar_triangles *triangles);
