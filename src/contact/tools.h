@@ -75,7 +75,8 @@ typedef struct lar_step_division {
     uint64_t decided;  /* the step when it was decided last */
     int32_t base;      /* parts that stiffer materials (settings.h) take at least, a power of two */
     int8_t due;        /* 1: to be decided before the next step, wherever an interval begins; and 2
-                          for each decision to come that is close (lar_division_watch) */
+                          for each decision to come that is close (lar_division_watch); and
+                          LAR_THROWN from the end of an interval to the next decision */
     int8_t still;      /* for how many decisions nothing has moved, LAR_STILL_LONG: long enough;
                           negative: something has since the last one */
     int16_t untouched; /* for how many steps, and one, nothing has pressed on the body since a tool
@@ -132,10 +133,11 @@ static inline double lar_division_reach(const lar_step_division *division) {
     return need > BORNE_RATE ? BORNE_RATE / need : 1;
 }
 
-/* Something is sudden: loads at the start, what is set in a run, a curve that jumps. Within one
+/* Something is sudden: loads at the start, what is set in a run, a curve that jumps, nodes that are
+ * thrown far (LAR_THROWN). Within one
  * interval it can strain elements from nothing to beyond what a step bears, so the next decisions
  * are close. */
-enum { LAR_WATCHED = 16 };
+enum { LAR_WATCHED = 16, LAR_THROWN = 64 };
 static inline void lar_division_watch(lar_step_division *division) {
     division->due = (int8_t)((division->due & 1) + 2 * LAR_WATCHED);
 }
@@ -147,7 +149,7 @@ static inline bool lar_division_is_close(const lar_step_division *division) {
     bool still = division->still == LAR_STILL_LONG || division->still == -LAR_STILL_LONG;
     bool strained = lar_division_need(division) > 0.7 ||
                     division->hardness > (double)division->parts * division->parts;
-    return division->due > 1 || (!still && strained);
+    return (division->due & ~LAR_THROWN) > 1 || (!still && strained);
 }
 
 /* Nothing presses on the body any more, so barriers of corners (mechanics/hex8_guard.h) are not

@@ -32,6 +32,15 @@ static double slow(const lar_domain *whole, const lar_step_division *division) {
     return SHARE * thinnest / (2 * sqrt(3) * seconds);
 }
 
+/* Whether nodes go so far within an interval that a corner which was sound when it began may be at
+ * its barrier before it ends (mass/strained.h): what is listed then is too late, and another list
+ * for who takes the run up again on the way. */
+static bool is_thrown(const lar_domain *whole, double fastest) {
+    static const double SHARE = 0.4; /* of the thinnest element at rest */
+    double seconds = (double)whole->interval * whole->time_step;
+    return whole->thinnest > 0 && fastest * seconds > SHARE * whole->thinnest;
+}
+
 /* An element that is taken through a blow as a heavier one goes through it in few long parts of a
  * step, where leapfrog is least exact: while nodes go farther than that in a step, it is parts that
  * are taken, as many as the elements need or as keep nodes from going farther in one. */
@@ -58,6 +67,7 @@ void lar_interval_harvest(lar_interval *interval, const lar_domain *whole, const
     divide_blows(whole, &report->needs, &tools->strained);
     lar_step_division *d = &tools->division;
     if (d->still > 0 && !(report->needs.fastest <= slow(whole, d))) d->still = (int8_t)-d->still;
+    if (d->need > 0.1 && is_thrown(whole, report->needs.fastest)) d->due |= LAR_THROWN;
     for (int32_t t = 0; t < tools->count; t++) {
         const lar_tool_sum *now = &report->tool[t];
         lar_tool_sum *before = &interval->seen[t];
@@ -204,7 +214,8 @@ bool lar_interval_divide(const lar_domain *whole, uint64_t step, double seconds,
     if (step == 0 ? starts_suddenly(whole, tools)
                   : step % whole->interval == 0 && jumps(whole, step))
         lar_division_watch(d);
-    if (lar_tools_are_fast(whole->surroundings.list, tools, step, whole->interval))
+    if (d->due & LAR_THROWN ||
+        lar_tools_are_fast(whole->surroundings.list, tools, step, whole->interval))
         lar_division_watch(d);
     d->still = still_now(whole, tools, step, tool.harder);
     d->untouched = untouched_now(whole, tools, (double)step * whole->time_step, seconds);

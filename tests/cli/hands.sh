@@ -31,7 +31,7 @@ if [ -f "$labels/totalseg_abdomen_pelvis_3mm.nii.gz" ]; then
         awk -F'|' -v max="$5" '{ exit !($14 < max) }' out ||
             fail "$1: the energy's error is above $5 per cent"
     }
-    organ spleen 20016 9.5 2 1
+    organ spleen 20016 9.5 1 1
     organ liver 70006 6 1 1.5
     organ duodenum 90014 0.9 0 1
     alone=$(cut -d'|' -f19 out)

@@ -170,7 +170,7 @@ static void processors_allocate_and_lock_nothing(void **unused) {
         lar_simulation *simulation = start_with(model, options);
         lar_error error;
         calls_within = intervals = 0;
-        if (lar_simulation_advance_with(simulation, 600, count_within, simulation, &error))
+        if (lar_simulation_advance_with(simulation, 2000, count_within, simulation, &error))
             fail_msg("%s", error.message);
         assert_true(intervals > 40);
         assert_int_equal(calls_within, 0);

@@ -53,7 +53,8 @@ void lar_strained_destroy(lar_strained *strained); /* idempotent */
 
 /* Elements are listed when a corner is no farther from its barrier than twice START. That no corner
  * comes there before the next list is made is no theorem: in fast pushes with tools at 1.6 m/s the
- * least corner that was not listed stood at 0.48. */
+ * least corner that was not listed stood at 0.48. Where nodes go farther within an interval, lists
+ * are made in every step (LAR_THROWN). */
 static const double LAR_GUARD_SHARES[2] = {LAR_GUARD_START, 2 * LAR_GUARD_START};
 
 /* Part of the step by which the damping leads; it counts twice beside the spring (theory.md 10). */
