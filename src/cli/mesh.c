@@ -114,7 +114,6 @@ static int check_free(const mesh_settings *s, const char *folder, const char *st
     return CLI_DONE;
 }
 
-/* Reads back what was written, as every other command will. */
 /* Of a single region: surfaces of several are open where these meet. */
 static int find_shape(mesh_report *report) {
     if (report->info.regions != 1) return CLI_DONE;
@@ -127,6 +126,7 @@ static int find_shape(mesh_report *report) {
     return cli_complain(&cli_mesh, CLI_FAILED, "out of memory");
 }
 
+/* Reads back what was written, as every other command will. */
 static int inspect(mesh_report *report) {
     lar_model *model = NULL;
     lar_error error;

@@ -134,9 +134,8 @@ static inline double lar_division_reach(const lar_step_division *division) {
 }
 
 /* Something is sudden: loads at the start, what is set in a run, a curve that jumps, nodes that are
- * thrown far (LAR_THROWN). Within one
- * interval it can strain elements from nothing to beyond what a step bears, so the next decisions
- * are close. */
+ * thrown far (LAR_THROWN). Within one interval it can strain elements from nothing to beyond what a
+ * step bears, so the next decisions are close. */
 enum { LAR_WATCHED = 16, LAR_THROWN = 64 };
 static inline void lar_division_watch(lar_step_division *division) {
     division->due = (int8_t)((division->due & 1) + 2 * LAR_WATCHED);

@@ -32,13 +32,13 @@ static double slow(const lar_domain *whole, const lar_step_division *division) {
     return SHARE * thinnest / (2 * sqrt(3) * seconds);
 }
 
-/* Whether nodes go so far within an interval that a corner which was sound when it began may be at
- * its barrier before it ends (mass/strained.h): what is listed then is too late, and another list
- * for who takes the run up again on the way. */
-static bool is_thrown(const lar_domain *whole, double fastest) {
-    static const double SHARE = 0.4; /* of the thinnest element at rest */
+/* Whether elements are strained, and nodes go so far within an interval that a corner which was
+ * sound when it began may be at its barrier before it ends (mass/strained.h): what is listed then
+ * is too late, and another list for who takes the run up again on the way. */
+static bool is_thrown(const lar_domain *whole, double need, double fastest) {
+    static const double STRAINED = 0.1, SHARE = 0.4; /* of the thinnest element at rest */
     double seconds = (double)whole->interval * whole->time_step;
-    return whole->thinnest > 0 && fastest * seconds > SHARE * whole->thinnest;
+    return need > STRAINED && whole->thinnest > 0 && fastest * seconds > SHARE * whole->thinnest;
 }
 
 /* An element that is taken through a blow as a heavier one goes through it in few long parts of a
@@ -67,7 +67,7 @@ void lar_interval_harvest(lar_interval *interval, const lar_domain *whole, const
     divide_blows(whole, &report->needs, &tools->strained);
     lar_step_division *d = &tools->division;
     if (d->still > 0 && !(report->needs.fastest <= slow(whole, d))) d->still = (int8_t)-d->still;
-    if (d->need > 0.1 && is_thrown(whole, report->needs.fastest)) d->due |= LAR_THROWN;
+    if (is_thrown(whole, d->need, report->needs.fastest)) d->due |= LAR_THROWN;
     for (int32_t t = 0; t < tools->count; t++) {
         const lar_tool_sum *now = &report->tool[t];
         lar_tool_sum *before = &interval->seen[t];

@@ -133,7 +133,7 @@ static void print_cleaning(const lar_meshing_info *info) {
         if (info->pinhole_cells > 0)
             printf(" (%d cells)\n", (int)info->pinhole_cells);
         else
-            puts(", smaller than a cell each");
+            printf(", smaller than a cell%s\n", info->pinholes == 1 ? "" : " each");
     }
     if (info->pinholes > 0) label = "";
     if (info->added + info->removed > 0)
