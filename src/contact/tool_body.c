@@ -17,7 +17,7 @@ static const double DEPTH_MAX = 0.5, BEARS = 0.45;
  * Hands press with less the faster elements have been lately, from some two parts on, and with no
  * more than tissue pushes with already from five on: a tool that went on until it had to give way,
  * and came back, would shake the organ and the hand. What presses with little of its limit is not
- * what made them fast, and may go on. */
+ * what made them fast, and may go on until they are as fast as may be. */
 static const double BORNE_RATE = 100, HELD_RATE = 25, FREE_RATE = 2.5, LITTLE = 0.1;
 static const double GRASP_SHARE = 0.5;
 /* Jaws press less the faster elements have become by that, as BORNE_RATE counts, down to so many
@@ -77,6 +77,9 @@ typedef struct mean_load {
     double squeeze;             /* [N] */
     double grasp_force;         /* how hard jaws may close [N] */
     double excess;              /* how many times more than may be, at least 1 */
+    double crushed;             /* what of it is because elements are too fast */
+    double opens;               /* as `excess`, for jaws */
+    double little;              /* part of what may be which hands press with anyway */
     double more; /* part of what may be beyond that force which hands press with, 0 to 1 */
     bool touched;
 } mean_load;
@@ -106,10 +109,13 @@ static jaws_state jaws_of(const lar_tool_follower *follower, const lar_tool_moti
 }
 
 /* Where other things than forces ask a tool to give way, it does so where it is pushed hardest; but
- * jaws that are wide open cannot. */
+ * jaws that are wide open cannot. Tissue that is deep in it counts as pushing as much beyond its
+ * limit as it is too deep. Elements that are too fast make what pushes count for as much more, and
+ * no limit does: that of a large tool is many times what crushes a wall, and would throw it to and
+ * fro. */
 static mean_load mean_of(const lar_tool_felt *felt, const lar_tool_limits *limits, jaws_state jaws,
                          element_need need, double unit, double *load) {
-    mean_load mean = {.excess = 1, .grasp_force = grasp_limit(limits, need.lately)};
+    mean_load mean = {.crushed = 1, .opens = 1, .grasp_force = grasp_limit(limits, need.lately)};
     double share = felt->steps ? unit / (LAR_STEP_SHARES * (double)felt->steps) : 0;
     for (int i = 0; i < 3; i++) {
         mean.force[i] = (double)felt->force[i] * share;
@@ -126,8 +132,12 @@ static mean_load mean_of(const lar_tool_felt *felt, const lar_tool_limits *limit
     *load = fmax(max, other);
     mean.touched = max > 0 || depth > 0;
     double more = (HELD_RATE - need.lately) / (HELD_RATE - FREE_RATE);
+    double little = (BORNE_RATE - need.lately) / (BORNE_RATE - HELD_RATE);
     mean.more = max > 0 ? fmin(1, fmax(0, more)) : 1;
-    if (other > 1 && other > gives && gives > 0) mean.excess = other / gives;
+    mean.little = LITTLE * fmin(1, fmax(0, little));
+    if (other > 1 && other > gives && gives > 0) mean.opens = other / gives;
+    mean.excess = mean.opens;
+    if (mean.opens > 1 && other > depth) mean.excess = mean.crushed = other;
     return mean;
 }
 
@@ -190,13 +200,18 @@ static void turn_between(const double from[4], const double to[4], double vector
 
 /* What the hand may draw with against what tissue pushes with along three coordinates. What touches
  * nothing follows whatever drags, for drag is a matter of contact: with a step far below what the
- * body would bear it is so hard that the limit moves a tool by millimetres in a second. */
-static double draws(const mean_load *mean, const lar_tool_limits *limits, const double *pushed) {
+ * body would bear it is so hard that the limit moves a tool by millimetres in a second. While
+ * elements are fast a tool goes on slowly: where it would crush them, they tell by becoming faster
+ * before they give way, and it stops there (decision 214). */
+static double draws(const mean_load *mean, const lar_tool_limits *limits, const follow_law *law,
+                    const double *pushed) {
+    static const double CAREFUL = 0.07; /* [m/s] */
     if (!mean->touched) return INFINITY;
-    double max = limits->force, force = sqrt(dot(3, pushed, pushed));
-    force = fmin(fmax(force, LITTLE * max), max);
-    return max -
-           (1 - mean->more) * (max - force); /* to the bit the limit while elements are slow */
+    double max = limits->force, felt = sqrt(dot(3, pushed, pushed)) / mean->crushed;
+    if (!(mean->more < 1)) return max; /* to the bit the limit while elements are slow */
+    double force = fmin(fmax(felt, mean->little * max), max);
+    double most = max - (1 - mean->more) * (max - force);
+    return fmin(most, felt + law->drag * CAREFUL / (1 - mean->more));
 }
 
 /* The pose at the end of the interval: that of the hand, or as far towards it as may be. */
@@ -207,7 +222,7 @@ static void step_pose(const lar_tool *tool, const lar_tool_limits *limits, const
     *next = *hand;
     lar_minus(hand->position, now->position, gap);
     for (int i = 0; i < 3; i++) pushed[i] = mean->excess * mean->force[i];
-    if (!go(law, 3, gap, pushed, draws(mean, limits, pushed), way))
+    if (!go(law, 3, gap, pushed, draws(mean, limits, law, pushed), way))
         for (int i = 0; i < 3; i++) next->position[i] = now->position[i] + way[i];
     /* Turns as ways of a point at the lever's end. */
     turn_between(now->orientation, hand->orientation, gap);
@@ -215,13 +230,13 @@ static void step_pose(const lar_tool *tool, const lar_tool_limits *limits, const
         gap[i] *= lever;
         pushed[i] = mean->excess * mean->torque[i] / lever;
     }
-    if (!go(law, 3, gap, pushed, draws(mean, limits, pushed), way)) {
+    if (!go(law, 3, gap, pushed, draws(mean, limits, law, pushed), way)) {
         for (int i = 0; i < 3; i++) way[i] /= lever;
         turn_by(now->orientation, way, next->orientation);
     }
     if (tool->shape != LAR_TOOL_GRASPER || !(limits->travel > 0)) return;
     gap[0] = limits->travel * (hand->opening - now->opening);
-    pushed[0] = mean->excess * mean->squeeze;
+    pushed[0] = mean->opens * mean->squeeze;
     if (!go(law, 1, gap, pushed, mean->touched ? mean->grasp_force : INFINITY, way))
         next->opening = fmin(1, fmax(0, now->opening + way[0] / limits->travel));
 }
