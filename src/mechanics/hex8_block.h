@@ -133,13 +133,17 @@ typedef struct lar_lean_parameters {
     double of[LAR_BLOCK_PARAMETERS];
 } lar_lean_parameters;
 
+/* Blocks that caches do not hold are asked for ahead (hex8_lean.h): every so many lines before the
+ * force of an earlier block, others before its stress. */
+enum { LAR_ASK_NOTHING, LAR_ASK_MANY = 2, LAR_ASK_FEW = 5 };
+
 /* Consecutive blocks of one law, one shape and one kind of rows. */
 typedef struct lar_block_run {
     lar_law law;
     lar_block_shape shape;
     lar_block_rows rows;
-    int turn;      /* of boxes, 0..2; else 0 */
-    bool streamed; /* the model's blocks are more than the second-level cache holds: ask ahead */
+    int turn; /* of boxes, 0..2; else 0 */
+    int asks; /* LAR_ASK_FEW or MANY, of models that caches do not hold; else NOTHING */
     int32_t count;
     size_t axis_stride; /* values from one axis of a node to the next, in all of its arrays */
     const void
@@ -344,5 +348,9 @@ typedef struct lar_kernels {
 /* The kernels for `isa`; AUTO takes the environment's LARIAT_ISA or the widest there is. An
  * unknown name, or a set that this processor or build lacks, is an error that lists the others. */
 lar_status lar_kernels_find(lar_isa isa, const lar_kernels **kernels, lar_error *error);
+
+/* Whether this processor is one that does not wait for large models while LAR_ASK_MANY lines of
+ * their blocks are asked for. A matter of time only. */
+bool lar_kernels_ask_many(void);
 
 #endif

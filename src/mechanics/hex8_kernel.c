@@ -297,7 +297,7 @@ typedef unsigned (*stress_phase)(const char *blocks, const lar_block_more *more,
                                  double share, const double *limit, lane_strain *strain,
                                  unsigned *strained);
 typedef void (*force_phase)(const char *blocks, size_t count, lar_block_rows rows, int turn,
-                            size_t ahead, const lane_record *record, lane_sums force);
+                            int asks, const lane_record *record, lane_sums force);
 
 #define DEFINE_PHASES(name, shape, fours)                                                          \
     static void strain_##name(const char *blocks, size_t count, lar_block_rows rows, int turn,     \
@@ -306,9 +306,10 @@ typedef void (*force_phase)(const char *blocks, size_t count, lar_block_rows row
         strain_lanes(block, lane, shape, rows, fours, turn, u, record);                            \
     }                                                                                              \
     static void force_##name(const char *blocks, size_t count, lar_block_rows rows, int turn,      \
-                             size_t ahead, const lane_record *record, lane_sums force) {           \
-        FOR_PARTS(blocks, count, lar_block_size(shape)) {                                          \
-            if (ahead && lane == 0) ask(block + ahead, lar_block_size(shape), 2, 5);               \
+                             int asks, const lane_record *record, lane_sums force) {               \
+        const size_t each = (size_t)asks, size = lar_block_size(shape);                            \
+        FOR_PARTS(blocks, count, size) {                                                           \
+            if (each && lane == 0) ask(block + CHUNK * size, size, each / 2, each);                \
             force_lanes(block, lane, shape, rows, fours, turn, record, force);                     \
         }                                                                                          \
     }
@@ -473,7 +474,8 @@ LAR_INLINE int64_t recover_form(const lar_block_run *run, int fibrous, const lar
     force_phase forces = force_table[run->shape][run->rows];
     size_t size = lar_block_size(run->shape);
     /* Where blocks are asked for, a little before the stress of each and before its force. */
-    size_t ahead = run->streamed && !run->rest ? CHUNK * size : 0, together = ahead ? 1 : CHUNK;
+    int asks = run->rest ? LAR_ASK_NOTHING : run->asks;
+    size_t together = asks ? 1 : CHUNK, first_each = asks == LAR_ASK_MANY ? 2 : 2 * LAR_ASK_FEW;
     int64_t first = -1;
     lar_hex8_block made[CHUNK];
     viscous_lane fade;
@@ -490,12 +492,13 @@ LAR_INLINE int64_t recover_form(const lar_block_run *run, int fibrous, const lar
         unsigned beyond = 0;
         for (size_t i = 0; i < count; i += together) {
             unsigned some = 0;
-            if (ahead) ask(blocks + i * size + ahead, size, 0, 10);
-            beyond |=
-                stress(blocks + i * size, more ? more + i : NULL,
-                       count < together ? count : together, size, record + i * PARTS, limits, share,
-                       limit ? limit + i * LAR_BLOCK : NULL, strains + i * PARTS, &some)
-                << i * LAR_BLOCK;
+            const char *block = blocks + i * size;
+            if (asks) ask(block + CHUNK * size, size, 0, first_each);
+            if (asks == LAR_ASK_MANY) ask_for_nodes(run, (const void *)block, u, force);
+            beyond |= stress(block, more ? more + i : NULL, count < together ? count : together,
+                             size, record + i * PARTS, limits, share,
+                             limit ? limit + i * LAR_BLOCK : NULL, strains + i * PARTS, &some)
+                      << i * LAR_BLOCK;
             strained |= some << i * LAR_BLOCK;
         }
         if (fibrous)
@@ -503,7 +506,7 @@ LAR_INLINE int64_t recover_form(const lar_block_run *run, int fibrous, const lar
                               strains, &strained);
         if (step) beyond |= relax(run, step, b, count, limits, gradient, &fade, record);
         if (fibrous) beyond |= contract(run, active, b, count, limits, gradient, record);
-        forces(blocks, count, run->rows, run->turn, ahead, record,
+        forces(blocks, count, run->rows, run->turn, asks, record,
                (lane_sums){force, run->axis_stride});
         unsigned flat = 0;
         if (monitor && monitor->area)

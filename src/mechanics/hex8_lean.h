@@ -50,7 +50,8 @@ static lane_nodes nodes_of(const lar_block_run *run, const double *value) {
  * Blocks that come from beyond the second-level cache are asked for while the chunk before them is
  * computed: a few lines of each, evenly. Hardware fetches on from a line that was asked for, some
  * twenty lines, but only while somebody asks, and a core can wait for sixteen lines at once; asked
- * for in one go they keep it from computing (docs/performance.md, "Large models"). */
+ * for in one go they keep it from computing. Some processors are faster where every line is
+ * asked for (docs/performance.md, "Large models"). */
 LAR_INLINE void ask(const char *memory, size_t bytes, size_t first, size_t each) {
     enum { LINE = 64 };
 #pragma GCC unroll 1
@@ -58,7 +59,8 @@ LAR_INLINE void ask(const char *memory, size_t bytes, size_t first, size_t each)
 }
 
 /* Of a lean block in a model that caches do not hold nearly all that comes from memory is its
- * nodes. They are numbered as blocks come: what this many nodes further stands is needed soon. */
+ * nodes, and of whole ones that need not be waited for they are what is left. They are numbered as
+ * blocks come: what this many nodes further stands is needed soon. */
 __attribute__((noinline)) static void ask_for_nodes(const lar_block_run *run,
                                                     const lar_block_head *head, const double *u,
                                                     const int64_t *force) {
@@ -66,7 +68,7 @@ __attribute__((noinline)) static void ask_for_nodes(const lar_block_run *run,
     __asm__ volatile(""); /* else calls of a function that changes nothing are left out */
     size_t at = (size_t)head->node[left_node[3]][0] + AHEAD;
     for (int i = 0; i < 3; i++, at += run->axis_stride) {
-        __builtin_prefetch(run->rest + at, 0, 3);
+        if (run->rest) __builtin_prefetch(run->rest + at, 0, 3);
         __builtin_prefetch(u + at, 0, 3);
         __builtin_prefetch(force + at, 1, 3);
     }
@@ -84,10 +86,10 @@ static const char *whole_blocks(const lar_block_run *run, int32_t b, size_t coun
                                 const int64_t *force, lar_hex8_block *made) {
     const char *kept = lar_run_block(run, b);
     if (!run->rest) return kept;
-    if (run->streamed) ask(kept + count * lar_run_stride(run), count * lar_run_stride(run), 0, 1);
+    if (run->asks) ask(kept + count * lar_run_stride(run), count * lar_run_stride(run), 0, 1);
     for (size_t i = 0; i < count; i++) {
         expand(run, b + (int32_t)i, &made[i]);
-        if (run->streamed) ask_for_nodes(run, &made[i].head, u, force);
+        if (run->asks) ask_for_nodes(run, &made[i].head, u, force);
     }
     return (const char *)made;
 }

@@ -3,6 +3,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#ifdef __x86_64__
+#include <cpuid.h>
+#endif
 
 extern const lar_kernels lar_kernels_avx512, lar_kernels_avx2, lar_kernels_neon, lar_kernels_c_fma,
     lar_kernels_c;
@@ -70,4 +73,19 @@ lar_status lar_kernels_find(lar_isa isa, const lar_kernels **kernels, lar_error 
         return lar_fail(error, LAR_ERROR_ARGUMENT, "lar_isa %d does not exist; use LAR_ISA_AUTO",
                         (int)isa);
     return find_by_name(names[isa], kernels, error);
+}
+
+/* Measured on Zen 5; on an Intel server many lines cost a sixth more, on others nobody has looked
+ * (docs/performance.md, "Large models"). AMD gave family 26 to Zen 6 as well, other models. */
+bool lar_kernels_ask_many(void) {
+#ifdef __x86_64__
+    enum { AMD = 0x444d4163, ZEN_5 = 26, MODELS = 0xd7 }; /* "cAMD"; 0 to 2f, 40 to 4f, 60 to 7f */
+    unsigned a, b, c, d;
+    if (!__get_cpuid(0, &a, &b, &c, &d) || c != AMD || !__get_cpuid(1, &a, &b, &c, &d))
+        return false;
+    unsigned family = (a >> 8 & 15) + (a >> 20 & 255), model = a >> 16 & 15;
+    return family == ZEN_5 && MODELS >> model & 1;
+#else
+    return false;
+#endif
 }

@@ -64,11 +64,6 @@ static lar_status distribute(const lar_mesh *mesh, const lar_incidence *incidenc
 
 /* ---- options ------------------------------------------------------------------------------ */
 
-bool lar_division_asked(const lar_options *options) {
-    return options->grid || options->threads > 1 || options->schedules || options->distribution ||
-           options->comm || options->verify;
-}
-
 lar_status lar_division_options(const lar_options *options, lar_schedule_options *out,
                                 lar_error *error) {
     *out = lar_schedule_options_default();

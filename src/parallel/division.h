@@ -18,9 +18,6 @@ typedef struct lar_division {
     int32_t spread;     /* the greatest of them */
 } lar_division;
 
-/* Whether the options ask for a division at all. */
-bool lar_division_asked(const lar_options *options);
-
 /* What they say of threads, scheme and channels; an error names the word that is none. */
 lar_status lar_division_options(const lar_options *options, lar_schedule_options *out,
                                 lar_error *error);

@@ -149,11 +149,19 @@ static size_t third_level_bytes(void) {
                                      : (size_t)bytes;
 }
 
+/* Many lines asked for cost less than blocks made anew. But several processors that read so much
+ * may wait for each other, and models that fill the memory shall still fit into it. */
+static bool stays_whole(const lar_domain *domain, bool alone) {
+    long pages = sysconf(_SC_PHYS_PAGES), page = sysconf(_SC_PAGESIZE);
+    return alone && pages > 0 && page > 0 &&
+           domain->block_bytes <= (size_t)pages / 8 * (size_t)page && lar_kernels_ask_many();
+}
+
 /* LARIAT_BLOCKS chooses for measurements and tests: the result is the same to the bit. */
-static lar_status choose_blocks(lar_domain *domain, lar_error *error) {
+static lar_status choose_blocks(lar_domain *domain, bool alone, lar_error *error) {
     const char *wanted = getenv("LARIAT_BLOCKS");
     if (!wanted || !*wanted || strcmp(wanted, "auto") == 0)
-        domain->lean = domain->block_bytes > third_level_bytes();
+        domain->lean = domain->block_bytes > third_level_bytes() && !stays_whole(domain, alone);
     else if (strcmp(wanted, "lean") == 0 || strcmp(wanted, "whole") == 0)
         domain->lean = *wanted == 'l';
     else
@@ -269,16 +277,26 @@ static void keep_area_limits(lar_domain *domain) {
     domain->area_limit = NULL;
 }
 
+/* Of blocks and nodes, u, v, f and mass, some part always stays in the third level; many lines of a
+ * model that it holds nearly all of are asked for in vain. */
+static int asked_lines(const lar_domain *domain) {
+    enum { HELD_BYTES = 9 << 20, NODE_BYTES = 80 };
+    size_t nodes = NODE_BYTES * (size_t)domain->layout.node_padded, blocks = domain->block_bytes;
+    if (blocks <= SECOND_LEVEL_BYTES) return LAR_ASK_NOTHING;
+    return blocks + nodes > HELD_BYTES && lar_kernels_ask_many() ? LAR_ASK_MANY : LAR_ASK_FEW;
+}
+
 static bool fill_blocks(lar_domain *domain) {
     char *memory = domain->blocks;
     double steepest = 0;
     bool same = true;
+    int asks = asked_lines(domain);
     for (int32_t r = 0; r < domain->run_count && same; r++) {
         lar_block_run *run = &domain->run[r];
         run->blocks = memory;
         if (lar_law_has_more(run->law)) run->more = domain->more + domain->run_first[r];
         if (run->viscous) run->relaxing = domain->relaxing + domain->run_first[r];
-        run->streamed = domain->block_bytes > SECOND_LEVEL_BYTES;
+        run->asks = asks;
         for (int32_t b = 0; b < run->count && same; b++) {
             same = fill_block(domain, r, b, memory, &steepest);
             memory += lar_run_stride(run);
@@ -294,8 +312,8 @@ static bool fill_blocks(lar_domain *domain) {
 }
 
 /* Should a lean block not say the same as a whole one, to the bit, there are none. */
-static lar_status build_blocks(lar_domain *domain, lar_error *error) {
-    lar_status status = choose_blocks(domain, error);
+static lar_status build_blocks(lar_domain *domain, bool alone, lar_error *error) {
+    lar_status status = choose_blocks(domain, alone, error);
     size_t whole = domain->block_bytes;
     for (int32_t r = 0; r < domain->run_count && domain->lean; r++) {
         lar_block_run *run = &domain->run[r];
@@ -447,6 +465,11 @@ static int line_of_force(const lar_model *model) {
     return line;
 }
 
+bool lar_division_asked(const lar_options *options) {
+    return options->grid || options->threads > 1 || options->schedules || options->distribution ||
+           options->comm || options->verify;
+}
+
 lar_status lar_domain_create(const lar_model *model, const lar_options *options, lar_domain *domain,
                              lar_error *error) {
     return lar_domain_create_styled(model, options, LAR_LAYOUT_ROWS, domain, error);
@@ -470,7 +493,8 @@ lar_status lar_domain_create_styled(const lar_model *model, const lar_options *o
         prepare_motion(domain);
         status = lar_viscous_plan(domain, error);
         if (!status) status = lar_activation_plan(domain, error);
-        if (!status && domain->kind == LAR_ELEMENT_HEX8) status = build_blocks(domain, error);
+        if (!status && domain->kind == LAR_ELEMENT_HEX8)
+            status = build_blocks(domain, !lar_division_asked(options), error);
         if (!status && domain->kind == LAR_ELEMENT_HEX8) domain->thinnest = thinnest_of(domain);
     }
     if (!status)
@@ -534,7 +558,7 @@ lar_status lar_domain_create_part(const lar_domain *whole, const lar_part *part,
     if (!status) status = list_runs(domain, run_max, error);
     if (!status) status = lar_viscous_plan(domain, error);
     if (!status) status = lar_activation_plan(domain, error);
-    if (!status && domain->kind == LAR_ELEMENT_HEX8) status = build_blocks(domain, error);
+    if (!status && domain->kind == LAR_ELEMENT_HEX8) status = build_blocks(domain, false, error);
     domain->limits = whole->limits; /* a run stops for the same reason on any grid */
     if (status) lar_domain_destroy(domain);
     return status;

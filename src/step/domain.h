@@ -102,6 +102,9 @@ typedef struct lar_domain {
                                          NULL: nobody */
 } lar_domain;
 
+/* Whether the options ask for several processors, or for what these do. */
+bool lar_division_asked(const lar_options *options);
+
 /* Compiles a checked model. The step is options->time_step, or the model's, or automatic
  * (lar_auto_step). A step above the stable step is an error that names both. */
 lar_status lar_domain_create(const lar_model *model, const lar_options *options, lar_domain *domain,

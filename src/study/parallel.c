@@ -6,6 +6,7 @@
 #include "comm/comm.h"
 #include "divide/schedule/file.h"
 #include "parallel/division.h"
+#include "step/domain.h"
 #include "model/model.h"
 
 static lar_status check_comm(const char *name, lar_error *error) {

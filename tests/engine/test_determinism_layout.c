@@ -168,12 +168,34 @@ static void lean_elements_are_whole_ones(void **unused) {
     finish(whole, model);
 }
 
+/* More than any third level is taken to hold: lean but where one processor has the model alone and
+ * is asked for many lines. */
+static void large_models_are_lean_where_that_pays(void **unused) {
+    (void)unused;
+    unsetenv("LARIAT_BLOCKS");
+    lar_model *model = conditioned_brick(52, 50, 51, 0.12, LAR_LAW_neo_hookean);
+    lar_error error = {0};
+    if (lar_model_check(model, &error)) fail_msg("%s", error.message);
+    for (int divided = 0; divided < 2; divided++) {
+        lar_options options = lar_options_default();
+        options.grid = divided ? "2x1x1" : NULL;
+        lar_domain domain;
+        if (lar_domain_create(model, &options, &domain, &error)) fail_msg("%s", error.message);
+        bool many = lar_kernels_ask_many();
+        assert_int_equal(domain.lean, divided || !many);
+        assert_int_equal(domain.run[0].asks, many ? LAR_ASK_MANY : LAR_ASK_FEW);
+        lar_domain_destroy(&domain);
+    }
+    lar_model_destroy(model);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_organ),
         cmocka_unit_test(boxes),
         cmocka_unit_test(crooked_elements),
         cmocka_unit_test(lean_elements_are_whole_ones),
+        cmocka_unit_test(large_models_are_lean_where_that_pays),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -150,7 +150,9 @@ static bool shake(const lar_kernels *kernels, lar_law law, const lar_fibre *fibr
                                .shape = as->shape,
                                .rows = as->rows,
                                .turn = boxes ? as->turn : 0,
-                               .streamed = as->turn == 1,
+                               .asks = as->turn == 1   ? LAR_ASK_FEW
+                                       : as->turn == 2 ? LAR_ASK_MANY
+                                                       : 0,
                                .count = BLOCKS,
                                .axis_stride = NODES,
                                .blocks = boxes ? (const void *)w->box : w->general,

@@ -312,12 +312,13 @@ typedef lar_single_box lar_box_block;
 typedef struct lar_lean_block { /* there are none: single.c makes them whole */
     float volume[LAR_BLOCK];
 } lar_lean_block;
+enum { LAR_ASK_NOTHING, LAR_ASK_MANY = 2, LAR_ASK_FEW = 5 };
 typedef struct lar_block_run {
     lar_law law;
     lar_block_shape shape;
     lar_block_rows rows;
     int turn;
-    bool streamed;
+    int asks;
     int32_t count;
     size_t axis_stride;
     const void *blocks;
