@@ -176,18 +176,18 @@ static void doubt_shape(const mesh_report *report) {
     const mesh_shape mesh = report->mesh, surface = report->surface;
     if (!report->info.image && mesh.bodies < surface.bodies)
         cli_complain(&cli_mesh, CLI_DONE,
-                     "note: the surface has %d bodies and the mesh %d: gaps between them that are "
-                     "thinner than an element of %s are closed, or such bodies left out; take more "
-                     "elements or a smaller size, or give each body a file of its own and say "
-                     "--apart",
+                     "note: the surface has %d bodies and the mesh %d: gaps between them of less "
+                     "than 0.7 elements of %s, or of less than two beside walls that are as "
+                     "thin, are closed, or such bodies left out; take more elements or a smaller "
+                     "size, or give each body a file of its own and say --apart",
                      (int)surface.bodies, (int)mesh.bodies, cli_length(report->info.size).text);
     const int32_t holes = mesh.holes - surface.holes;
     if (holes > 0)
         cli_complain(&cli_mesh, CLI_DONE,
                      "note: the mesh has %d hole%s that the surface has not: walls are about as "
-                     "thin as an element of %s, or gaps bridged in places; there it is softer or "
-                     "stiffer than the body: take elements of two thirds of a wall's thickness or "
-                     "less",
+                     "thin as an element of %s, or gaps bridged in places, of less than 0.7 "
+                     "elements or between such walls; there it is softer or stiffer than the body: "
+                     "take elements of two thirds of a wall's thickness or less",
                      (int)holes, holes > 1 ? "s" : "", cli_length(report->info.size).text);
 }
 

@@ -1,5 +1,6 @@
 /* Grids over shapes whose volume and topology are known. */
 #include "shapes.h"
+#include "solid_test.h"
 
 #include "base/vector.h"
 #include "meshing/grid/voxel_grid_thin.h"
@@ -365,6 +366,45 @@ static void test_slot(void **state) {
     lar_boundary_clear(&boundary);
 }
 
+/* Turned about z and then about x [degrees]. */
+static void turn(lar_triangles *surface, const double by[2]) {
+    const double a = by[0] * SHAPE_PI / 180, b = by[1] * SHAPE_PI / 180;
+    for (int32_t v = 0; v < surface->vertex_count; v++) {
+        double *x = surface->vertex[v];
+        const double across = x[0] * sin(a) + x[1] * cos(a), up = x[2];
+        x[0] = x[0] * cos(a) - x[1] * sin(a);
+        x[1] = across * cos(b) - up * sin(b);
+        x[2] = across * sin(b) + up * cos(b);
+    }
+}
+
+/* Two plates with a gap of three quarters of a cell and more stay two, however the gap lies in the
+ * grid. */
+static void test_gap_aslant(void **state) {
+    (void)state;
+    static const double gap[] = {0.75, 0.9, 1.0, 1.3, 1.7};
+    static const double tilt[][2] = {{0, 0}, {20, 30}, {35, 35}, {40, 20}, {30, 30}, {45, 35.26}};
+    for (int c = 0; c < 5 * 6; c++) {
+        const double g = gap[c % 5], thick = 3 + 0.03 * c;
+        lar_triangles surface[2];
+        lar_boundary boundary;
+        lar_voxel_grid voxel_grid = {0};
+        lar_cleaning cleaning;
+        shape_box_surface(&surface[0], (double[3]){-thick, 0, 0}, (double[3]){0, 11, 8});
+        shape_box_surface(&surface[1], (double[3]){g, 0, 0}, (double[3]){g + 3.4, 11, 8});
+        for (int s = 0; s < 2; s++) turn(&surface[s], tilt[c / 5 % 6]);
+        surface_boundary(surface, 2, &boundary);
+        assert_int_equal(lar_voxel_grid_fill(&boundary, 1, &voxel_grid, NULL), LAR_OK);
+        assert_int_equal(lar_voxel_grid_clean(&voxel_grid, &cleaning, NULL), LAR_OK);
+        const solid_surface solid = solid_judge_voxel_grid(&voxel_grid, 0);
+        if (solid.shells != 2 || solid.euler != 4)
+            fail_msg("a gap of %g, turned by %g and %g: %d bodies, Euler characteristic %d", g,
+                     tilt[c / 5 % 6][0], tilt[c / 5 % 6][1], solid.shells, solid.euler);
+        lar_voxel_grid_clear(&voxel_grid);
+        lar_boundary_clear(&boundary);
+    }
+}
+
 /* A sheet of a third of a cell is a layer of cells, and no thicker. */
 static void test_thin_part(void **state) {
     (void)state;
@@ -433,8 +473,8 @@ int main(void) {
         cmocka_unit_test(test_regions),         cmocka_unit_test(test_nested),
         cmocka_unit_test(test_hole_in_surface), cmocka_unit_test(test_cuts),
         cmocka_unit_test(test_from_image),      cmocka_unit_test(test_slot),
-        cmocka_unit_test(test_thin_part),       cmocka_unit_test(test_nothing_thin),
-        cmocka_unit_test(test_refused),
+        cmocka_unit_test(test_gap_aslant),      cmocka_unit_test(test_thin_part),
+        cmocka_unit_test(test_nothing_thin),    cmocka_unit_test(test_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -131,7 +131,8 @@ static void print_cleaning(const lar_meshing_info *info) {
         printf("%-17s%d small hollow%s filled", label, (int)info->pinholes,
                info->pinholes == 1 ? "" : "s");
         if (info->pinhole_cells > 0)
-            printf(" (%d cells)\n", (int)info->pinhole_cells);
+            printf(" (%d cells, %.1f %% of the body's)\n", (int)info->pinhole_cells,
+                   100.0 * info->pinhole_cells / info->elements);
         else
             printf(", smaller than a cell%s\n", info->pinholes == 1 ? "" : " each");
     }

@@ -8,8 +8,9 @@
 #include "base/vector.h"
 #include "model/triangles/tree.h"
 
-/* All in cells. What is wider than REACH beside something thin has room enough. */
-static const double REACH = 1.5;
+/* All in cells. What is wider than REACH beside something thin has room enough, and what is thicker
+ * than FAR behind a gap that is to be open. */
+static const double REACH = 1.5, FAR = 4;
 
 /* Slots from SLOT_MIN on are widened to SLOT_WIDE, as far as the body beside them keeps
  * PART_KEPT; parts the same. Narrower slots cost more in cells than they gain, and among several
@@ -24,6 +25,12 @@ static const double PART_MIN = 0.15, PART_WIDE = 1, SLOT_KEPT = 0.5;
  * fitting could not make it thin again, and ribs and lobes would stand off. */
 static const double SHEET_MIN = 0.45, SHEET_ROOM = 1.05, SHEET_ROOM_REGIONS = 1;
 static const double SHEET_MAX = 1.82; /* that of a sheet across the cells' diagonal */
+
+/* The outside hangs together by faces, and what is beside it is apart, where it is as wide as such
+ * a sheet. Slots from GAP_MIN on get that width as far as the body beside them keeps it too, and
+ * GAP_ROOM more, since a surface moves by whole parts of cells. Narrower ones would cost too many
+ * cells. */
+static const double GAP_MIN = 0.7, GAP_ROOM = 0.3;
 
 /* Parts of cells are counted around a place as far as others lie from it. */
 static const double AROUND = 0.4;
@@ -115,10 +122,11 @@ static void measure_place(const search *s, lar_thin_place *place) {
     const double behind[3] = {-normal[0], -normal[1], -normal[2]};
     double slot = measure_thickness(s, place->point, normal, SLOT_WIDE * size);
     double part = measure_thickness(s, place->point, behind, SHEET_MAX * size);
-    if (isinf(slot) && !isinf(part))
-        slot = measure_thickness(s, place->point, normal, REACH * size);
+    if (isinf(slot))
+        slot = measure_thickness(s, place->point, normal, (isinf(part) ? SHEET_MAX : REACH) * size);
     if (isinf(part) && !isinf(slot))
         part = measure_thickness(s, place->point, behind, REACH * size);
+    if (isinf(part) && !isinf(slot)) part = measure_thickness(s, place->point, behind, FAR * size);
     place->slot = (float)slot;
     place->part = (float)part;
 }
@@ -241,9 +249,11 @@ static double way_of(const lar_thin_place *place, bool regions, const lar_voxel_
     const double size = voxel_grid->size, slot = place->slot / size, part = place->part / size;
     const double min = regions ? SLOT_MIN_REGIONS : SLOT_MIN;
     const double room = regions ? SHEET_ROOM_REGIONS : SHEET_ROOM;
-    const double wide = part > SHEET_MIN ? room * aslant(place, voxel_grid) : PART_WIDE;
-    if (slot > min && slot < SLOT_WIDE && part > PART_KEPT)
-        return -fmin(SLOT_WIDE - slot, part - PART_KEPT) / 2;
+    const double sheet = aslant(place, voxel_grid);
+    const double wide = part > SHEET_MIN ? room * sheet : PART_WIDE;
+    double open = fmin(SLOT_WIDE - slot, part - PART_KEPT);
+    if (slot > GAP_MIN) open = fmax(open, fmin(sheet + GAP_ROOM - slot, part - sheet));
+    if (slot > min && open > 0) return -open / 2;
     if (part > PART_MIN && part < wide && slot > SLOT_KEPT)
         return fmin(wide - part, slot - SLOT_KEPT) / 2;
     return 0;
