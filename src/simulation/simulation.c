@@ -311,9 +311,10 @@ static bool may_touch(const lar_simulation *simulation) {
 
 /* Contact may keep or lose energy, but must not have given more than it took: then the bodies would
  * have more than they began with. Surfaces that fold over themselves do that to it. What counts as
- * nothing is measured by the energy of the bodies, which is asked for only when contact is behind
- * by more than it was the last time, or may be: what a report has lacks half of its last step,
- * which is taken for as much as all steps since the last look. The steps of looks are the same
+ * nothing is measured by the energy that the bodies have and have lost, or quiet ones would be
+ * stopped for what they did not mind in motion. It is asked for only when contact is behind by more
+ * than it was the last time, or may be: what a report has lacks half of its last step, which is
+ * taken for as much as all steps since the last look. The steps of looks are the same
  * however a run is divided into advances, and intervals end there (step/interval.h). */
 static lar_status check_contact(lar_simulation *simulation, lar_error *error) {
     static const double NOTHING = 1e-3;
@@ -325,7 +326,8 @@ static lar_status check_contact(lar_simulation *simulation, lar_error *error) {
     if (status) return status;
     lar_energy e;
     lar_simulation_energy(simulation, &e);
-    simulation->measured = fmax(simulation->measured, e.kinetic + e.strain + e.hourglass);
+    double had = e.kinetic + e.strain + e.hourglass + e.damping + e.viscous;
+    simulation->measured = fmax(simulation->measured, had);
     double given = -e.contact;
     if (!(given > NOTHING * simulation->measured)) return LAR_OK;
     simulation->fault =

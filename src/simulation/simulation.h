@@ -36,7 +36,7 @@ struct lar_simulation {
     uint64_t redivisions;  /* atomic */
     lar_report report;     /* of the last advance, of all processors */
     uint64_t report_steps; /* how many steps that was */
-    double measured;       /* the most energy of the bodies when that was asked [J] */
+    double measured;       /* the most that bodies had and had lost when that was asked [J] */
     double taken;          /* by contacts, as of the last report [J] */
     int32_t sessions;      /* open on it: 0 or 1. Atomic */
     int32_t held;          /* by the thread of a session, which alone may change it. Atomic */
