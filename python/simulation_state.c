@@ -301,7 +301,8 @@ PyMethodDef python_state_methods[] = {
     {"save", FUNCTION(save), METH_VARARGS | METH_KEYWORDS,
      "save($self, target=None)\n--\n\nSaves the state: into a fresh Saved, which is returned; "
      "into the Saved that is given, which asks for no memory; or as a checkpoint at a path. "
-     "Nodes, tools, settings and what tools felt."},
+     "Nodes, tools, settings and what tools felt; a checkpoint lacks the last, and "
+     "tool_force is zero until the next step."},
     {"load", FUNCTION(load), METH_VARARGS | METH_KEYWORDS,
      "load($self, source)\n--\n\nTakes up a Saved or a checkpoint at a path: from then on "
      "everything is as if it had never stopped, on any grid. One of another model is refused, with "

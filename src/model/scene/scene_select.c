@@ -284,6 +284,13 @@ static lar_status mark_integer(lar_scene *scene, const lar_yaml *node, lar_set_k
                                                 : "{tag: N} or {list: [N, ...]}");
 }
 
+/* In quotes, as JSON has all words, it is a set of the mesh where that has one of this name. */
+static bool means_all(const lar_scene *scene, const lar_yaml *node, const char *name,
+                      lar_set_kind kind) {
+    if (strcmp(name, "all") != 0) return false;
+    return !node->quoted || !lar_mesh_find_set(&scene->model->mesh, name, kind);
+}
+
 /* One entry: "all", a set name, an integer or a selector. */
 static lar_status mark_entry(lar_scene *scene, const lar_yaml *node, lar_set_kind kind, bool tags,
                              uint8_t *mark) {
@@ -294,7 +301,7 @@ static lar_status mark_entry(lar_scene *scene, const lar_yaml *node, lar_set_kin
     lar_status status = lar_scene_text(
         scene, node, "all, the name of a set, a number, or a selector such as {box: ...}", &name);
     if (status) return status;
-    if (!node->quoted && strcmp(name, "all") == 0) return mark_all(scene, node, kind, mark);
+    if (means_all(scene, node, name, kind)) return mark_all(scene, node, kind, mark);
     return lar_scene_mark_set(scene, node, kind, mark);
 }
 
