@@ -140,7 +140,7 @@ static void hollow(const brick *b, int wall, lar_mesh *mesh) {
     free(to);
 }
 
-/* A ball that may press with thirty times what crushes the walls of a box: what it does must not
+/* A ball that may press with more than twice what crushes the walls of a box: what it does must not
  * go with what it may. (It was thrown back by all of its limit whenever an element became too fast,
  * and drawn in by a tenth of it at once.) */
 static void a_large_tool_crushes_calmly(void **unused) {
