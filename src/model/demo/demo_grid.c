@@ -1,12 +1,13 @@
 /* The cells of the demonstration organ, and where their nodes are. */
 #include <assert.h>
+#include <stdint.h>
 #include <stdlib.h>
 
 #include "base/memory.h"
 #include "model/demo/demo_parts.h"
 #include "model/mesh/mesh.h"
 
-static const double positions[][3] = {
+static const int16_t positions[][3] = {
 #include "model/demo/demo_nodes.inc"
 };
 

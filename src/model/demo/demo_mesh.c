@@ -33,11 +33,10 @@ static void place_nodes(const lar_demo_half *half, whole_table nodes, lar_mesh *
             for (int i = -LAR_DEMO_I_END; i <= LAR_DEMO_I_END; ++i) {
                 int *node = entry(nodes, i, j, k);
                 if (*node < 0) continue;
-                const double *from = half->position[*node];
+                const int16_t *from = half->position[*node];
                 const int32_t n = mesh->node_count++;
-                mesh->position[n][0] = (i < 0 ? -1e-3 : 1e-3) * from[0];
-                mesh->position[n][1] = 1e-3 * from[1];
-                mesh->position[n][2] = 1e-3 * from[2];
+                for (int d = 0; d < 3; ++d) mesh->position[n][d] = from[d] * (1e-3 / 256.0);
+                if (i < 0) mesh->position[n][0] = -mesh->position[n][0];
                 mesh->node_id[n] = n;
                 memcpy(grid[n], (int[3]){i, j, k}, sizeof grid[n]);
                 *node = n;

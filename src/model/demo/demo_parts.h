@@ -19,6 +19,8 @@
 #ifndef LAR_MODEL_DEMO_DEMO_PARTS_H
 #define LAR_MODEL_DEMO_DEMO_PARTS_H
 
+#include <stdint.h>
+
 #include "base/error.h"
 
 enum { LAR_DEMO_UTERUS = 1, LAR_DEMO_TUBES, LAR_DEMO_OVARIES, LAR_DEMO_LIGAMENTS };
@@ -33,11 +35,11 @@ enum {
     LAR_DEMO_J_NODES = LAR_DEMO_J_END - LAR_DEMO_J_FIRST + 1
 };
 
-/* Cells and nodes with i >= 0; positions in millimetres. */
+/* Cells and nodes with i >= 0. */
 typedef struct lar_demo_half {
     int node_count;
     int (*grid)[3];              /* I, J, K of every node */
-    const double (*position)[3]; /* constants */
+    const int16_t (*position)[3]; /* in 256ths of a millimetre; constants */
     int cell_count;
     int (*cell)[3]; /* i, j, k of every cell */
     int *part;      /* LAR_DEMO_UTERUS, ... */
