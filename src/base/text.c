@@ -17,6 +17,18 @@ lar_text lar_text_from(const lar_bytes *bytes) {
     return (lar_text){at, end, 1};
 }
 
+lar_status lar_text_open(const char *path, const lar_bytes *bytes, lar_text *text,
+                         lar_error *error) {
+    *text = lar_text_from(bytes);
+    const char *zero = memchr(bytes->data, 0, bytes->size);
+    if (!zero) return LAR_OK;
+    int line = 1;
+    for (const char *c = (const char *)bytes->data; c < zero; c++) line += *c == '\n';
+    return lar_fail(error, LAR_ERROR_FORMAT,
+                    "%s:%d: a byte is 0, which no text has; save the file as plain text (UTF-8)",
+                    path, line);
+}
+
 bool lar_text_skip_space(lar_text *text) {
     while (text->at < text->end && is_space(*text->at)) {
         if (*text->at == '\n') text->line++;

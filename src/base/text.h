@@ -33,6 +33,11 @@ typedef struct lar_span {
  * it. */
 lar_text lar_text_from(const lar_bytes *bytes);
 
+/* The same of a file that a spreadsheet may have written, whose export as "Unicode text" has two
+ * bytes for each character: LAR_ERROR_FORMAT, with file and line, where a byte is 0. */
+lar_status lar_text_open(const char *path, const lar_bytes *bytes, lar_text *text,
+                         lar_error *error);
+
 /* Skips blanks and line ends, counting lines. False at the end of the text. */
 bool lar_text_skip_space(lar_text *text);
 

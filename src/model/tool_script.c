@@ -119,8 +119,9 @@ lar_status lar_tool_script_read(const char *path, lar_tool_script *script, lar_e
     *script = (lar_tool_script){0};
     lar_status status = lar_bytes_read(path, &bytes, error);
     if (status) return status;
-    script_reader reader = {.path = path, .text = lar_text_from(&bytes)};
-    status = read_header(&reader, error);
+    script_reader reader = {.path = path};
+    status = lar_text_open(path, &bytes, &reader.text, error);
+    if (!status) status = read_header(&reader, error);
     lar_span line;
     while (!status && next_line(&reader, &line)) status = add_row(&reader, script, line, error);
     if (!status && script->count == 0)

@@ -153,6 +153,14 @@ static void test_bad_scripts_are_refused(void **state) {
         assert_refused("script:device_bad.csv", LAR_ERROR_FORMAT, bad[i].words);
     }
     assert_refused("script:missing.csv", LAR_ERROR_IO, "missing.csv");
+    static const char two_bytes_each[] = "time,x,y,z\n0,0,0,\0001\0\n"; /* a spreadsheet's */
+    FILE *file = fopen("device_bad.csv", "w");
+    assert_non_null(file);
+    assert_int_equal(fwrite(two_bytes_each, 1, sizeof two_bytes_each - 1, file),
+                     sizeof two_bytes_each - 1);
+    fclose(file);
+    assert_refused("script:device_bad.csv", LAR_ERROR_FORMAT,
+                   "device_bad.csv:2: a byte is 0, which no text has");
 }
 
 /* ---- the device's axes ----------------------------------------------------------------------- */

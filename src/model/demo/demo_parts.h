@@ -38,7 +38,7 @@ enum {
 /* Cells and nodes with i >= 0. */
 typedef struct lar_demo_half {
     int node_count;
-    int (*grid)[3];              /* I, J, K of every node */
+    int (*grid)[3];               /* I, J, K of every node */
     const int16_t (*position)[3]; /* in 256ths of a millimetre; constants */
     int cell_count;
     int (*cell)[3]; /* i, j, k of every cell */

@@ -96,7 +96,8 @@ static lar_status read_list(const char *path, lar_frame_list *list, lar_error *e
     size_t capacity = 0;
     lar_status status = lar_bytes_read(path, &bytes, error);
     if (status) return status;
-    lar_text text = lar_text_from(&bytes);
+    lar_text text;
+    status = lar_text_open(path, &bytes, &text, error);
     for (lar_span line; !status && lar_text_line(&text, &line);) {
         line = lar_span_trim(line);
         if (line.length == 0 || line.at[0] == '#') continue;

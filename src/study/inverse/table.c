@@ -109,9 +109,10 @@ static lar_status read_row(reader *r, lar_inverse_table *t, lar_span rest, lar_e
 }
 
 static lar_status parse(const lar_bytes *bytes, lar_inverse_table *t, lar_error *error) {
-    reader r = {.text = lar_text_from(bytes)};
+    reader r = {0};
     lar_span line;
-    lar_status status = read_names(&r, t, error);
+    lar_status status = lar_text_open(t->path, bytes, &r.text, error);
+    if (!status) status = read_names(&r, t, error);
     while (!status && next_line(&r, &line)) status = read_row(&r, t, line, error);
     if (!status && t->rows < 2)
         status = lar_fail(error, LAR_ERROR_FORMAT,
