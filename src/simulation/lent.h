@@ -43,7 +43,7 @@
     X(lar_scene_need) X(lar_scene_no_memory) X(lar_scene_number) X(lar_scene_positive) \
     X(lar_scene_text) X(lar_scene_unknown) X(lar_scene_vector) X(lar_simulation_state) \
     X(lar_span_double) X(lar_span_split) X(lar_span_trim) X(lar_strdup) X(lar_strndup) \
-    X(lar_surface_tree_clear) X(lar_surface_tree_create) X(lar_text_from) X(lar_text_line) \
+    X(lar_surface_tree_clear) X(lar_surface_tree_create) X(lar_text_line) X(lar_text_open) \
     X(lar_triangle_tree_nearest) X(lar_triangles_clear) X(lar_triangles_normal) X(lar_yaml_clear) \
     X(lar_yaml_get) X(lar_yaml_parse)
 /* clang-format on */
