@@ -350,8 +350,8 @@ void lar_body_contact_end_offsets(lar_body_contact *contact, const lar_state *st
 /* The nodes have moved, none farther than `way` along any axis [m]; offsets become theirs. */
 void lar_body_contact_moved(lar_body_contact *contact, lar_state *state, double way);
 
-/* Half the work of these forces in this step, to state->contact: once before and once after the
- * nodes move. */
+/* Half the work of these forces in this step, to state->contact and ->exchanged: once before and
+ * once after the nodes move. */
 void lar_body_contact_half_work(const lar_body_contact *contact,
                                 const lar_condition_context *context, lar_state *state);
 

@@ -53,19 +53,20 @@ typedef struct lar_strained lar_strained; /* step/guard.h */
 typedef struct lar_needs lar_needs;       /* step/mass/needs.h */
 
 typedef struct lar_state {
-    uint64_t step;   /* steps done */
-    int32_t part;    /* parts of a divided step done; 0 between advances */
-    int32_t parts;   /* of the step under way */
-    uint64_t round;  /* times that nodes were moved; no state */
-    double damped;   /* sum over the steps of sum c m |v + v'|^2, c: damping */
-    double external; /* work of loads, prescribed motion and tools so far [J] */
-    double contact;  /* what contacts have taken from the bodies so far [J] */
-    double fastest;  /* largest velocity of an axis of the nodes moved last [m/s]; no state */
-    double need;     /* of the elements looked at in this stretch of steps: see lar_step_division */
-    bool close;      /* they are looked at in this step: lar_division_is_close */
-    bool lets_go;    /* corners have no barriers: lar_division_lets_go; no state */
-    bool listed;     /* the strained elements are listed; false: they are looked for anew */
-    double past;     /* since the forces before [s], as the step was entered; no state */
+    uint64_t step;    /* steps done */
+    int32_t part;     /* parts of a divided step done; 0 between advances */
+    int32_t parts;    /* of the step under way */
+    uint64_t round;   /* times that nodes were moved; no state */
+    double damped;    /* sum over the steps of sum c m |v + v'|^2, c: damping */
+    double external;  /* work of loads, prescribed motion and tools so far [J] */
+    double contact;   /* what contacts have taken from the bodies so far [J] */
+    double exchanged; /* what contacts of bodies have done at single nodes, either way [J] */
+    double fastest;   /* largest velocity of an axis of the nodes moved last [m/s]; no state */
+    double need;  /* of the elements looked at in this stretch of steps: see lar_step_division */
+    bool close;   /* they are looked at in this step: lar_division_is_close */
+    bool lets_go; /* corners have no barriers: lar_division_lets_go; no state */
+    bool listed;  /* the strained elements are listed; false: they are looked for anew */
+    double past;  /* since the forces before [s], as the step was entered; no state */
     lar_strained *strained; /* the list, lent; no state */
     lar_needs *needs;       /* whose `need` that is, lent; NULL: nobody asks. No state */
     double hardness;        /* of tools: lar_step_division; no state */

@@ -30,11 +30,12 @@ static void check_copies(const lar_computer *computer, const lar_processor *p) {
 }
 
 static void add_work(const lar_processor *p, int32_t threads, double *external, double *damped,
-                     double *contact) {
+                     double *contact, double *exchanged) {
     for (int32_t t = 0; t < threads; t++) {
         *external += p->worker[t].state.external;
         *damped += p->worker[t].state.damped;
         *contact += p->worker[t].state.contact;
+        *exchanged += p->worker[t].state.exchanged;
     }
     lar_guard_half_to_come(&p->domain, &p->worker[0].state, contact, external);
 }
@@ -54,7 +55,8 @@ static void gather_here(const lar_computer *computer) {
             lar_state_write(state, whole->layout.local[node], value);
         }
         lar_viscous_copy(&p->domain, own, whole, state);
-        add_work(p, computer->threads, &state->external, &state->damped, &state->contact);
+        add_work(p, computer->threads, &state->external, &state->damped, &state->contact,
+                 &state->exchanged);
     }
     for (int32_t i = 0; i < computer->hosted; i++) check_copies(computer, &computer->processor[i]);
 }
@@ -85,6 +87,7 @@ static bool take_nodes(lar_computer *computer, int32_t p, bool first, const lar_
         state->external += answer->external;
         state->damped += answer->damped;
         state->contact += answer->contact;
+        state->exchanged += answer->exchanged;
     }
     return nodes == LAR_ANSWER_NODES;
 }
@@ -162,7 +165,7 @@ lar_status lar_computer_gather(lar_computer *computer, lar_error *error) {
     if (status) return status;
     lar_state *state = computer->state;
     state->step = computer->processor[0].worker[0].state.step;
-    state->external = state->damped = state->contact = 0;
+    state->external = state->damped = state->contact = state->exchanged = 0;
     gather_here(computer);
     if (computer->control) status = gather_rounds(computer, LAR_ORDER_GATHER, take_nodes, error);
     bool remembers = computer->whole->element_history || computer->whole->rubbing;
@@ -181,7 +184,8 @@ lar_status lar_computer_answer_nodes(lar_computer *computer, uint64_t round, lar
     node_values value[LAR_ANSWER_NODES];
     size_t count = 0;
     uint64_t skip = round * LAR_ANSWER_NODES;
-    add_work(p, computer->threads, &answer.external, &answer.damped, &answer.contact);
+    add_work(p, computer->threads, &answer.external, &answer.damped, &answer.contact,
+             &answer.exchanged);
     for (lar_gid node = 0;
          node < computer->whole->model->mesh.node_count && count < LAR_ANSWER_NODES; node++) {
         if (computer->division.reporter[node] != p->self) continue;
@@ -276,6 +280,7 @@ lar_status lar_computer_scatter(lar_computer *computer, lar_error *error) {
     first->external = computer->state->external;
     first->damped = computer->state->damped;
     first->contact = computer->state->contact;
+    first->exchanged = computer->state->exchanged;
     computer->gathered = true;
     computer->tools_sent = false;
     computer->contact.valid = false;

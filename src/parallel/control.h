@@ -58,7 +58,7 @@ enum { LAR_ANSWER_NODES = LAR_PART_BYTES / (LAR_NODE_VALUES * (int)sizeof(double
 typedef struct lar_answer {
     uint64_t step;   /* steps done */
     lar_fault fault; /* the first of the processor */
-    double external, damped, contact;
+    double external, damped, contact, exchanged;
     uint64_t bytes; /* of the payload */
 } lar_answer;
 

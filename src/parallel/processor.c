@@ -315,7 +315,8 @@ void lar_processor_scatter(lar_processor *p, const lar_domain *whole, const lar_
         worker->state.part = 0;
         worker->state.parts = 1;
         worker->state.listed = false;
-        worker->state.external = worker->state.damped = worker->state.contact = 0;
+        worker->state.external = worker->state.damped = 0;
+        worker->state.contact = worker->state.exchanged = 0;
         worker->fault = (lar_fault){0};
         lar_interactions_forget(&worker->interactions);
         memset(worker->state.force, 0, 3 * own->stride * sizeof(int64_t));

@@ -25,10 +25,10 @@
  * with forces that were set on nodes has version 8 or 9, one with an activation that was set 10 or
  * 11, with forces or without, one with strained elements that are heavier, or may soon be, 12 or
  * 13, with supports that were set 14 or 15, with parameters of materials that were set 16 or 17,
- * with tools of which some are harder than others 18 or 19, each with all of the others; others are
- * written as they always were. */
+ * with tools of which some are harder than others 18 or 19, with bodies that have touched 20 or 21,
+ * each with all of the others; others are written as they always were. */
 enum { BEFORE_SETTINGS = 3, BEFORE_THIRDS = 5, VERSION = 6, FORCES = 8, ACTIVE = 10 };
-enum { HEAVIER = 12, SUPPORTED = 14, PARAMETERS = 16, HARDNESS = 18, NEWEST = 19 };
+enum { HEAVIER = 12, SUPPORTED = 14, PARAMETERS = 16, HARDNESS = 18, TOUCHED = 20, NEWEST = 21 };
 enum { BYTE_ORDER_MARK = 0x01020304 };
 
 typedef struct file_head {
@@ -115,13 +115,19 @@ static size_t hardness_bytes(const file_shape *shape) {
     return shape->version < HARDNESS ? 0 : 2 * (size_t)shape->tools * sizeof(double);
 }
 
+/* What contact has exchanged. */
+static size_t exchanged_bytes(const file_shape *shape) {
+    return shape->version < TOUCHED ? 0 : sizeof(double);
+}
+
 static size_t file_bytes(const file_shape *shape, size_t nodes) {
     size_t tools = (size_t)shape->tools, grasps = (size_t)shape->grasps;
     return sizeof(file_head) + settings_bytes(shape->version) + forces_bytes(shape) +
            heavier_bytes(shape) + supports_bytes(shape) + parameters_bytes(shape) +
            hardness_bytes(shape) + tools * (sizeof(lar_tool_motion) + sizeof(lar_tool_follower)) +
-           grasps * sizeof(lar_grasp) + nodes * LAR_NODE_VALUES * sizeof(double) +
-           shape->history * sizeof(double) + sizeof(uint64_t);
+           grasps * sizeof(lar_grasp) + exchanged_bytes(shape) +
+           nodes * LAR_NODE_VALUES * sizeof(double) + shape->history * sizeof(double) +
+           sizeof(uint64_t);
 }
 
 uint64_t lar_checkpoint_sum(const void *data, size_t words) {
@@ -146,7 +152,8 @@ static bool all_finite(const double *value, size_t count) {
 static lar_status check_finite(const char *path, const lar_domain *whole, const lar_state *state,
                                lar_error *error) {
     const lar_mesh *mesh = &whole->model->mesh;
-    bool finite = isfinite(state->external) && isfinite(state->damped) && isfinite(state->contact);
+    bool finite = isfinite(state->external) && isfinite(state->damped) &&
+                  isfinite(state->contact) && isfinite(state->exchanged);
     for (lar_gid g = 0; g < mesh->node_count; g++) {
         double value[LAR_NODE_VALUES];
         lar_state_read(state, whole->layout.local[g], value);
@@ -171,12 +178,14 @@ static bool some_strained(const lar_heavy_list *list) {
 }
 
 /* What a file has of the tools: spares up to the last one that is there. */
-static file_shape shape_of(const lar_domain *whole, const lar_tools *tools) {
+static file_shape shape_of(const lar_domain *whole, const lar_state *state,
+                           const lar_tools *tools) {
     const lar_tool_list *list = whole->surroundings.list;
     int32_t spares = lar_spares_needed(tools->spare);
     int32_t count = (list ? lar_spares_first(list) : 0) + spares;
     const lar_heavy_list *heavier = &tools->strained;
-    uint32_t version = lar_tools_differ(tools, count)            ? HARDNESS
+    uint32_t version = state->exchanged > 0                      ? TOUCHED
+                       : lar_tools_differ(tools, count)          ? HARDNESS
                        : tools->parameters.count > 0             ? PARAMETERS
                        : tools->supports.count > 0               ? SUPPORTED
                        : some_strained(heavier)                  ? HEAVIER
@@ -226,7 +235,8 @@ static unsigned char *fill(const lar_domain *whole, const lar_state *state, cons
     unsigned char *data = lar_calloc(bytes, 1);
     if (!data) return NULL;
     lar_gid nodes = whole->model->mesh.node_count;
-    double *rows = (double *)(void *)fill_tools(data + sizeof(file_head), shape, tools);
+    unsigned char *at = fill_tools(data + sizeof(file_head), shape, tools);
+    double *rows = (double *)(void *)append(at, &state->exchanged, exchanged_bytes(shape));
     for (lar_gid g = 0; g < nodes; g++) {
         double value[LAR_NODE_VALUES];
         lar_state_read(state, whole->layout.local[g], value);
@@ -259,7 +269,7 @@ lar_status lar_checkpoint_pack(const char *path, const lar_domain *whole, const 
                                const lar_tools *tools, lar_bytes *bytes, lar_error *error) {
     lar_status status = check_finite(path, whole, state, error);
     if (status) return status;
-    const file_shape shape = shape_of(whole, tools);
+    const file_shape shape = shape_of(whole, state, tools);
     lar_bytes made = {.size = file_bytes(&shape, (size_t)whole->model->mesh.node_count)};
     made.data = fill(whole, state, tools, &shape, made.size);
     if (!made.data) return lar_fail_memory(error, made.size, path);
@@ -486,7 +496,8 @@ static bool take_tools(const file_head *head, const file_shape *shape, const lar
                 lar_heavier_good(whole, &tools->strained) &&
                 lar_supports_good(&tools->supports, whole->model) &&
                 lar_parameters_good(&tools->parameters, &tools->settings, whole->model) &&
-                lar_tools_differ(tools, tools->count) == (head->version >= HARDNESS) &&
+                (head->version >= TOUCHED ||
+                 lar_tools_differ(tools, tools->count) == (head->version >= HARDNESS)) &&
                 (head->version >= HARDNESS ||
                  (tools->parameters.count > 0) == (head->version >= PARAMETERS)) &&
                 (head->version >= PARAMETERS ||
@@ -541,8 +552,12 @@ lar_status lar_checkpoint_parse(const char *path, const lar_bytes *bytes, const 
     if (!take_tools(&head, &shape, whole, &at, &checkpoint->tools))
         return refuse(error, path,
                       "has a tool or a setting that cannot be so; take another checkpoint");
+    checkpoint->exchanged = 0;
+    at = extract(at, &checkpoint->exchanged, exchanged_bytes(&shape));
     checkpoint->rows = (const double *)(const void *)at;
-    bool finite = isfinite(head.external) && isfinite(head.damped) && isfinite(head.contact);
+    bool finite = isfinite(head.external) && isfinite(head.damped) && isfinite(head.contact) &&
+                  isfinite(checkpoint->exchanged) &&
+                  (checkpoint->exchanged > 0) == (head.version >= TOUCHED);
     checkpoint->history = checkpoint->rows + LAR_NODE_VALUES * nodes;
     if (!finite || !all_finite(checkpoint->rows, LAR_NODE_VALUES * nodes + shape.history) ||
         !lar_checkpoint_none_negative(checkpoint->rows, nodes) || head.step > LAR_STEPS_MAX)
@@ -573,5 +588,6 @@ void lar_checkpoint_take(const lar_checkpoint *checkpoint, const lar_domain *who
     state->external = checkpoint->external;
     state->damped = checkpoint->damped;
     state->contact = checkpoint->contact;
+    state->exchanged = checkpoint->exchanged;
     *tools = checkpoint->tools;
 }

@@ -24,7 +24,7 @@ enum { LAR_CHECKPOINT_MAGIC_BYTES = 8 };
 /* What a file says, found to be right. The arrays stand in the bytes that were parsed. */
 typedef struct lar_checkpoint {
     uint64_t step;
-    double external, damped, contact; /* as in lar_state */
+    double external, damped, contact, exchanged; /* as in lar_state */
     lar_tools tools;
     const double *rows;    /* of the state's table, [nodes of the mesh] each */
     const double *history; /* of step/viscous_history.h, element after element */

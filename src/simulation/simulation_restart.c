@@ -99,7 +99,7 @@ void lar_simulation_set_start(lar_simulation *simulation) {
     state->part = 0;
     state->parts = 1;
     state->listed = false;
-    state->damped = state->external = state->contact = 0;
+    state->damped = state->external = state->contact = state->exchanged = 0;
     simulation->measured = simulation->taken = 0;
     lar_tools_reset(&simulation->list, &simulation->tools);
     lar_simulation_settle(simulation);
@@ -124,6 +124,7 @@ static void copy_state(const lar_state *from, lar_state *to) {
     to->damped = from->damped;
     to->external = from->external;
     to->contact = from->contact;
+    to->exchanged = from->exchanged;
 #define LAR_STATE_COPY(type, name, of_node, of_history, kept)                                      \
     if ((kept) && from->name && to->name)                                                          \
         memcpy(to->name, from->name, LAR_STATE_SIZE(from, of_node, of_history) * sizeof(type));

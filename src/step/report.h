@@ -13,6 +13,7 @@ typedef struct lar_report {
     double moved, way; /* for contact of bodies: since the search, and in the last step [m] */
     double need;       /* of the elements: lar_state.need */
     double taken;      /* by contact, as lar_state.contact: since the start [J] */
+    double exchanged;  /* by contact of bodies, as lar_state.exchanged, likewise */
     lar_needs needs;   /* of single elements, where strained ones may be heavier */
 } lar_report;
 
@@ -57,6 +58,7 @@ static inline void lar_report_join(lar_report *sum, const lar_report *other) {
     sum->way = lar_larger(sum->way, other->way);
     sum->need = lar_larger(sum->need, other->need);
     sum->taken += other->taken;
+    sum->exchanged += other->exchanged;
     lar_needs_join(&sum->needs, &other->needs);
 }
 
@@ -71,6 +73,7 @@ static inline void lar_report_add(lar_report *sum, const lar_interactions *inter
     own.way = interactions->body_contact.way;
     own.need = state->need;
     own.taken = state->contact;
+    own.exchanged = state->exchanged;
     lar_needs_clear(&own.needs);
     lar_report_join(sum, &own);
     if (state->needs) lar_needs_join(&sum->needs, state->needs);

@@ -52,7 +52,7 @@ static void same_for_a_seed(void **state) {
         lar_genetic_search(&o->mesh, &o->incidence, &grid, &options, o->processor, &result, NULL),
         LAR_OK);
     assert_int_equal(result.generations, 40);
-    assert_int_equal(result.start.worst, 968);
+    assert_int_equal(result.start.worst, 950);
     assert_true(result.best.worst < result.start.worst);
     check_balance(o, &grid);
     lar_genetic_search(&o->mesh, &o->incidence, &grid, &options, o->other, NULL, NULL);

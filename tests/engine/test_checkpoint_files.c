@@ -59,9 +59,9 @@ static void damaged_files_are_refused(void **unused) {
         refuse(simulation, BAD, LAR_ERROR_FORMAT, "checksum");
         bad.data[at] ^= 0x10;
     }
-    bad.data[8] = 20;
+    bad.data[8] = 22;
     write_bytes(BAD, &bad);
-    refuse(simulation, BAD, LAR_ERROR_UNSUPPORTED, "version 20");
+    refuse(simulation, BAD, LAR_ERROR_UNSUPPORTED, "version 22");
     bad.data[8] = good.data[8];
     memcpy(bad.data + 12, (unsigned char[]){1, 2, 3, 4}, 4);
     write_bytes(BAD, &bad);

@@ -3,6 +3,7 @@
  * that reliably, so energy is put into the books of contact by hand. */
 #include "engine/body_contact_test.h"
 #include "parallel/computer.h"
+#include "simulation/checkpoint.h"
 
 static const brick LOWER = {{5, 4, 2}, 0.01, 0, LAR_LAW_neo_hookean, 4e3, 4e4, 1000};
 static const brick UPPER = {{3, 2, 2}, 0.01, 0, LAR_LAW_neo_hookean, 4e3, 4e4, 1000};
@@ -53,6 +54,67 @@ static void it_stops_in_the_same_step(void **unused) {
     }
 }
 
+/* Faces are flat: contact that slides gives and takes by what it exchanges, which a checkpoint
+ * keeps. The bodies have parted when energy is put into the books. */
+static void what_is_exchanged_counts(void **unused) {
+    (void)unused;
+    for (int grid = 0; grid < 2; grid++) {
+        lar_model *model = thrown();
+        lar_options options = lar_options_default();
+        options.grid = grid ? "2x1x1" : NULL;
+        lar_simulation *s = start_with(model, options), *later = start_with(model, options);
+        lar_error error;
+        assert_int_equal(lar_simulation_advance(s, 1024, &error), LAR_OK);
+        lar_contact_info info;
+        lar_simulation_contact(s, &info);
+        assert_int_equal(info.touching, 0);
+        lar_energy e;
+        lar_simulation_energy(s, &e);
+        const double slid = 5e-3 * s->state.exchanged;
+        assert_true(1e-3 * (e.kinetic + e.strain + e.hourglass + e.damping) < 0.3 * slid);
+        give(s, e.contact + 0.9 * slid);
+        assert_int_equal(lar_simulation_advance(s, 64, &error), LAR_OK);
+        assert_int_equal(lar_simulation_save(s, "gain.lariat", &error), LAR_OK);
+        assert_int_equal(lar_simulation_load(later, "gain.lariat", &error), LAR_OK);
+        assert_int_equal(lar_simulation_advance(later, 64, &error), LAR_OK);
+        give(s, 0.5 * slid);
+        assert_int_equal(lar_simulation_advance(s, 64, &error), LAR_ERROR_UNSTABLE);
+        assert_non_null(strstr(error.message, "contact has given"));
+        give(later, 0.5 * slid);
+        assert_int_equal(lar_simulation_advance(later, 64, &error), LAR_ERROR_UNSTABLE);
+        lar_simulation_destroy(later);
+        finish(s, model);
+    }
+}
+
+/* Whoever forges the checksum still gets no other exchange than one that can be. */
+static void what_was_exchanged_can_be(void **unused) {
+    (void)unused;
+    static const double forged[] = {NAN, INFINITY, 0, -1};
+    lar_model *model = thrown();
+    lar_simulation *s = start_with(model, lar_options_default());
+    lar_error error;
+    lar_bytes bytes;
+    assert_int_equal(lar_simulation_advance(s, 100, &error), LAR_OK);
+    assert_int_equal(lar_simulation_save(s, "gain.lariat", &error), LAR_OK);
+    assert_int_equal(lar_bytes_read("gain.lariat", &bytes, &error), LAR_OK);
+    assert_int_equal(bytes.data[8], 20);
+    size_t at = bytes.size - 16 - 56 * (size_t)model->mesh.node_count;
+    for (size_t i = 0; i < sizeof forged / sizeof *forged; i++) {
+        memcpy(bytes.data + at, &forged[i], 8);
+        uint64_t sum = lar_checkpoint_sum(bytes.data, bytes.size / 8 - 1);
+        memcpy(bytes.data + bytes.size - 8, &sum, sizeof sum);
+        FILE *file = fopen("gain.lariat", "wb");
+        assert_non_null(file);
+        assert_int_equal(fwrite(bytes.data, bytes.size, 1, file), 1);
+        assert_int_equal(fclose(file), 0);
+        assert_int_equal(lar_simulation_load(s, "gain.lariat", &error), LAR_ERROR_FORMAT);
+        assert_non_null(strstr(error.message, "numbers beyond"));
+    }
+    lar_bytes_free(&bytes);
+    finish(s, model);
+}
+
 /* What an advance reports is that of all its steps, also of those before a look. */
 static void reports_are_of_whole_advances(void **unused) {
     (void)unused;
@@ -81,6 +143,8 @@ static void reports_are_of_whole_advances(void **unused) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(it_stops_in_the_same_step),
+                                       cmocka_unit_test(what_is_exchanged_counts),
+                                       cmocka_unit_test(what_was_exchanged_can_be),
                                        cmocka_unit_test(reports_are_of_whole_advances)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
