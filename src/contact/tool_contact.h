@@ -71,7 +71,7 @@ typedef struct lar_tool_contact_group {
 typedef struct lar_tool_rub_node {
     double rest[3]; /* [m] */
     int32_t node;   /* of the model */
-    bool held;      /* by a support of it */
+    uint8_t held;   /* LAR_AXIS bits of the axes that its supports hold */
 } lar_tool_rub_node;
 
 /* The faces before tools. */

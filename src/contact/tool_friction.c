@@ -46,8 +46,9 @@ LAR_SETUP lar_status lar_tool_friction_list(const lar_model *model, const int32_
         memcpy(rub->rest, model->mesh.position[node[n]], sizeof rub->rest);
     }
     for (int32_t i = 0; i < conditions->constraint_count && !status; i++) {
-        int32_t at = faces->rub_at[conditions->constraint[i].node];
-        if (at >= 0) faces->rub[at].held = true;
+        const lar_constraint *constraint = &conditions->constraint[i];
+        int32_t at = faces->rub_at[constraint->node];
+        if (at >= 0) faces->rub[at].held |= (uint8_t)(LAR_AXIS_X << constraint->axis);
     }
     free(node);
     return status;
@@ -204,20 +205,23 @@ __attribute__((noinline, cold)) static void note_rub(lar_touch_list *touches,
     lar_touch_push(touches, rubbed->node, rubbed->force);
 }
 
-static inline bool is_held(const lar_tool_rub_node *node, const lar_condition_context *context) {
+/* LAR_AXIS bits of the axes along which supports hold or move the node. */
+static inline unsigned held_axes(const lar_tool_contact *contact,
+                                 const lar_condition_context *context, int32_t local) {
+    const lar_tool_rub_node *node = &contact->faces->rub[contact->faces->rub_at[local]];
     return context->held ? context->held[node->node] & LAR_AXIS_ALL : node->held;
 }
 
-/* Whether the node is one that rubs. */
+/* Whether the node is one that rubs: that something pushes along axes that nothing holds. */
 static inline bool rubs_at(const lar_tool_contact *contact, const lar_condition_context *context,
                            int32_t local) {
     const int32_t at = contact->faces->rub_at[local];
     if (at < 0) return false; /* another thread moves it */
-    if (!is_held(&contact->faces->rub[at], context))
-        return (*press_at(contact, local, 0) | *press_at(contact, local, 1) |
-                *press_at(contact, local, 2)) != 0;
-    for (int i = 0; i < 3; i++) *press_at(contact, local, i) = 0;
-    return false;
+    const unsigned held = held_axes(contact, context, local);
+    for (int i = 0; held && i < 3; i++)
+        if (held & (unsigned)LAR_AXIS_X << i) *press_at(contact, local, i) = 0;
+    return (*press_at(contact, local, 0) | *press_at(contact, local, 1) |
+            *press_at(contact, local, 2)) != 0;
 }
 
 /* Lists the nodes that rub, ascending, which are few: of the others not one is looked at. */
@@ -261,6 +265,10 @@ static inline rough_tool *take_up(const lar_tool_contact *contact,
         rubs->velocity[i][t] = velocity[i];
         rubs->arm[i][t] = x[i] - tool->now.position[i];
     }
+    const unsigned held = held_axes(contact, context, local);
+    for (int i = 0; held && i < 3; i++) /* no slip along it, so no friction */
+        if (held & (unsigned)LAR_AXIS_X << i)
+            rubs->force[i][t] = rubs->v[i][t] = rubs->velocity[i][t] = 0;
     return tool;
 }
 

@@ -21,7 +21,9 @@
  * are integers as well: the same on any grid.
  *
  * A node that several tools push at once rubs on the nearest of those with friction. Nodes that
- * supports hold or move along an axis do not rub.
+ * supports hold or move along some axes rub along the others only, with what pushes them along
+ * these: a node in a plane of symmetry is pushed from one side, and what pushes it across the plane
+ * is borne by what is left out.
  */
 #ifndef LAR_CONTACT_TOOL_FRICTION_H
 #define LAR_CONTACT_TOOL_FRICTION_H

@@ -121,6 +121,40 @@ static void what_slides_feels_mu_times_what_it_presses(void **unused) {
     assert_below(fabs(found / 0.25 - 1), 0.03);
 }
 
+/* What the ball feels that slides over a block, whose middle plane, in which the ball's way lies,
+ * may be held across it. */
+static void drag_over(bool held, double force[3]) {
+    const brick of = {{8, 4, 2}, 0.01, 0, LAR_LAW_neo_hookean, 2e4, 1e5, 1000};
+    lar_model *model = brick_model(&of);
+    fix_nodes(model, brick_side(&of, 2, 0), LAR_AXIS_ALL);
+    if (held) fix_nodes(model, brick_side(&of, 1, 2), LAR_AXIS_Y);
+    touch_tool(model, "ball",
+               (lar_tool){.shape = LAR_TOOL_SPHERE, .radius = 0.05, .friction = 0.25},
+               (double[]){0.03, 0.02, 0.071});
+    model->damping = 50;
+    lar_simulation *s = start(model);
+    uint64_t steps = (uint64_t)(0.1 / lar_simulation_time_step(s));
+    lar_tool_force felt;
+    place(s, 0, (double[]){0.03, 0.02, 0.069}, upright, 1, steps);
+    advance(s, steps);
+    place(s, 0, (double[]){0.05, 0.02, 0.069}, upright, 1, 4 * steps);
+    advance(s, 2 * steps);
+    assert_int_equal(lar_simulation_tool_force(s, 0, &felt, NULL), LAR_OK);
+    memcpy(force, felt.force, sizeof felt.force);
+    finish(s, model);
+}
+
+/* By symmetry nothing leaves the middle plane anyway: its nodes rub along it, held or not. */
+static void a_plane_of_symmetry_takes_no_friction(void **unused) {
+    (void)unused;
+    double free[3], held[3];
+    drag_over(false, free);
+    drag_over(true, held);
+    print_message("dragged over a block %.6f N, its middle plane held %.6f N\n", free[0], held[0]);
+    assert_below(0.1, fabs(free[0]));
+    for (int i = 0; i < 3; i += 2) assert_below(fabs(held[i] - free[i]), 1e-6 * fabs(free[i]));
+}
+
 /* A ball that turns on the spot takes the tissue along. */
 static void what_turns_takes_along(void **unused) {
     (void)unused;
@@ -377,6 +411,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(two_tools_hold_what_they_press),
         cmocka_unit_test(what_slides_feels_mu_times_what_it_presses),
+        cmocka_unit_test(a_plane_of_symmetry_takes_no_friction),
         cmocka_unit_test(what_turns_takes_along),
         cmocka_unit_test(what_tools_feel_is_what_the_body_gets),
         cmocka_unit_test(every_joule_is_accounted_for),
