@@ -288,6 +288,17 @@ __attribute__((noinline, cold)) static double come_in(const lar_body_contact *co
     return part * force - (1 - part) * up;
 }
 
+/* Where the node has come in through a face that it does not see, there is nothing on that yet, and
+ * what is stored on the way in is paid there. */
+__attribute__((noinline, cold)) static double come_past(const lar_body_contact *contact, int32_t g,
+                                                        const lar_survey *s, double energy,
+                                                        double force, touching *t) {
+    double part = lar_edge_part(s, energy, t->pay);
+    t->border = contact->list.face[contact->list.group[g].first + s->entry[s->hidden]];
+    for (int i = 0; i < 12; i++) t->fade[i / 3][i % 3] *= part;
+    return part * force;
+}
+
 /* The force on the node of group g by a face which it is behind, or before it by less than the
  * contact distance. False: they do not touch, or no longer push. */
 static bool push(lar_body_contact *contact, const lar_state *state, int32_t g, int32_t face,
@@ -321,7 +332,10 @@ static bool push(lar_body_contact *contact, const lar_state *state, int32_t g, i
     const meeting m = {
         x, &known, closest, full_of(contact, node, face), rate, f->fades && !own && !s->flush};
     double energy = 0, force = press(contact, &m, two, &energy, t);
-    if (s->border >= 0) force = come_in(contact, g, s, &m, two, together, energy, force, t);
+    if (s->border >= 0)
+        force = come_in(contact, g, s, &m, two, together, energy, force, t);
+    else if (s->hidden >= 0)
+        force = come_past(contact, g, s, together * energy, force, t);
     t->depth = fmax(depth, 0);
     for (int i = 0; i < 3; i++) {
         t->force[i] = together * force * way[i];

@@ -242,10 +242,13 @@ typedef struct lar_survey {
     double gap;     /* by which those looked at are out of reach, at most 0 when one is not [m];
                        -INFINITY: the node is behind some that it does not see */
     bool edge;      /* the node is on a sharp edge, and may not see all faces that it is behind */
-    double across;  /* all faces are looked at that are nearer; 0: as `min` says [m] */
+    double within;  /* all faces are looked at that are nearer; 0: as `min` says [m] */
+    double across;  /* so far an edge that goes on is led over a border; 0: it is not [m] */
     int32_t border; /* the face through which the node's edge comes, of those above; -1: none */
     bool over;      /* the node comes to that, and is pushed as if it were before the face */
-    double inset;   /* how far the node is behind that [m] */
+    int32_t hidden; /* the closest of those that it does not see, within that; -1: none */
+    double inset;   /* how far the node is behind the one or the other [m] */
+    bool beyond;    /* it is in another body still, on the other side of a joint */
     double next;    /* travel at which the first of the others may matter [m] */
 } lar_survey;
 
@@ -290,6 +293,18 @@ bool lar_offset_pushes(lar_body_contact *contact, const lar_state *state, int32_
 bool lar_looks_away(const lar_body_contact *contact, const lar_state *state, int32_t node,
                     const double corner[4][3], double *through);
 
+/* A face that the node of group g, on a sharp edge, is behind may stand against one of a third body
+ * that looks the other way: a joint that is closed, with nothing between. Through that nobody comes
+ * in, so the face is not in the way of who came along in the third body, and pushes as little as if
+ * the two were one. `corner` and `point` are the face's. */
+typedef enum lar_joint {
+    LAR_JOINT_NONE,
+    LAR_JOINT_PASSED, /* the node is past the third body's face, */
+    LAR_JOINT_AHEAD   /* or behind that still: bodies may lie in each other there */
+} lar_joint;
+lar_joint lar_joint_of(const lar_body_contact *contact, const lar_state *state, int32_t g,
+                       const double x[3], const double corner[4][3], const lar_face_point *point);
+
 /* The edge of the node of group g may go into the other body through one face, the border, and lie
  * on another one, as that of a slab under a block that slides along it. Then only the other one is
  * in its way: of those that it goes through none is seen. The border takes part in what the other
@@ -298,9 +313,9 @@ bool lar_looks_away(const lar_body_contact *contact, const lar_state *state, int
 void lar_edge_enters(const lar_body_contact *contact, const lar_state *state, int32_t g,
                      lar_survey *s);
 
-/* The part of a spring that there is so far behind the border, of one that stores `energy` more
- * than on that: none on it, or it would come from nowhere. on[]: the forces on the border's corners
- * by which it is paid; the node gets minus their sum [N]. */
+/* The part of a spring that there is so far behind the border, or a face that is not seen, of one
+ * that stores `energy` more than on that: none on it, or it would come from nowhere. on[]: the
+ * forces on that face's corners by which it is paid; the node gets minus their sum [N]. */
 double lar_edge_part(const lar_survey *s, double energy, double on[4][3]);
 
 /* The node of group g touches no face of that other body, `gap` out of their reach [m] (INFINITY:

@@ -90,9 +90,21 @@ static bool remembers(const lar_contact_surface *surface, int nodes) {
     return surface->rough || nodes == 1;
 }
 
+/* The groups that go with group g, first <= h < end: of a node on a sharp edge all, for which of
+ * one body's faces it sees depends on those of others (lar_joint_of). */
+static void find_together(const lar_contact_surface *s, const lar_contact_list *list, int32_t g,
+                          int32_t *first, int32_t *end) {
+    const int32_t node = list->group[g].node;
+    *first = g;
+    *end = g + 1;
+    if (s->node[node].inward[0] < 0) return;
+    while (*first > 0 && list->group[*first - 1].node == node) --*first;
+    while (*end < list->group_count && list->group[*end].node == node) ++*end;
+}
+
 /* Whether a processor adds forces of a group, or has the node and keeps what it remembers. */
-static bool concerns(const lar_contact_map *map, const lar_contact_list *list,
-                     const lar_contact_group *group, int32_t processor) {
+static bool concerns_one(const lar_contact_map *map, const lar_contact_list *list,
+                         const lar_contact_group *group, int32_t processor) {
     const lar_contact_surface *s = map->surface;
     int32_t parent[LAR_CONTACT_PARENTS];
     double weight[LAR_CONTACT_PARENTS];
@@ -108,6 +120,16 @@ static bool concerns(const lar_contact_map *map, const lar_contact_list *list,
             return true;
     }
     return false;
+}
+
+static bool concerns(const lar_contact_map *map, const lar_contact_list *list, int32_t g,
+                     int32_t processor) {
+    int32_t first, end;
+    bool does = false;
+    find_together(map->surface, list, g, &first, &end);
+    for (int32_t h = first; h < end && !does; h++)
+        does = concerns_one(map, list, &list->group[h], processor);
+    return does;
 }
 
 /* Marks the nodes of a group. */
@@ -128,8 +150,7 @@ static void mark_needed(const lar_contact_map *map, const lar_contact_list *list
                         uint8_t *marked) {
     memset(marked, 0, (size_t)map->surface->node_count);
     for (int32_t g = 0; g < list->group_count; g++)
-        if (concerns(map, list, &list->group[g], processor))
-            mark_nodes(map, list, &list->group[g], marked);
+        if (concerns(map, list, g, processor)) mark_nodes(map, list, &list->group[g], marked);
 }
 
 /* ---- one processor --------------------------------------------------------------------------- */
@@ -162,7 +183,25 @@ static void plan_peer(lar_contact_exchange *exchange, const lar_contact_list *li
     if (peer->send_count + peer->receive_count > 0) exchange->peer_count++;
 }
 
-/* The groups in which a thread adds something, or for whose node it keeps what that remembers. */
+/* Whether a thread adds something in a group, or keeps what its node remembers. */
+static bool takes(const lar_body_contact *contact, const lar_contact_list *list,
+                  const lar_contact_group *group) {
+    const lar_contact_surface *s = contact->surface;
+    const int32_t *face = list->face + group->first;
+    int32_t parent[LAR_CONTACT_PARENTS];
+    double weight[LAR_CONTACT_PARENTS];
+    int count = lar_contact_parents(s, group->node, parent, weight);
+    bool does = false;
+    for (int k = 0; k < count; k++)
+        does = does || contact->adds_node[parent[k]] ||
+               (remembers(s, count) && contact->keeps[parent[k]]);
+    for (int32_t i = 0; i < group->count && !does; i++)
+        does = contact->adds_corner[face[i]] &&
+               lar_contact_active(&s->node[group->node], &s->face[face[i]]);
+    return does;
+}
+
+/* The groups that a thread takes, and those that go with them. */
 static void take_groups(lar_worker *worker, const lar_contact_list *list) {
     lar_body_contact *contact = &worker->interactions.body_contact;
     lar_contact_list *own = &contact->list;
@@ -171,18 +210,12 @@ static void take_groups(lar_worker *worker, const lar_contact_list *list) {
     for (int32_t g = 0; g < list->group_count; g++) {
         const lar_contact_group *group = &list->group[g];
         const int32_t *face = list->face + group->first;
-        int32_t parent[LAR_CONTACT_PARENTS];
-        double weight[LAR_CONTACT_PARENTS];
-        int count = lar_contact_parents(contact->surface, group->node, parent, weight);
-        bool takes = false;
-        for (int k = 0; k < count; k++)
-            takes = takes || contact->adds_node[parent[k]] ||
-                    (remembers(contact->surface, count) && contact->keeps[parent[k]]);
-        for (int32_t i = 0; i < group->count && !takes; i++)
-            takes = contact->adds_corner[face[i]] &&
-                    lar_contact_active(&contact->surface->node[group->node],
-                                       &contact->surface->face[face[i]]);
-        if (!takes) continue;
+        int32_t first, end;
+        bool taken = false;
+        find_together(contact->surface, list, g, &first, &end);
+        for (int32_t h = first; h < end && !taken; h++)
+            taken = takes(contact, list, &list->group[h]);
+        if (!taken) continue;
         own->group[own->group_count++] =
             (lar_contact_group){group->node, own->face_count, group->count, group->gap};
         memcpy(own->face + own->face_count, face, (size_t)group->count * sizeof *face);

@@ -325,12 +325,72 @@ static void twisted_faces_touch(void **state) {
     }
 }
 
+/* A tongue that is narrower than what lies between the points of a block's edge, and held in all
+ * its nodes, as the block is: it goes round the lower edge of the block's front, `deep` in the
+ * block, out through the bottom and in past the front, or the other way. */
+static lar_model *tongue_model(bool back, double turn) {
+    enum { TURNS = 13, BLOCK = 8, TONGUE = 36 };
+    static const double way = 0.0012, deep = 1e-3; /* [m] */
+    const brick block = {{1, 1, 1}, 0.01, 0, LAR_LAW_neo_hookean, 3e3, 3e4, 1000};
+    const brick tongue = {{8, 1, 1}, 0.002, 0, LAR_LAW_neo_hookean, 3e3, 3e4, 1000};
+    lar_model *model = empty_model(&block);
+    add_brick(model, &block, (double[]){0, 0, 0});
+    int32_t split = model->mesh.element_count;
+    add_brick(model, &tongue, (double[]){-0.005, 0.004, -tongue.edge});
+    for (int what = 0; what < 4; what++) {
+        lar_node_list nodes = {0, lar_calloc(TONGUE, sizeof(int32_t))};
+        for (int32_t n = what ? BLOCK : 0; n < (what ? BLOCK + TONGUE : BLOCK); n++)
+            nodes.node[nodes.count++] = n;
+        double point[TURNS][2] = {{0}};
+        for (int k = 1; k < TURNS; k++) {
+            bool early = k % 4 == 1 || k % 4 == 2, late = k % 4 >= 2;
+            point[k][0] = k * turn;
+            point[k][1] = (what == 2) != back ? early : late;
+        }
+        if (what < 2)
+            fix_nodes(model, nodes, what ? LAR_AXIS_Y : LAR_AXIS_ALL);
+        else
+            move_nodes(model, nodes, what == 2 ? LAR_AXIS_Z : LAR_AXIS_X, what == 2 ? deep : -way,
+                       add_table(model, LAR_CURVE_SMOOTH, TURNS, (const double(*)[2])point));
+    }
+    touch_between(model, split);
+    return model;
+}
+
+/* What springs up on the way round gives nothing that nobody has put in. */
+static void round_an_edge_nothing_is_given(void **state) {
+    (void)state;
+    static const double turn = 0.02; /* [s] */
+    for (int back = 0; back < 2; back++) {
+        lar_model *model = tongue_model(back, turn);
+        lar_simulation *s = start(model);
+        lar_energy energy = {0};
+        double most = 0, least = 0;
+        for (int k = 4; k <= 12; k += 4) {
+            double before = energy.contact;
+            while (lar_simulation_time(s) < k * turn) {
+                advance(s, 1);
+                lar_simulation_energy(s, &energy);
+                most = fmax(most, energy.contact);
+                least = fmin(least, energy.contact);
+            }
+            print_message("%s, round %d: contact has taken %.3e J of %.3e J\n",
+                          back ? "back" : "forth", k / 4, energy.contact - before, most);
+            assert_true(energy.contact - before > 0);
+            assert_below(energy.contact - before, 0.1 * most); /* its damper */
+        }
+        assert_true(least > -1e-3 * most);
+        finish(s, model);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(bars_that_are_thrown_stay_outside),
         cmocka_unit_test(bars_that_are_pushed_stay_outside),
         cmocka_unit_test(bars_that_lie_edge_on_edge_hold_each_other),
         cmocka_unit_test(twisted_faces_touch),
+        cmocka_unit_test(round_an_edge_nothing_is_given),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -128,6 +128,53 @@ bool lar_looks_away(const lar_body_contact *contact, const lar_state *state, int
     return least < AWAY && !(most > AGAINST);
 }
 
+static bool is_straight(const lar_face_point *point) {
+    static const double STRAIGHT = 0.9; /* cosine */
+    return fabs(point->height) > STRAIGHT * point->distance;
+}
+
+/* Whether face f stands against the one with that normal, which the node at x is straight behind by
+ * `-height`. Who is out of reach is not in every list. */
+static lar_joint joint_with(const lar_body_contact *contact, const lar_state *state, int32_t node,
+                            int32_t f, const double x[3], const double normal[3], double height) {
+    static const double NEAR = 0.02;    /* of a face */
+    static const double AGAINST = -0.9; /* cosine */
+    const double size = contact->surface->face[f].size, near = NEAR * size;
+    double corner[4][3], way[3];
+    lar_face_point point;
+    lar_contact_corners(contact, state, f, corner, NULL);
+    const double reach = lar_contact_reach(contact->surface, &contact->surface->node[node],
+                                           &contact->surface->face[f]);
+    if (lar_face_box_distance(x, (const double(*)[3])corner) > fmin(near - height, reach))
+        return LAR_JOINT_NONE;
+    lar_face_closest(x, (const double(*)[3])corner, LAR_FACE_TIE * size, &point);
+    if (!is_straight(&point) || point.distance > reach || fabs(point.height + height) > near)
+        return LAR_JOINT_NONE;
+    lar_face_normal((const double(*)[3])corner, way);
+    if (!(lar_dot(way, normal) < AGAINST * lar_length(way) * lar_length(normal)))
+        return LAR_JOINT_NONE;
+    return point.height < 0 ? LAR_JOINT_AHEAD : LAR_JOINT_PASSED;
+}
+
+lar_joint lar_joint_of(const lar_body_contact *contact, const lar_state *state, int32_t g,
+                       const double x[3], const double corner[4][3], const lar_face_point *point) {
+    const lar_contact_list *list = &contact->list;
+    const int32_t node = list->group[g].node;
+    lar_joint joint = LAR_JOINT_NONE;
+    double normal[3];
+    int32_t h = g;
+    if (!is_straight(point)) return LAR_JOINT_NONE;
+    lar_face_normal(corner, normal);
+    while (h > 0 && list->group[h - 1].node == node) h--;
+    for (; h < list->group_count && list->group[h].node == node; h++) {
+        const lar_contact_group *third = &list->group[h];
+        if (h == g || lar_group_is_own(contact->surface, list, third)) continue;
+        for (int32_t i = third->first; i < third->first + third->count && !joint; i++)
+            joint = joint_with(contact, state, node, list->face[i], x, normal, point->height);
+    }
+    return joint;
+}
+
 void lar_edge_enters(const lar_body_contact *contact, const lar_state *state, int32_t g,
                      lar_survey *s) {
     double least = s->across - s->fade, longest = 0;
@@ -163,9 +210,10 @@ void lar_edge_enters(const lar_body_contact *contact, const lar_state *state, in
 }
 
 double lar_edge_part(const lar_survey *s, double energy, double on[4][3]) {
-    const double *weight = s->point[s->border].weight, part = s->inset / s->across;
-    double at[3], pull = 6 * (1 - part) * energy / (s->across * s->across);
-    lar_face_mean((const double(*)[3])s->corner[s->border], weight, at);
+    const int32_t k = s->border < 0 ? s->hidden : s->border;
+    const double *weight = s->point[k].weight, part = s->inset / s->within;
+    double at[3], pull = 6 * (1 - part) * energy / (s->within * s->within);
+    lar_face_mean((const double(*)[3])s->corner[k], weight, at);
     for (int i = 0; i < 12; i++)
         on[i / 3][i % 3] = weight[i / 3] * pull * (s->x[i % 3] - at[i % 3]);
     return part * part * (3 - 2 * part);

@@ -18,16 +18,28 @@ static double fade_above(const lar_body_contact *contact, int32_t node, int32_t 
     return FADE * lar_contact_standoff(surface, &surface->node[node], &surface->face[face]);
 }
 
+/* Whether a face that the node of group g, on a sharp edge, is behind is not in its way. */
+static bool passes_by(const lar_body_contact *contact, const lar_state *state, int32_t g,
+                      lar_survey *s, const double corner[4][3], lar_face_point *point) {
+    const bool away = lar_looks_away(contact, state, contact->list.group[g].node, corner, NULL);
+    const lar_joint joint = lar_joint_of(contact, state, g, s->x, corner, point);
+    /* Farther away not all faces are looked at. */
+    if (joint == LAR_JOINT_AHEAD && !away && point->distance < s->within) s->beyond = true;
+    /* What one side stops to push there the other side begins to: nothing is to be paid. */
+    if (joint) point->distance = INFINITY;
+    return away || joint;
+}
+
 /* Looks at face f. Returns its distance, or at least so much; *point is that of the closest faces.
  * INFINITY: it is not seen. A slice of one element between two planes has its nodes in the planes
  * of its sides: a wall that goes through another one would find that one's side closest, at no
  * distance, and nothing that pushes. */
-static double survey_face(lar_body_contact *contact, const lar_state *state, int32_t node,
-                          int32_t f, lar_survey *s, double corner[4][3], lar_face_point *point) {
+static double survey_face(lar_body_contact *contact, const lar_state *state, int32_t g, int32_t f,
+                          lar_survey *s, double corner[4][3], lar_face_point *point) {
     double tie = tie_of(contact, f);
     lar_contact_corners(contact, state, f, corner, NULL);
     double distance = lar_face_box_distance(s->x, (const double(*)[3])corner);
-    if (distance <= lar_greater(s->min + s->fade, s->across) + tie && distance <= s->reach + tie) {
+    if (distance <= lar_greater(s->min + s->fade, s->within) + tie && distance <= s->reach + tie) {
         contact->info.tested++;
         lar_face_closest(s->x, (const double(*)[3])corner, tie, point);
         distance = point->distance;
@@ -36,7 +48,7 @@ static double survey_face(lar_body_contact *contact, const lar_state *state, int
             return INFINITY;
         }
         if (s->edge && point->height < -tie && distance <= s->reach &&
-            lar_looks_away(contact, state, node, (const double(*)[3])corner, NULL)) {
+            passes_by(contact, state, g, s, (const double(*)[3])corner, point)) {
             s->gap = -INFINITY;
             return INFINITY;
         }
@@ -49,7 +61,7 @@ static double survey_face(lar_body_contact *contact, const lar_state *state, int
 /* How far nodes may move against each other until a face that is farther away than the closest one
  * may be that: both distances change. */
 static double farther_by(double distance, double tie, const lar_survey *s) {
-    return 0.5 * (distance - 8 * tie - lar_greater(s->fade + s->min, s->across));
+    return 0.5 * (distance - 8 * tie - lar_greater(s->fade + s->min, s->within));
 }
 
 /* The travel until which a face cannot be the closest one within reach: it is out of reach, or
@@ -84,15 +96,17 @@ static void survey_group(lar_body_contact *contact, const lar_state *state, int3
     s->edge = !s->flush && !lar_same_body(contact, group->node, face[0]) &&
               contact->surface->node[group->node].inward[0] >= 0;
     s->border = -1;
-    s->over = false;
-    s->across = s->edge && contact->surface->node[group->node].along < 3 ? ACROSS * s->reach : 0;
+    s->over = s->beyond = false;
+    s->within = s->edge ? ACROSS * s->reach : 0;
+    s->across = contact->surface->node[group->node].along < 3 ? s->within : 0;
+    s->hidden = -1;
     lar_face_point of_first;
     double corner_of_first[4][3];
     lar_contact_place(contact, state, group->node, s->x, NULL);
     double distance_of_first = 0, soon = contact->travel + contact->list.skin / 16;
     if (!s->flush || !lar_flush_hides(contact->surface, group->node, face[first]))
         distance_of_first =
-            survey_face(contact, state, group->node, face[first], s, corner_of_first, &of_first);
+            survey_face(contact, state, g, face[first], s, corner_of_first, &of_first);
     for (int32_t i = 0; i < group->count; i++) {
         if (s->flush && lar_flush_hides(contact->surface, group->node, face[i])) continue;
         if (i != first && soon < away[i]) {
@@ -103,8 +117,7 @@ static void survey_group(lar_body_contact *contact, const lar_state *state, int3
         s->entry[k] = i;
         s->distance[k] = distance_of_first;
         if (i != first) {
-            s->distance[k] =
-                survey_face(contact, state, group->node, face[i], s, s->corner[k], &s->point[k]);
+            s->distance[k] = survey_face(contact, state, g, face[i], s, s->corner[k], &s->point[k]);
             continue;
         }
         s->point[k] = of_first;
@@ -133,6 +146,17 @@ static int32_t choose_face(const lar_body_contact *contact, int32_t g, const lar
     return chosen;
 }
 
+/* An edge that has come past a face must not be pushed all at once by the next one, as deep as it
+ * is behind that. */
+static void find_hidden(lar_survey *s) {
+    s->inset = s->within;
+    for (int32_t k = 0; k < s->count; k++) {
+        if (s->distance[k] != INFINITY || !(s->point[k].distance < s->inset)) continue;
+        s->inset = s->point[k].distance;
+        s->hidden = k;
+    }
+}
+
 int32_t lar_survey_closest(lar_body_contact *contact, const lar_state *state, int32_t g,
                            lar_survey *s, lar_face_point *point) {
     const lar_contact_group *group = &contact->list.group[g];
@@ -146,8 +170,10 @@ int32_t lar_survey_closest(lar_body_contact *contact, const lar_state *state, in
     contact->due[g] = s->gap > 0 && !s->flush
                           ? lar_lesser(contact->travel + 0.999 * s->gap / LAR_APPROACH, s->next)
                           : 0;
-    if (!(s->min < INFINITY)) return -1;
+    if (s->beyond) s->gap = 0;
+    if (!(s->min < INFINITY) || s->beyond) return -1;
     if (s->across > 0) lar_edge_enters(contact, state, g, s);
+    if (s->border < 0 && !s->over && s->gap == -INFINITY) find_hidden(s);
     int32_t chosen = choose_face(contact, g, s, point);
     if (chosen < 0) return -1;
     if (s->over) point->height = -point->height;
