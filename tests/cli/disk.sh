@@ -59,9 +59,9 @@ if [ -c /dev/full ]; then
     done
 fi
 
-# A small file system that fills up during the run; only root can make one.
+# A file system smaller than one frame (50 kB), which the run fills up; only root can make one.
 mkdir "$SCRATCH/small"
-if mount -t tmpfs -o size=64k none "$SCRATCH/small" 2>/dev/null; then
+if mount -t tmpfs -o size=32k none "$SCRATCH/small" 2>/dev/null; then
     trap 'umount "$SCRATCH/small" 2>/dev/null' EXIT
     expect 0 "$LARIAT" demo-model "$SCRATCH/demo"
     expect 1 "$LARIAT" run "$SCRATCH/demo/uterus.yaml" --steps 10 --out "$SCRATCH/small"
