@@ -1,6 +1,7 @@
 /* Small displacements against the production element, and solutions against their own equations. */
 #include "bars.h"
 
+#include "base/parallel_for.h"
 #include "base/vector.h"
 #include "mechanics/hex8.h"
 #include "meshing/starter/elastic_coarse.h"
@@ -77,7 +78,7 @@ static void find_forces(const lar_elastic *elastic, const lar_load_vectors *u,
 }
 
 /* Every load does the work that it is said to, and the equations hold in the mean; so it does when
- * the same is solved again after others. */
+ * the same is solved again after others, on any number of cores. */
 static void solutions_fulfil_their_equations(void **state) {
     (void)state;
     static lar_load_vectors f[BAR_NODES], u[BAR_NODES], back[BAR_NODES];
@@ -117,9 +118,13 @@ static void solutions_fulfil_their_equations(void **state) {
     assert_int_equal(lar_elastic_solve(solver, (const lar_load_vectors *)back, u, rest, &error),
                      LAR_OK);
     LAR_EACH_LOAD assert_below(rest[l], 0.02 * work[l]);
-    assert_int_equal(lar_elastic_solve(solver, (const lar_load_vectors *)f, u, again, &error),
-                     LAR_OK);
-    assert_memory_equal(again, work, sizeof work);
+    for (int threads = 1; threads <= 3; threads++) {
+        lar_parallel_for_threads(threads);
+        assert_int_equal(lar_elastic_solve(solver, (const lar_load_vectors *)f, u, again, &error),
+                         LAR_OK);
+        assert_memory_equal(again, work, sizeof work);
+    }
+    lar_parallel_for_threads(0);
     lar_elastic_solver_destroy(solver);
     free(elastic.element);
 }
