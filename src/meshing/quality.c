@@ -39,7 +39,7 @@ static lar_status count_crossings(const lar_mesh *mesh, const int32_t *face, int
             node[f][a] = mesh->element[face[f] / 6][lar_face_node[face[f] % 6][a]];
     lar_status status =
         lar_faces_find_crossings((const double(*)[3])mesh->position, (const int32_t(*)[4])node,
-                                 count, 0, NULL, &found, error);
+                                 count, 0, NULL, NULL, &found, error);
     free(node);
     quality->crossings = found.pairs;
     quality->crossing_depth = found.deepest;

@@ -179,9 +179,15 @@ static void test_all_pairs(void **state) {
             {19.5, 20.4, -0.5}, {20.5, 19.6, -0.5}, {20.5, 19.6, 1}, {19.5, 20.4, 1}};
         memcpy(x + (N + 1) * (N + 1), at, sizeof at);
         for (int k = 0; above && k < 4; k++) x[(N + 1) * (N + 1) + k][2] += 1;
-        assert_int_equal(lar_faces_find_crossings((const double(*)[3])x, (const int32_t(*)[4])face,
-                                                  FACES, 0, crosses, &found, &error),
+        lar_face_boxes boxes = {0};
+        assert_int_equal(lar_face_boxes_create((const double(*)[3])x, (const int32_t(*)[4])face,
+                                               FACES, &boxes, &error),
                          LAR_OK);
+        assert_int_equal(lar_faces_find_crossings((const double(*)[3])x, (const int32_t(*)[4])face,
+                                                  FACES, 0, above ? NULL : &boxes, crosses, &found,
+                                                  &error),
+                         LAR_OK);
+        lar_face_boxes_clear(&boxes);
         int marked = 0;
         for (int f = 0; f < FACES; f++) marked += crosses[f];
         assert_int_equal(found.pairs, above ? 0 : 2);

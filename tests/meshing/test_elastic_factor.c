@@ -73,15 +73,15 @@ static void fill(problem *p, uint32_t seed, double ground) {
 
 /* The largest that is left of the loads. */
 static double solve(problem *p) {
-    static lar_loads x[ROWS], f[ROWS];
+    static lar_pair x[ROWS], f[ROWS];
     uint32_t seed = 5;
     double max = 0;
     const int32_t rows = p->count * LAR_FACTOR_BLOCK;
     for (int32_t r = 0; r < rows; r++)
-        for (int l = 0; l < LAR_LOADS; l++) x[r][l] = f[r][l] = any(&seed);
+        for (int l = 0; l < 2; l++) x[r][l] = f[r][l] = any(&seed);
     lar_factor_solve(&p->factor, x);
     for (int32_t r = 0; r < rows; r++)
-        for (int l = 0; l < LAR_LOADS; l++) {
+        for (int l = 0; l < 2; l++) {
             double left = f[r][l];
             for (int32_t c = 0; c < rows; c++) left -= p->dense[r][c] * x[c][l];
             max = fmax(max, fabs(left));
@@ -148,7 +148,7 @@ static void pieces_and_single_ones_are_solved_each_for_itself(void **state) {
 /* A number that follows from another one has no stiffness of its own. */
 static void what_depends_on_others_is_left_out(void **state) {
     (void)state;
-    static lar_loads x[2 * LAR_FACTOR_BLOCK];
+    static lar_pair x[2 * LAR_FACTOR_BLOCK];
     static problem p;
     memset(&p, 0, sizeof p);
     p.count = 2;
@@ -159,10 +159,10 @@ static void what_depends_on_others_is_left_out(void **state) {
     put(&p, 1, 0, 2, 1, 2); /* 2 of column 1 is 1 of column 0 again */
     assert_int_equal(lar_factor_compute(&p.factor, &p.error), LAR_OK);
     for (int r = 0; r < 2 * LAR_FACTOR_BLOCK; r++)
-        for (int l = 0; l < LAR_LOADS; l++) x[r][l] = 1;
+        for (int l = 0; l < 2; l++) x[r][l] = 1;
     lar_factor_solve(&p.factor, x);
     for (int r = 0; r < 2 * LAR_FACTOR_BLOCK; r++)
-        for (int l = 0; l < LAR_LOADS; l++) {
+        for (int l = 0; l < 2; l++) {
             const bool left_out =
                 r % LAR_FACTOR_BLOCK == LAR_FACTOR_BLOCK - 1 || r == LAR_FACTOR_BLOCK + 2;
             assert_true(fabs(x[r][l] - (left_out ? 0 : 0.5)) < 1e-12);

@@ -98,10 +98,11 @@ static flip best_flip(const lar_cleaner *cleaner, size_t cell) {
     const uint8_t own = label[0];
     const int32_t cost = lar_clean_cost(&window, &unclean) + volume_cost(voxel_grid, cell, own);
     for (int l = 1; l < count; l++) {
+        int32_t then =
+            volume_cost(voxel_grid, cell, label[l]) + number_change(cleaner, own, label[l]);
+        if (cost - then <= best.gain) continue; /* the rest of the sum is never below 0 */
         window.label[2][2][2] = label[l];
-        const int32_t then = lar_clean_cost(&window, &unclean_then) +
-                             volume_cost(voxel_grid, cell, label[l]) +
-                             number_change(cleaner, own, label[l]);
+        then += lar_clean_cost(&window, &unclean_then);
         window.label[2][2][2] = own;
         if (cost - then <= best.gain) continue;
         if (unclean_then >= unclean && !lar_clean_is_simple(&window, label[l])) continue;

@@ -29,11 +29,12 @@ void lar_clean_look(const lar_voxel_grid *voxel_grid, const int at[3], lar_clean
 
 /* Whether the cells of a block that are in `set` hang together by faces. */
 static bool hangs_together(unsigned set) {
-    unsigned reached = set & (0u - set);
-    for (int round = 0; round < 7; round++) {
+    unsigned reached = set & (0u - set), before = 0;
+    while (reached != before) {
         unsigned grown = reached | (reached & 0x55) << 1 | (reached & 0xaa) >> 1;
         grown |= (reached & 0x33) << 2 | (reached & 0xcc) >> 2;
         grown |= (reached & 0x0f) << 4 | (reached & 0xf0) >> 4;
+        before = reached;
         reached = grown & set;
     }
     return reached == set;

@@ -29,12 +29,27 @@ static const double ALIKE = 0.8;
 void lar_fit_apart_clear(lar_fit_apart *apart) {
     void *const owned[] = {apart->face,    apart->start,      apart->around, apart->checked,
                            apart->from,    apart->near_start, apart->near,   apart->awake,
-                           apart->crosses, apart->extent,     apart->strict, apart->ring};
+                           apart->crosses, apart->extent,     apart->strict, apart->ring,
+                           apart->way,     apart->span};
     for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) free(owned[i]);
+    lar_face_boxes_clear(&apart->boxes);
     *apart = (lar_fit_apart){0};
 }
 
-lar_status lar_fit_apart_create(lar_fit_work *work, lar_error *error) {
+static void span_face(const lar_fit_work *work, const int32_t (*point)[3], int32_t f) {
+    lar_fit_span *span = &work->apart.span[f];
+    for (int i = 0; i < 3; i++) {
+        span->lower[i] = INT32_MAX;
+        span->upper[i] = INT32_MIN;
+        for (int a = 0; a < 4; a++) {
+            const int32_t at = point[work->apart.face[f][a]][i];
+            if (at < span->lower[i]) span->lower[i] = at;
+            if (at > span->upper[i]) span->upper[i] = at;
+        }
+    }
+}
+
+lar_status lar_fit_apart_create(lar_fit_work *work, const int32_t (*point)[3], lar_error *error) {
     lar_fit_apart *apart = &work->apart;
     const size_t nodes = (size_t)work->mesh->node_count;
     int32_t *outer = NULL;
@@ -45,15 +60,20 @@ lar_status lar_fit_apart_create(lar_fit_work *work, lar_error *error) {
     apart->strict = lar_calloc((size_t)apart->count, sizeof *apart->strict);
     apart->ring = lar_calloc(nodes, sizeof *apart->ring);
     apart->extent = lar_calloc((size_t)apart->count, sizeof *apart->extent);
+    apart->way = lar_calloc((size_t)apart->count, sizeof *apart->way);
+    apart->span = lar_calloc((size_t)apart->count, sizeof *apart->span);
     apart->near_start = lar_calloc((size_t)apart->count + 1, sizeof *apart->near_start);
     apart->checked = lar_calloc(nodes, sizeof *apart->checked);
     apart->awake = lar_calloc(nodes, sizeof *apart->awake);
     apart->from = lar_calloc(nodes, sizeof *apart->from);
     bool ready = apart->face && apart->crosses && apart->strict && apart->ring && apart->extent &&
-                 apart->near_start && apart->checked && apart->awake && apart->from;
-    for (int32_t f = 0; ready && f < apart->count; f++)
+                 apart->near_start && apart->checked && apart->awake && apart->from && apart->way &&
+                 apart->span;
+    for (int32_t f = 0; ready && f < apart->count; f++) {
         for (int a = 0; a < 4; a++)
             apart->face[f][a] = work->mesh->element[outer[f] / 6][lar_face_node[outer[f] % 6][a]];
+        span_face(work, point, f);
+    }
     free(outer);
     ready = ready && lar_fit_list_around(apart->face[0], 4, (size_t)apart->count, 4,
                                          work->mesh->node_count, &apart->start, &apart->around);
@@ -68,13 +88,12 @@ typedef struct listing {
     const lar_fit_work *work;
     lar_fit_near *near;
     size_t used, capacity;
-    int32_t face;
+    int32_t face, reach[3]; /* points of the grid between nodes of faces that are near */
     bool failed;
 } listing;
 
 typedef struct listings {
     lar_fit_work *work;
-    lar_face_boxes boxes;
     listing *portion;
     int32_t portions;
 } listings;
@@ -113,6 +132,12 @@ static bool add_near(void *context, int32_t other) {
         return false;
     }
     list->near[list->used++] = (lar_fit_near){.face = other};
+    const lar_fit_span *a = &apart->span[list->face], *b = &apart->span[other];
+    for (int i = 0; i < 3; i++) {
+        const int32_t below = a->upper[i] - b->lower[i], above = b->upper[i] - a->lower[i];
+        if (below > list->reach[i]) list->reach[i] = below;
+        if (above > list->reach[i]) list->reach[i] = above;
+    }
     return true;
 }
 
@@ -144,17 +169,17 @@ static void list_portion(void *context, int32_t first, int32_t end) {
     list->work = all->work;
     for (int32_t f = first; f < end; f++) {
         const size_t before = list->used;
-        apart->extent[f].way = 0;
+        apart->way[f] = 0;
         bound_face(all->work, f);
         list->face = f;
         if (is_among(apart->checked, apart->face[f]))
-            lar_face_boxes_near(&all->boxes, f, 2 * LEASH + GAP, add_near, list);
+            lar_face_boxes_near(&apart->boxes, f, 2 * LEASH + GAP, add_near, list);
         apart->near_start[f + 1] = (int32_t)(list->used - before);
     }
 }
 
 /* The portions' lists, one after the other. */
-static bool join_lists(const listings *all, lar_fit_apart *apart) {
+static bool join_lists(const listings *all, lar_fit_apart *apart, int32_t reach[3]) {
     size_t count = 0, at = 0;
     for (int32_t p = 0; p < all->portions; p++) {
         if (all->portion[p].failed) return false;
@@ -166,29 +191,37 @@ static bool join_lists(const listings *all, lar_fit_apart *apart) {
         const listing *list = &all->portion[p];
         if (list->used > 0) memcpy(apart->near + at, list->near, list->used * sizeof *list->near);
         at += list->used;
+        for (int i = 0; i < 3; i++)
+            if (list->reach[i] > reach[i]) reach[i] = list->reach[i];
     }
     for (int32_t f = 0; f < apart->count; f++) apart->near_start[f + 1] += apart->near_start[f];
     return true;
+}
+
+/* Boxes serve until nodes move. */
+static lar_status make_boxes(lar_fit_work *work, lar_error *error) {
+    lar_fit_apart *apart = &work->apart;
+    if (apart->boxes.tree) return LAR_OK;
+    return lar_face_boxes_create((const double(*)[3])work->x, (const int32_t(*)[4])apart->face,
+                                 apart->count, &apart->boxes, error);
 }
 
 /* The faces that each face with a watched node may meet in this round. */
 static lar_status list_near(lar_fit_work *work, lar_error *error) {
     lar_fit_apart *apart = &work->apart;
     listings all = {.work = work, .portions = apart->count / PORTION + 1};
+    int32_t reach[3] = {0};
     free(apart->near);
     apart->near = NULL;
-    lar_status status =
-        lar_face_boxes_create((const double(*)[3])work->x, (const int32_t(*)[4])apart->face,
-                              apart->count, &all.boxes, error);
+    lar_status status = make_boxes(work, error);
     if (!status) all.portion = lar_calloc((size_t)all.portions, sizeof *all.portion);
     if (all.portion) lar_parallel_for(apart->count, PORTION, list_portion, &all);
-    if (!status && !(all.portion && join_lists(&all, apart)))
+    if (!status && !(all.portion && join_lists(&all, apart, reach)))
         status = lar_fail_memory(error, 64 * sizeof *apart->near * (size_t)apart->count,
                                  "the faces near each face");
     for (int32_t p = 0; all.portion && p < all.portions; p++) free(all.portion[p].near);
     free(all.portion);
-    lar_face_boxes_clear(&all.boxes);
-    if (!status) lar_fit_rows_measure(work);
+    if (!status) lar_fit_rows_reach(&work->rows, reach);
     return status;
 }
 
@@ -198,7 +231,9 @@ lar_status lar_fit_apart_begin(lar_fit_work *work, lar_error *error) {
     memcpy(apart->from, work->x, nodes * sizeof *apart->from);
     memcpy(apart->awake, work->awake, nodes * sizeof *apart->awake);
     apart->tries = 0;
-    return apart->any ? list_near(work, error) : LAR_OK;
+    const lar_status status = apart->any ? list_near(work, error) : LAR_OK;
+    lar_face_boxes_clear(&apart->boxes);
+    return status;
 }
 
 /* How far the boxes around two faces are apart; negative: they meet. */
@@ -217,7 +252,7 @@ static bool is_pair_clear(const lar_fit_work *work, int32_t f, lar_fit_near *nea
     const lar_fit_apart *apart = &work->apart;
     const double(*x)[3] = (const double(*)[3])work->x;
     const int32_t g = near->face;
-    const double way = apart->extent[f].way + apart->extent[g].way;
+    const double way = apart->way[f] + apart->way[g];
     if (way < near->clear) return true;
     const double room = room_between(&apart->extent[f], &apart->extent[g]);
     if (room > 2 * GAP) {
@@ -239,7 +274,7 @@ static bool is_clear(const lar_fit_work *work, int32_t n) {
     return true;
 }
 
-static void place(lar_fit_work *work, int32_t n, const double x[3]) {
+void lar_fit_apart_place(lar_fit_work *work, int32_t n, const double x[3]) {
     const lar_fit_apart *apart = &work->apart;
     double step[3];
     lar_minus(x, work->x[n], step);
@@ -248,7 +283,7 @@ static void place(lar_fit_work *work, int32_t n, const double x[3]) {
     const double length = lar_length(step);
     for (int32_t i = apart->start[n]; i < apart->start[n + 1]; i++) {
         const int32_t f = apart->around[i] / 4;
-        apart->extent[f].way += length;
+        apart->way[f] += length;
         bound_face(work, f);
     }
 }
@@ -262,9 +297,9 @@ bool lar_fit_apart_move(lar_fit_work *work, int32_t n, const double x[3]) {
         if (!(lar_length(away) < LEASH)) return false;
     }
     memcpy(before, work->x[n], sizeof before);
-    place(work, n, x);
+    lar_fit_apart_place(work, n, x);
     if (!checked || is_clear(work, n)) return true;
-    place(work, n, before);
+    lar_fit_apart_place(work, n, before);
     return false;
 }
 
@@ -293,12 +328,53 @@ static void check_around(lar_fit_apart *apart, size_t nodes) {
     for (size_t n = 0; n < nodes; n++) apart->checked[n] = apart->checked[n] || apart->ring[n];
 }
 
+/* Of one face that crosses another one, the pair counts where the other has a higher number. */
+static bool crosses(const lar_fit_work *work, int32_t f, int32_t other, bool *pair) {
+    const lar_fit_apart *apart = &work->apart;
+    if (room_between(&apart->extent[f], &apart->extent[other]) > GAP) return false;
+    if (!(lar_faces_cross((const double(*)[3])work->x, apart->face[f], apart->face[other], GAP) >
+          0))
+        return false;
+    *pair = *pair || other > f;
+    return true;
+}
+
+/* Of some faces, among those that were listed near them and those that share a node with them. */
+static void look_at_lists(void *context, int32_t first, int32_t end) {
+    lar_fit_work *work = context;
+    lar_fit_apart *apart = &work->apart;
+    bool pair = false;
+    for (int32_t f = first; f < end; f++) {
+        bool found = false;
+        for (int32_t k = apart->near_start[f]; k < apart->near_start[f + 1]; k++)
+            if (crosses(work, f, apart->near[k].face, &pair)) found = true;
+        for (int a = 0; a < 4; a++) {
+            const int32_t n = apart->face[f][a];
+            for (int32_t i = apart->start[n]; i < apart->start[n + 1]; i++)
+                if (apart->around[i] / 4 != f && crosses(work, f, apart->around[i] / 4, &pair))
+                    found = true;
+        }
+        apart->crosses[f] = found;
+    }
+    if (pair) __atomic_store_n(&apart->pairs, true, __ATOMIC_RELAXED);
+}
+
+/* Which faces cross, and whether any do. Where all nodes are watched none has gone farther than
+ * the lists of near faces reach. */
 static lar_status find(lar_fit_work *work, double gap, bool *any, lar_error *error) {
     lar_fit_apart *apart = &work->apart;
     lar_face_crossings found;
-    lar_status status =
-        lar_faces_find_crossings((const double(*)[3])work->x, (const int32_t(*)[4])apart->face,
-                                 apart->count, gap, apart->crosses, &found, error);
+    if (apart->all && gap == GAP) {
+        apart->pairs = false;
+        lar_parallel_for(apart->count, PORTION, look_at_lists, work);
+        *any = apart->pairs;
+        return LAR_OK;
+    }
+    lar_status status = make_boxes(work, error);
+    if (!status)
+        status = lar_faces_find_crossings((const double(*)[3])work->x,
+                                          (const int32_t(*)[4])apart->face, apart->count, gap,
+                                          &apart->boxes, apart->crosses, &found, error);
     *any = !status && found.pairs > 0;
     return status;
 }
@@ -333,5 +409,8 @@ lar_status lar_fit_apart_check(lar_fit_work *work, bool *again, lar_error *error
     apart->any = true;
     memcpy(work->x, apart->from, nodes * sizeof *work->x);
     memcpy(work->awake, apart->awake, nodes * sizeof *work->awake);
-    return list_near(work, error);
+    lar_face_boxes_clear(&apart->boxes);
+    status = list_near(work, error);
+    lar_face_boxes_clear(&apart->boxes);
+    return status;
 }

@@ -7,7 +7,6 @@
 #include "base/memory.h"
 #include "base/parallel_for.h"
 #include "base/vector.h"
-#include "meshing/fit/face_boxes.h"
 #include "model/triangles/triangles.h"
 
 /* Corners of a face's triangles: two for each of its diagonals. */
@@ -374,17 +373,17 @@ static void look_around(void *context, int32_t first, int32_t end) {
 }
 
 lar_status lar_faces_find_crossings(const double (*x)[3], const int32_t (*face)[4], int32_t count,
-                                    double gap, bool *crosses, lar_face_crossings *found,
-                                    lar_error *error) {
+                                    double gap, const lar_face_boxes *boxes, bool *crosses,
+                                    lar_face_crossings *found, lar_error *error) {
     enum { PORTION = 256 };
-    lar_face_boxes boxes = {0};
-    search s = {.x = x, .face = face, .gap = gap, .boxes = &boxes};
+    lar_face_boxes own = {0};
+    search s = {.x = x, .face = face, .gap = gap, .boxes = boxes ? boxes : &own};
     s.pairs = lar_calloc((size_t)count, sizeof *s.pairs);
     s.deepest = lar_calloc((size_t)count, sizeof *s.deepest);
     lar_status status = s.pairs && s.deepest ? LAR_OK
                                              : lar_fail_memory(error, 12 * (size_t)count,
                                                                "which faces cross each other");
-    if (!status) status = lar_face_boxes_create(x, face, count, &boxes, error);
+    if (!status && !boxes) status = lar_face_boxes_create(x, face, count, &own, error);
     if (!status) lar_parallel_for(count, PORTION, look_around, &s);
     *found = (lar_face_crossings){0};
     for (int32_t f = 0; !status && f < count; f++) {
@@ -392,7 +391,7 @@ lar_status lar_faces_find_crossings(const double (*x)[3], const int32_t (*face)[
         found->deepest = fmax(found->deepest, s.deepest[f]);
         if (crosses) crosses[f] = s.deepest[f] > 0;
     }
-    lar_face_boxes_clear(&boxes);
+    lar_face_boxes_clear(&own);
     free(s.pairs);
     free(s.deepest);
     return status;

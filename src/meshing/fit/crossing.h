@@ -14,6 +14,7 @@
 #include <stdint.h>
 
 #include "base/error.h"
+#include "meshing/fit/face_boxes.h"
 
 typedef struct lar_face_crossings {
     int32_t pairs;  /* of faces */
@@ -30,10 +31,11 @@ double lar_faces_cross(const double (*x)[3], const int32_t a[4], const int32_t b
 double lar_faces_clearance(const double (*x)[3], const int32_t a[4], const int32_t b[4],
                            double gap);
 
-/* All pairs of `count` faces. `crosses` [count], by the caller, is set for each face that crosses
- * another one; NULL: not wanted. */
+/* All pairs of `count` faces. boxes: of these faces at these places; NULL: the caller has none.
+ * `crosses` [count], by the caller, is set for each face that crosses another one; NULL: not
+ * wanted. */
 lar_status lar_faces_find_crossings(const double (*x)[3], const int32_t (*face)[4], int32_t count,
-                                    double gap, bool *crosses, lar_face_crossings *found,
-                                    lar_error *error);
+                                    double gap, const lar_face_boxes *boxes, bool *crosses,
+                                    lar_face_crossings *found, lar_error *error);
 
 #endif

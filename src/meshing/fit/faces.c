@@ -176,7 +176,9 @@ lar_status lar_fit_work_create(const lar_boundary *boundary, const lar_unfitted_
     work->x = lar_calloc(nodes, sizeof *work->x);
     work->awake = lar_calloc(nodes, sizeof *work->awake);
     work->region = lar_calloc((size_t)boundary->region_count + 1, sizeof *work->region);
-    if (!work->x || !work->awake || !work->region)
+    work->record.action = lar_calloc(LAR_FIT_SWEEPS * nodes, sizeof *work->record.action);
+    work->record.differs = lar_calloc(nodes, sizeof *work->record.differs);
+    if (!work->x || !work->awake || !work->region || !work->record.action || !work->record.differs)
         return lar_fail_memory(error, nodes * sizeof *work->x, "the nodes' places");
     for (size_t n = 0; n < nodes; n++)
         for (int i = 0; i < 3; i++)
@@ -185,17 +187,18 @@ lar_status lar_fit_work_create(const lar_boundary *boundary, const lar_unfitted_
     if (status == LAR_OK) status = list_faces(work, error);
     if (status == LAR_OK && !list_neighbours(work, (size_t)unfitted->slot_count))
         status = lar_fail_memory(error, nodes * 12 * sizeof(int32_t), "the elements around nodes");
-    if (status == LAR_OK) status = lar_fit_apart_create(work, error);
+    if (status == LAR_OK)
+        status = lar_fit_apart_create(work, (const int32_t(*)[3])unfitted->point, error);
     return status ? status : lar_fit_rows_create(work, unfitted, error);
 }
 
 void lar_fit_work_clear(lar_fit_work *work) {
     for (int32_t p = 0; p < work->pair_count; p++) lar_triangle_tree_destroy(work->pair[p].tree);
     void *const owned[] = {
-        work->x,          work->awake,       work->element_start, work->element_around,
-        work->face_start, work->face_around, work->point_start,   work->face,
-        work->slot_start, work->slot_around, work->point,         work->pair,
-        work->region};
+        work->x,          work->awake,         work->element_start, work->element_around,
+        work->face_start, work->face_around,   work->point_start,   work->face,
+        work->slot_start, work->slot_around,   work->point,         work->pair,
+        work->region,     work->record.action, work->record.differs};
     for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) free(owned[i]);
     lar_fit_apart_clear(&work->apart);
     lar_fit_rows_clear(&work->rows);

@@ -22,7 +22,7 @@ static const double FACE_WEIGHT = 1, NODE_WEIGHT = 0.3;
 /* Rounds of some sweeps each. From BALANCE on volumes are balanced; from STAND on the planes stand,
  * so that points of something thin, which are drawn to its one side now and to its other one then,
  * come to rest and volumes with them; several regions take longer. */
-enum { SWEEPS = 4, ROUNDS = 15, ROUNDS_REGIONS = 18, BALANCE = 3, STAND = 9, ATTEMPTS = 4 };
+enum { ROUNDS = 15, ROUNDS_REGIONS = 18, BALANCE = 3, STAND = 9, ATTEMPTS = 4 };
 
 static lar_status check_start(lar_fit_work *work, lar_error *error) {
     double part;
@@ -40,8 +40,10 @@ static lar_status check_start(lar_fit_work *work, lar_error *error) {
 static lar_status sweep_apart(lar_fit_work *work, lar_error *error) {
     lar_status status = lar_fit_apart_begin(work, error);
     bool again = true;
+    work->record.sweep = 0;
     for (int attempt = 0; !status && again && attempt < ATTEMPTS; attempt++) {
-        for (int sweep = 0; sweep < SWEEPS; sweep++)
+        lar_fit_sweep_again(work);
+        for (int sweep = 0; sweep < LAR_FIT_SWEEPS; sweep++)
             if (lar_fit_sweep(work) == 0) break;
         status = lar_fit_apart_check(work, &again, error);
     }

@@ -32,7 +32,7 @@ typedef struct slopes {
 } slopes;
 
 /* One edge's part in q and l; `sign` 1 when its end moves, -1 when the corner does. */
-static void add_edge(const double e[3], double sign, slopes *slope) {
+static inline void add_edge(const double e[3], double sign, slopes *slope) {
     const double one = 1 / lar_dot(e, e), two = -2 * one * one;
     for (int i = 0; i < 3; i++) {
         slope->q[i] += sign * 2 * e[i];
@@ -44,7 +44,7 @@ static void add_edge(const double e[3], double sign, slopes *slope) {
 }
 
 /* The part of an area: a x b changes by x x w when the node moves by x. */
-static void add_area(const double across[3], const double w[3], slopes *slope) {
+static inline void add_area(const double across[3], const double w[3], slopes *slope) {
     const double square = lar_dot(w, w);
     double turned[3];
     lar_cross(w, across, turned);
@@ -79,7 +79,8 @@ static void end_moves(const double edge[3][3], const double across[3][3], int mo
 }
 
 /* hessian += factor * (a b^T + b a^T) / 2 */
-static void add_products(double hessian[6], double factor, const double a[3], const double b[3]) {
+static inline void add_products(double hessian[6], double factor, const double a[3],
+                                const double b[3]) {
     const double half = 0.5 * factor;
     for (int i = 0; i < 3; i++) {
         const int j = (i + 1) % 3;

@@ -60,36 +60,9 @@ lar_status lar_fit_rows_create(lar_fit_work *work, const lar_unfitted_mesh *unfi
     return LAR_OK;
 }
 
-/* ---- how far --------------------------------------------------------------------------------- */
-
-/* The part of the grid that a face's nodes come from. */
-static void span(const lar_fit_work *work, int32_t face, int32_t lower[3], int32_t upper[3]) {
-    const int32_t(*point)[3] = work->rows.point, *node = work->apart.face[face];
-    for (int i = 0; i < 3; i++) {
-        lower[i] = upper[i] = point[node[0]][i];
-        for (int a = 1; a < 4; a++) {
-            const int32_t at = point[node[a]][i];
-            if (at < lower[i]) lower[i] = at;
-            if (at > upper[i]) upper[i] = at;
-        }
-    }
-}
-
-void lar_fit_rows_measure(lar_fit_work *work) {
-    const lar_fit_apart *apart = &work->apart;
-    int32_t *reach = work->rows.reach;
-    memcpy(reach, work->rows.touch, sizeof work->rows.reach);
-    for (int32_t f = 0; f < apart->count; f++) {
-        int32_t lower[3], upper[3], other_lower[3], other_upper[3];
-        span(work, f, lower, upper);
-        for (int32_t k = apart->near_start[f]; k < apart->near_start[f + 1]; k++) {
-            span(work, apart->near[k].face, other_lower, other_upper);
-            for (int i = 0; i < 3; i++) {
-                if (upper[i] - other_lower[i] > reach[i]) reach[i] = upper[i] - other_lower[i];
-                if (other_upper[i] - lower[i] > reach[i]) reach[i] = other_upper[i] - lower[i];
-            }
-        }
-    }
+void lar_fit_rows_reach(lar_fit_rows *rows, const int32_t near[3]) {
+    for (int i = 0; i < 3; i++)
+        rows->reach[i] = near[i] > rows->touch[i] ? near[i] : rows->touch[i];
 }
 
 /* ---- the sweep ------------------------------------------------------------------------------- */

@@ -1,4 +1,5 @@
 #include <math.h>
+#include <string.h>
 
 #include "base/vector.h"
 #include "meshing/fit/work.h"
@@ -191,16 +192,61 @@ void lar_fit_wake_boundary(lar_fit_work *work) {
     for (int32_t i = 0; i < work->point_count; i++) work->awake[work->point[i].node] = true;
 }
 
+/* ---- as before ------------------------------------------------------------------------------ */
+
+static bool any_differs(const lar_fit_work *work, int32_t n) {
+    const bool *differs = work->record.differs;
+    bool any = differs[n];
+    for (int32_t i = work->element_start[n]; i < work->element_start[n + 1]; i++) {
+        const int32_t *node = work->mesh->element[work->element_around[i] / 8];
+        for (int a = 0; a < 8; a++) any |= differs[node[a]];
+    }
+    for (int32_t i = work->slot_start[n]; i < work->slot_start[n + 1]; i++)
+        for (int a = 0; a < 4; a++) any |= differs[work->slot[work->slot_around[i] / 4][a]];
+    return any;
+}
+
+static void act(lar_fit_work *work, int32_t n, lar_fit_action *action) {
+    action->what = LAR_FIT_SLEPT;
+    if (work->awake[n]) {
+        work->awake[n] = false;
+        action->what = move(work, n) > STILL ? LAR_FIT_MOVED : LAR_FIT_STAYED;
+    }
+    memcpy(action->x, work->x[n], sizeof action->x);
+}
+
 static int32_t sweep_node(lar_fit_work *work, int32_t n) {
-    if (!work->awake[n]) return 0;
-    work->awake[n] = false;
-    if (!(move(work, n) > STILL)) return 0;
+    lar_fit_record *record = &work->record;
+    lar_fit_action *known =
+        &record->action[(size_t)record->sweep * (size_t)work->mesh->node_count + (size_t)n];
+    if (record->sweep < record->sweeps && !work->apart.checked[n] && !any_differs(work, n)) {
+        if (known->what != LAR_FIT_SLEPT) {
+            work->awake[n] = false;
+            lar_fit_apart_place(work, n, known->x);
+        }
+    } else {
+        lar_fit_action action;
+        act(work, n, &action);
+        if (action.what != known->what || memcmp(action.x, known->x, sizeof action.x) != 0)
+            record->differs[n] = true;
+        *known = action;
+    }
+    if (known->what != LAR_FIT_MOVED) return 0;
     wake_around(work, n);
     return 1;
 }
 
+void lar_fit_sweep_again(lar_fit_work *work) {
+    lar_fit_record *record = &work->record;
+    record->sweeps = record->sweep;
+    record->sweep = 0;
+    memset(record->differs, 0, (size_t)work->mesh->node_count * sizeof *record->differs);
+}
+
 int32_t lar_fit_sweep(lar_fit_work *work) {
-    return lar_fit_rows_visit(work, sweep_node);
+    const int32_t moved = lar_fit_rows_visit(work, sweep_node);
+    work->record.sweep++;
+    return moved;
 }
 
 double lar_fit_min(const lar_fit_work *work, double bar, double *part_above) {

@@ -13,6 +13,7 @@
 #ifndef LAR_MESHING_FIT_WORK_H
 #define LAR_MESHING_FIT_WORK_H
 
+#include "meshing/fit/face_boxes.h"
 #include "meshing/fit/fit.h"
 #include "meshing/fit/quality.h"
 #include "model/triangles/tree.h"
@@ -58,18 +59,22 @@ typedef struct lar_fit_region {
     double missing, weight;
 } lar_fit_region;
 
-/* A face near another one. Until the ways of both (lar_fit_extent.way) sum up to `clear`, they are
+/* A face near another one. Until the ways of both (lar_fit_apart.way) sum up to `clear`, they are
  * apart wherever their nodes went. */
 typedef struct lar_fit_near {
     double clear;
     int32_t face;
 } lar_fit_near;
 
-/* Of a face while nodes are watched: all that its nodes went since the lists of near faces were
- * made, and the box around it. */
+/* Of a face while nodes are watched: the box around it. */
 typedef struct lar_fit_extent {
-    double way, lower[3], upper[3];
+    double lower[3], upper[3];
 } lar_fit_extent;
+
+/* The part of the grid that a face's nodes come from. */
+typedef struct lar_fit_span {
+    int32_t lower[3], upper[3];
+} lar_fit_span;
 
 /* What keeps outer faces apart (apart.c). */
 typedef struct lar_fit_apart {
@@ -78,6 +83,7 @@ typedef struct lar_fit_apart {
     bool *crosses;           /* per face */
     bool *checked;           /* per node: its faces must stay clear of others */
     bool any, all;           /* of nodes */
+    bool pairs;              /* atomic: some faces cross */
     bool *strict;            /* per face: clear of neighbours that look the same way too */
     bool *ring;              /* per node: of faces that cross, and around them */
     int tries;               /* of this round */
@@ -86,6 +92,9 @@ typedef struct lar_fit_apart {
     double (*from)[3];      /* per node: where it was before this round, */
     bool *awake;            /* and whether it was worth moving */
     lar_fit_extent *extent; /* per face */
+    double *way;            /* per face: all that its nodes went since the lists were made */
+    lar_fit_span *span;     /* per face */
+    lar_face_boxes boxes;   /* of the faces where they are; without a tree: to be made */
 } lar_fit_apart;
 
 /* Nodes that follow each other along the grid's first axis (rows.c). */
@@ -96,6 +105,23 @@ typedef struct lar_fit_rows {
     int32_t touch[3], reach[3]; /* points between nodes that have a part in each other's moves: by
                                    elements and slots, and by these and faces kept apart */
 } lar_fit_rows;
+
+/* Sweeps of a round, at most. */
+enum { LAR_FIT_SWEEPS = 4 };
+
+/* What a node did in a sweep. */
+typedef struct lar_fit_action {
+    double x[3];                                                /* where it was then */
+    enum { LAR_FIT_SLEPT, LAR_FIT_STAYED, LAR_FIT_MOVED } what; /* MOVED: it woke others */
+} lar_fit_action;
+
+/* A round that is done again begins as before, and a node that is not watched does as before while
+ * all around it do. */
+typedef struct lar_fit_record {
+    lar_fit_action *action; /* [LAR_FIT_SWEEPS * nodes] */
+    bool *differs;          /* [nodes] it has done something else since */
+    int sweep, sweeps;      /* the one that is done now; those that are to be done as before */
+} lar_fit_record;
 
 typedef struct lar_fit_work {
     const lar_boundary *boundary;
@@ -120,6 +146,7 @@ typedef struct lar_fit_work {
     bool *awake;                     /* per node: worth moving */
     lar_fit_rows rows;
     lar_fit_apart apart;
+    lar_fit_record record;
 } lar_fit_work;
 
 /* Fills a zeroed one. The unfitted mesh and the boundary must outlive it. */
@@ -143,26 +170,32 @@ void lar_fit_wake_boundary(lar_fit_work *work);
  * same; the number that moved. */
 int32_t lar_fit_sweep(lar_fit_work *work);
 
+/* Before the first sweep of a round (record.sweep 0), and before the first of one that is done
+ * again. */
+void lar_fit_sweep_again(lar_fit_work *work);
+
 /* The rows of a mesh; freed with `work`. */
 lar_status lar_fit_rows_create(lar_fit_work *work, const lar_unfitted_mesh *unfitted,
                                lar_error *error);
 void lar_fit_rows_clear(lar_fit_rows *rows);
-/* How far nodes have a part in each other's moves, anew: after the lists of near faces changed. */
-void lar_fit_rows_measure(lar_fit_work *work);
+/* How far nodes have a part in each other's moves, anew: by faces up to `near` points. */
+void lar_fit_rows_reach(lar_fit_rows *rows, const int32_t near[3]);
 /* Calls `visit` for all nodes, on all cores: each after those of lower number within reach, and
  * before those of higher number. `visit` may look at and change what belongs to nodes within reach.
  * The sum of what it returned. */
 typedef int32_t lar_fit_visit(lar_fit_work *work, int32_t node);
 int32_t lar_fit_rows_visit(lar_fit_work *work, lar_fit_visit *visit);
 
-/* Makes apart's lists; all are freed with `work`. */
-lar_status lar_fit_apart_create(lar_fit_work *work, lar_error *error);
+/* Makes apart's lists; all are freed with `work`. point: [nodes] of the grid. */
+lar_status lar_fit_apart_create(lar_fit_work *work, const int32_t (*point)[3], lar_error *error);
 void lar_fit_apart_clear(lar_fit_apart *apart);
 /* Notes where a round of sweeps begins. */
 lar_status lar_fit_apart_begin(lar_fit_work *work, lar_error *error);
 /* After the round: when outer faces cross, everything is as it was before it, more nodes are
  * watched, and it is to be done *again. */
 lar_status lar_fit_apart_check(lar_fit_work *work, bool *again, lar_error *error);
+/* Moves a node to `x` that is not watched. */
+void lar_fit_apart_place(lar_fit_work *work, int32_t n, const double x[3]);
 /* Moves a node to `x`; a watched one only when its faces stay clear of others: whether it did. */
 bool lar_fit_apart_move(lar_fit_work *work, int32_t n, const double x[3]);
 

@@ -10,21 +10,23 @@
 
 /* ---- elements ------------------------------------------------------------------------------- */
 
-/* The Walsh-Hadamard transform of eight nodes with `n` numbers each: modes 0..6 of hex8.h, mode m
- * from modal[m * n]. */
-static inline void to_modes(const double *const node[8], int n, double *modal) {
-    for (int i = 0; i < n; i++) {
-        double s0 = node[1][i] + node[0][i], d0 = node[1][i] - node[0][i];
-        double s1 = node[2][i] + node[3][i], d1 = node[2][i] - node[3][i];
-        double s2 = node[5][i] + node[4][i], d2 = node[5][i] - node[4][i];
-        double s3 = node[6][i] + node[7][i], d3 = node[6][i] - node[7][i];
-        modal[i] = (d3 + d2) + (d1 + d0);
-        modal[n + i] = (s3 - s2) + (s1 - s0);
-        modal[2 * n + i] = (s3 + s2) - (s1 + s0);
-        modal[3 * n + i] = (s3 - s2) - (s1 - s0);
-        modal[4 * n + i] = (d3 + d2) - (d1 + d0);
-        modal[5 * n + i] = (d3 - d2) + (d1 - d0);
-        modal[6 * n + i] = (d3 - d2) - (d1 - d0);
+/* Vectors of seven modes. */
+typedef lar_pair_vectors modes[7];
+
+/* The Walsh-Hadamard transform of eight nodes: modes 0..6 of hex8.h. */
+static inline void to_modes(const lar_pair_vectors *const node[8], modes U) {
+    for (int i = 0; i < 3; i++) {
+        const lar_pair s0 = (*node[1])[i] + (*node[0])[i], d0 = (*node[1])[i] - (*node[0])[i];
+        const lar_pair s1 = (*node[2])[i] + (*node[3])[i], d1 = (*node[2])[i] - (*node[3])[i];
+        const lar_pair s2 = (*node[5])[i] + (*node[4])[i], d2 = (*node[5])[i] - (*node[4])[i];
+        const lar_pair s3 = (*node[6])[i] + (*node[7])[i], d3 = (*node[6])[i] - (*node[7])[i];
+        U[0][i] = (d3 + d2) + (d1 + d0);
+        U[1][i] = (s3 - s2) + (s1 - s0);
+        U[2][i] = (s3 + s2) - (s1 + s0);
+        U[3][i] = (s3 - s2) - (s1 - s0);
+        U[4][i] = (d3 + d2) - (d1 + d0);
+        U[5][i] = (d3 - d2) + (d1 - d0);
+        U[6][i] = (d3 - d2) - (d1 - d0);
     }
 }
 
@@ -47,86 +49,81 @@ static void prepare(lar_elastic_element *e, const double corner[8][3],
     e->pressure = (material->bulk - 2 * material->shear / 3) * e->volume;
 }
 
-/* A vector for each load of seven modes: load l along axis i at [i * LAR_LOADS + l]. */
-enum { VECTORS = 3 * LAR_LOADS };
-typedef double modes[7][VECTORS];
-
 /* G_m of hex8.h from U_m. */
-static void modal_forces(const lar_elastic_element *e, modes U, modes G) {
-    double H[3][3][LAR_LOADS] = {{{0}}}, S[3][3][LAR_LOADS], trace[LAR_LOADS];
-    for (int m = 0; m < 6; m++)
-        for (int i = 0; i < 3; i++)
-            for (int j = 0; j < 3; j++)
-                LAR_EACH_LOAD H[i][j][l] += U[m][i * LAR_LOADS + l] * e->gradient[m][j];
-    LAR_EACH_LOAD trace[l] = e->pressure * (H[0][0][l] + H[1][1][l] + H[2][2][l]);
+static inline void modal_forces(const lar_elastic_element *e, const modes U, modes G) {
+    lar_pair H[3][3] = {0};
     for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++)
-            LAR_EACH_LOAD S[i][j][l] =
-                e->shear * (H[i][j][l] + H[j][i][l]) + (i == j ? trace[l] : 0);
-    for (int k = 0; k < 4; k++)
-        for (int i = 0; i < 3; i++) {
-            const double *q = &U[3 + k][i * LAR_LOADS];
-            double *g = &G[3 + k][i * LAR_LOADS];
-            LAR_EACH_LOAD g[l] = q[l];
-            for (int j = 0; j < 3; j++) LAR_EACH_LOAD g[l] -= H[i][j][l] * e->shape[k][j];
-            LAR_EACH_LOAD g[l] *= e->spring[k];
-            for (int j = 0; j < 3; j++) LAR_EACH_LOAD S[i][j][l] -= g[l] * e->shape[k][j];
+        for (int m = 0; m < 6; m++)
+            for (int j = 0; j < 3; j++) H[i][j] += U[m][i] * e->gradient[m][j];
+    const lar_pair trace = e->pressure * (H[0][0] + H[1][1] + H[2][2]);
+    for (int i = 0; i < 3; i++) {
+        lar_pair S[3];
+        for (int j = 0; j < 3; j++) S[j] = e->shear * (H[i][j] + H[j][i]);
+        S[i] += trace;
+        for (int k = 0; k < 4; k++) {
+            lar_pair g = U[3 + k][i];
+            for (int j = 0; j < 3; j++) g -= H[i][j] * e->shape[k][j];
+            g *= e->spring[k];
+            for (int j = 0; j < 3; j++) S[j] -= g * e->shape[k][j];
+            G[3 + k][i] = g;
         }
-    memset(G, 0, 3 * sizeof G[0]);
-    for (int m = 0; m < 6; m++)
-        for (int i = 0; i < 3; i++)
-            for (int j = 0; j < 3; j++)
-                LAR_EACH_LOAD G[m][i * LAR_LOADS + l] += S[i][j][l] * e->gradient[m][j];
+        for (int m = 0; m < 6; m++) {
+            lar_pair sum = m < 3 ? (lar_pair){0} : G[m][i];
+            for (int j = 0; j < 3; j++) sum += S[j] * e->gradient[m][j];
+            G[m][i] = sum;
+        }
+    }
 }
 
 /* Adds sum_m h_m(a) G_m to the nodes. */
-static inline void add_from_modes(modes G, double *const node[8]) {
+static inline void add_from_modes(const modes G, lar_pair_vectors *const node[8]) {
     static const struct {
         int8_t eta, zeta, left, right;
     } line[4] = {{-1, -1, 0, 1}, {1, -1, 3, 2}, {-1, 1, 4, 5}, {1, 1, 7, 6}};
     for (int k = 0; k < 4; k++) {
-        double eta = line[k].eta, zeta = line[k].zeta;
-        double *left = node[line[k].left], *right = node[line[k].right];
-        for (int i = 0; i < VECTORS; i++) {
-            double even = eta * G[1][i] + zeta * (G[2][i] + eta * G[3][i]);
-            double odd = G[0][i] + eta * G[5][i] + zeta * (G[4][i] + eta * G[6][i]);
-            left[i] += even - odd;
-            right[i] += even + odd;
+        const double eta = line[k].eta, zeta = line[k].zeta;
+        for (int i = 0; i < 3; i++) {
+            const lar_pair even = eta * G[1][i] + zeta * (G[2][i] + eta * G[3][i]);
+            const lar_pair odd = G[0][i] + eta * G[5][i] + zeta * (G[4][i] + eta * G[6][i]);
+            (*node[line[k].left])[i] += even - odd;
+            (*node[line[k].right])[i] += even + odd;
         }
     }
 }
 
+/* Adds an element's forces at its nodes. */
+static inline void add_forces(const lar_elastic_element *e, const lar_pair_vectors *const u[8],
+                              lar_pair_vectors *const f[8]) {
+    modes U, G;
+    to_modes(u, U);
+    modal_forces(e, (const lar_pair_vectors *)U, G);
+    add_from_modes((const lar_pair_vectors *)G, f);
+}
+
 void lar_elastic_element_matrix(const lar_elastic_element *e, double K[24][24]) {
-    for (int first = 0; first < 24; first += LAR_LOADS) {
-        double u[8][3][LAR_LOADS] = {{{0}}}, f[8][3][LAR_LOADS] = {{{0}}};
-        const double *from[8];
-        double *to[8];
-        modes U, G;
-        for (int a = 0; a < 8; a++) from[a] = u[a][0], to[a] = f[a][0];
-        LAR_EACH_LOAD u[(first + l) / 3][(first + l) % 3][l] = 1;
-        to_modes(from, VECTORS, U[0]);
-        modal_forces(e, U, G);
-        add_from_modes(G, to);
-        for (int row = 0; row < 24; row++) LAR_EACH_LOAD K[row][first + l] = f[row / 3][row % 3][l];
+    for (int first = 0; first < 24; first += 2) {
+        lar_pair_vectors u[8] = {0}, f[8] = {0}, *to[8];
+        const lar_pair_vectors *from[8];
+        for (int a = 0; a < 8; a++) from[a] = &u[a], to[a] = &f[a];
+        for (int l = 0; l < 2; l++) u[(first + l) / 3][(first + l) % 3][l] = 1;
+        add_forces(e, from, to);
+        for (int row = 0; row < 24; row++)
+            for (int l = 0; l < 2; l++) K[row][first + l] = f[row / 3][row % 3][l];
     }
 }
 
-void lar_elastic_forces(const lar_elastic *elastic, const lar_load_vectors *u,
-                        lar_load_vectors *f) {
+void lar_elastic_forces(const lar_elastic *elastic, const lar_pair_vectors *u,
+                        lar_pair_vectors *f) {
     memset(f, 0, (size_t)elastic->node_count * sizeof *f);
     for (int32_t k = 0; k < elastic->element_count; k++) {
         const lar_elastic_element *e = &elastic->element[k];
-        const double *from[8];
-        double *to[8];
-        modes U, G;
-        for (int a = 0; a < 8; a++) from[a] = (const double *)u[e->node[a]];
-        for (int a = 0; a < 8; a++) to[a] = (double *)f[e->node[a]];
-        to_modes(from, VECTORS, U[0]);
-        modal_forces(e, U, G);
-        add_from_modes(G, to);
+        const lar_pair_vectors *from[8];
+        lar_pair_vectors *to[8];
+        for (int a = 0; a < 8; a++) from[a] = &u[e->node[a]], to[a] = &f[e->node[a]];
+        add_forces(e, from, to);
     }
     for (int32_t n = 0; elastic->spring && n < elastic->node_count; n++)
-        for (int i = 0; i < 3; i++) LAR_EACH_LOAD f[n][i][l] += elastic->spring[n] * u[n][i][l];
+        for (int i = 0; i < 3; i++) f[n][i] += elastic->spring[n] * u[n][i];
 }
 
 void lar_elastic_diagonal(const lar_elastic *elastic, double (*diagonal)[3]) {

@@ -5,8 +5,9 @@
  *                        by rigid groups of nodes (elastic_coarse.h)
  *
  * The element is the production element (mechanics/hex8.h) at rest: the mean strain, and springs
- * of the hourglass modes, here with the stiffness that they have in a cube of the same volume. The
- * loads stand side by side in the inner loops, so that four cost little more than two.
+ * of the hourglass modes, here with the stiffness that they have in a cube of the same volume. Two
+ * loads stand side by side in the inner loops, as numbers do in registers of all processors; a
+ * second core takes the other two. What a load gives depends on no other one, but for when to stop.
  *
  * The work f . u that a load does grows from step to step of conjugate gradients by alpha r . z
  * (Hestenes and Stiefel 1952): when the last steps have added next to nothing, it is known
@@ -16,7 +17,7 @@
 
 #include "model/mesh/mesh.h"
 
-enum { LAR_LOADS = 4 };
+enum { LAR_LOADS = 4, LAR_PAIRS = LAR_LOADS / 2 };
 #define LAR_EACH_LOAD for (int l = 0; l < LAR_LOADS; l++)
 
 /* A number for each of the loads; [l] is one of them. */
@@ -24,6 +25,10 @@ typedef double lar_loads __attribute__((vector_size(8 * LAR_LOADS), aligned(8)))
 
 /* A vector of a node for each of the loads. */
 typedef lar_loads lar_load_vectors[3];
+
+/* The same for two of them. */
+typedef double lar_pair __attribute__((vector_size(16), aligned(8)));
+typedef lar_pair lar_pair_vectors[3];
 
 /* What an element is made of; shear 0: rigid, or left out. */
 typedef struct lar_elastic_material {
@@ -63,10 +68,16 @@ void lar_elastic_element_matrix(const lar_elastic_element *element, double K[24]
 void lar_elastic_diagonal(const lar_elastic *elastic, double (*diagonal)[3]);
 
 /* Forces [N] of the body at displacements u [m], and of what holds it. */
-void lar_elastic_forces(const lar_elastic *elastic, const lar_load_vectors *u, lar_load_vectors *f);
+void lar_elastic_forces(const lar_elastic *elastic, const lar_pair_vectors *u, lar_pair_vectors *f);
+
+/* What solving needs besides the loads; NULL is none. `elastic` must stay. */
+typedef struct lar_elastic_solver lar_elastic_solver;
+lar_status lar_elastic_solver_create(const lar_elastic *elastic, lar_elastic_solver **solver,
+                                     lar_error *error);
+void lar_elastic_solver_destroy(lar_elastic_solver *solver);
 
 /* Displacements under the forces f, and the work f . u of each load [J], within a hundredth. */
-lar_status lar_elastic_solve(const lar_elastic *elastic, const lar_load_vectors *f,
+lar_status lar_elastic_solve(lar_elastic_solver *solver, const lar_load_vectors *f,
                              lar_load_vectors *u, double work[LAR_LOADS], lar_error *error);
 
 #endif

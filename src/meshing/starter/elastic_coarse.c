@@ -122,21 +122,43 @@ static lar_status lay_matrix(lar_coarse *coarse, const lar_elastic *elastic, lar
     return status;
 }
 
-/* Adds P^T K P of two of the element's nodes. */
-static void add_pair(lar_coarse *coarse, const int32_t *node, double K[24][24], int a, int b) {
-    const int32_t row = coarse->group[node[a]], column = coarse->group[node[b]];
-    if (row < 0 || column < 0 || row < column) return;
-    lar_factor_block *block = lar_factor_at(&coarse->factor, row, column);
+/* P at one node. */
+typedef double motions[3][LAR_RIGID];
+
+static void find_motions(const lar_coarse *coarse, int32_t n, motions P) {
+    for (int i = 0; i < 3; i++)
+        for (int d = 0; d < LAR_RIGID; d++) P[i][d] = share(coarse, n, i, d);
+}
+
+/* block += P_a^T K_ab P_b */
+static void add_block(lar_factor_block block, const motions of_a, const double K[24][24], int a,
+                      int b, const motions of_b) {
     double KP[3][LAR_RIGID] = {{0}};
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++)
-            for (int d = 0; d < LAR_RIGID; d++)
-                KP[i][d] += K[3 * a + i][3 * b + j] * share(coarse, node[b], j, d);
-    for (int c = 0; c < LAR_RIGID; c++)
-        for (int d = 0; d < LAR_RIGID; d++) {
-            double sum = 0;
-            for (int i = 0; i < 3; i++) sum += share(coarse, node[a], i, c) * KP[i][d];
-            (*block)[c][d] += sum;
+            for (int d = 0; d < LAR_RIGID; d++) KP[i][d] += K[3 * a + i][3 * b + j] * of_b[j][d];
+    for (int c = 0; c < LAR_RIGID; c++) {
+        double sum[LAR_RIGID] = {0};
+        for (int i = 0; i < 3; i++)
+            for (int d = 0; d < LAR_RIGID; d++) sum[d] += of_a[i][c] * KP[i][d];
+        for (int d = 0; d < LAR_RIGID; d++) block[c][d] += sum[d];
+    }
+}
+
+/* Adds P^T K P of an element. */
+static void add_element(lar_coarse *coarse, const lar_elastic_element *e) {
+    double K[24][24];
+    motions P[8];
+    lar_elastic_element_matrix(e, K);
+    for (int a = 0; a < 8; a++)
+        if (coarse->group[e->node[a]] >= 0) find_motions(coarse, e->node[a], P[a]);
+    for (int a = 0; a < 8; a++)
+        for (int b = 0; b < 8; b++) {
+            const int32_t row = coarse->group[e->node[a]], column = coarse->group[e->node[b]];
+            if (row < 0 || column < 0 || row < column) continue;
+            add_block(*lar_factor_at(&coarse->factor, row, column),
+                      (const double(*)[LAR_RIGID])P[a], (const double(*)[24])K, a, b,
+                      (const double(*)[LAR_RIGID])P[b]);
         }
 }
 
@@ -151,14 +173,8 @@ static void add_spring(lar_coarse *coarse, int32_t n, double stiffness) {
 }
 
 static void fill_matrix(lar_coarse *coarse, const lar_elastic *elastic) {
-    for (int32_t k = 0; k < elastic->element_count; k++) {
-        const lar_elastic_element *e = &elastic->element[k];
-        double K[24][24];
-        if (!resists(coarse, e)) continue;
-        lar_elastic_element_matrix(e, K);
-        for (int a = 0; a < 8; a++)
-            for (int b = 0; b < 8; b++) add_pair(coarse, e->node, K, a, b);
-    }
+    for (int32_t k = 0; k < elastic->element_count; k++)
+        if (resists(coarse, &elastic->element[k])) add_element(coarse, &elastic->element[k]);
     for (int32_t n = 0; elastic->spring && n < elastic->node_count; n++)
         if (elastic->spring[n] > 0) add_spring(coarse, n, elastic->spring[n]);
 }
@@ -176,11 +192,6 @@ lar_status lar_coarse_create(const lar_elastic *elastic, lar_coarse *coarse, lar
     if (!status) status = find_groups(coarse, elastic, box, error);
     if (!status) status = find_arms(coarse, elastic->mesh, box, error);
     if (!status) status = lay_matrix(coarse, elastic, error);
-    if (!status) {
-        const size_t rows = LAR_RIGID * (size_t)coarse->group_count;
-        coarse->load = lar_calloc(rows, sizeof *coarse->load);
-        if (!coarse->load) status = lar_fail_memory(error, 8 * LAR_LOADS * rows, "coarse loads");
-    }
     if (!status) fill_matrix(coarse, elastic);
     if (!status) status = lar_factor_compute(&coarse->factor, error);
     if (status) lar_coarse_clear(coarse);
@@ -191,29 +202,40 @@ void lar_coarse_clear(lar_coarse *coarse) {
     free(coarse->group);
     free(coarse->arm);
     lar_factor_clear(&coarse->factor);
-    free(coarse->load);
     *coarse = (lar_coarse){0};
 }
 
 /* ---- in use --------------------------------------------------------------------------------- */
 
-void lar_coarse_add(lar_coarse *coarse, const lar_load_vectors *r, lar_load_vectors *z) {
-    memset(coarse->load, 0, (size_t)(LAR_RIGID * coarse->group_count) * sizeof *coarse->load);
-    for (int32_t n = 0; n < coarse->node_count; n++) {
-        if (coarse->group[n] < 0) continue;
-        for (int d = 0; d < LAR_RIGID; d++)
-            for (int i = 0; i < 3; i++) {
-                const double part = share(coarse, n, i, d);
-                if (part != 0) coarse->load[LAR_RIGID * coarse->group[n] + d] += part * r[n][i];
-            }
-    }
-    lar_factor_solve(&coarse->factor, coarse->load);
-    for (int32_t n = 0; n < coarse->node_count; n++) {
-        if (coarse->group[n] < 0) continue;
-        for (int d = 0; d < LAR_RIGID; d++)
-            for (int i = 0; i < 3; i++) {
-                const double part = share(coarse, n, i, d);
-                if (part != 0) z[n][i] += part * coarse->load[LAR_RIGID * coarse->group[n] + d];
-            }
-    }
+/* `to`: the six motions of node n's group; they grow by P^T r of the node. */
+static inline void gather(const lar_coarse *coarse, int32_t n, const lar_pair_vectors r,
+                          lar_pair *to) {
+    const double *arm = coarse->arm[n];
+    lar_pair f[3];
+    for (int i = 0; i < 3; i++) f[i] = coarse->still[n] >> i & 1 ? (lar_pair){0} : r[i];
+    for (int i = 0; i < 3; i++) to[i] += f[i];
+    to[3] = to[3] - arm[2] * f[1] + arm[1] * f[2];
+    to[4] = to[4] + arm[2] * f[0] - arm[0] * f[2];
+    to[5] = to[5] - arm[1] * f[0] + arm[0] * f[1];
+}
+
+/* z grows by P of the motions `by`. */
+static inline void spread(const lar_coarse *coarse, int32_t n, const lar_pair *by,
+                          lar_pair_vectors z) {
+    const double *arm = coarse->arm[n];
+    const lar_pair_vectors to = {z[0] + by[0] + arm[2] * by[4] - arm[1] * by[5],
+                                 z[1] + by[1] - arm[2] * by[3] + arm[0] * by[5],
+                                 z[2] + by[2] + arm[1] * by[3] - arm[0] * by[4]};
+    for (int i = 0; i < 3; i++)
+        if (!(coarse->still[n] >> i & 1)) z[i] = to[i];
+}
+
+void lar_coarse_add(const lar_coarse *coarse, lar_pair *way, const lar_pair_vectors *r,
+                    lar_pair_vectors *z) {
+    memset(way, 0, (size_t)(LAR_RIGID * coarse->group_count) * sizeof *way);
+    for (int32_t n = 0; n < coarse->node_count; n++)
+        if (coarse->group[n] >= 0) gather(coarse, n, r[n], &way[LAR_RIGID * coarse->group[n]]);
+    lar_factor_solve(&coarse->factor, way);
+    for (int32_t n = 0; n < coarse->node_count; n++)
+        if (coarse->group[n] >= 0) spread(coarse, n, &way[LAR_RIGID * coarse->group[n]], z[n]);
 }

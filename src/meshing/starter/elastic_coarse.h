@@ -21,13 +21,13 @@ typedef struct lar_coarse {
     const uint8_t *still; /* of the body, which must stay */
     double (*arm)[3];     /* [nodes] from the group's centre, in boxes */
     lar_factor factor;    /* of P^T K P */
-    lar_loads *load;      /* [6 groups] on the way */
 } lar_coarse;
 
 lar_status lar_coarse_create(const lar_elastic *elastic, lar_coarse *coarse, lar_error *error);
 void lar_coarse_clear(lar_coarse *coarse);
 
-/* z += P (P^T K P)^-1 P^T r */
-void lar_coarse_add(lar_coarse *coarse, const lar_load_vectors *r, lar_load_vectors *z);
+/* z += P (P^T K P)^-1 P^T r. way: [6 groups] of the caller's. */
+void lar_coarse_add(const lar_coarse *coarse, lar_pair *way, const lar_pair_vectors *r,
+                    lar_pair_vectors *z);
 
 #endif

@@ -239,25 +239,25 @@ lar_status lar_factor_compute(lar_factor *factor, lar_error *error) {
 
 /* ---- in use --------------------------------------------------------------------------------- */
 
-void lar_factor_solve(const lar_factor *factor, lar_loads *x) {
+void lar_factor_solve(const lar_factor *factor, lar_pair *x) {
     for (int32_t c = 0; c < factor->count; c++) {
-        lar_loads *own = x + (size_t)c * LAR_FACTOR_BLOCK;
+        lar_pair *own = x + (size_t)c * LAR_FACTOR_BLOCK;
         const lar_factor_block *diagonal = &factor->block[factor->start[c]];
         for (int r = 0; r < LAR_FACTOR_BLOCK; r++) {
             for (int k = 0; k < r; k++) own[r] -= (*diagonal)[r][k] * own[k];
             own[r] *= (*diagonal)[r][r];
         }
         for (size_t b = factor->start[c] + 1; b < factor->start[c + 1]; b++) {
-            lar_loads *to = x + (size_t)factor->row[b] * LAR_FACTOR_BLOCK;
+            lar_pair *to = x + (size_t)factor->row[b] * LAR_FACTOR_BLOCK;
             for (int r = 0; r < LAR_FACTOR_BLOCK; r++)
                 for (int k = 0; k < LAR_FACTOR_BLOCK; k++) to[r] -= factor->block[b][r][k] * own[k];
         }
     }
     for (int32_t c = factor->count - 1; c >= 0; c--) {
-        lar_loads *own = x + (size_t)c * LAR_FACTOR_BLOCK;
+        lar_pair *own = x + (size_t)c * LAR_FACTOR_BLOCK;
         const lar_factor_block *diagonal = &factor->block[factor->start[c]];
         for (size_t b = factor->start[c] + 1; b < factor->start[c + 1]; b++) {
-            const lar_loads *from = x + (size_t)factor->row[b] * LAR_FACTOR_BLOCK;
+            const lar_pair *from = x + (size_t)factor->row[b] * LAR_FACTOR_BLOCK;
             for (int r = 0; r < LAR_FACTOR_BLOCK; r++)
                 for (int k = 0; k < LAR_FACTOR_BLOCK; k++)
                     own[k] -= factor->block[b][r][k] * from[r];

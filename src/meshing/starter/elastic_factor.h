@@ -40,7 +40,7 @@ lar_factor_block *lar_factor_at(lar_factor *factor, int32_t row, int32_t column)
  * will be 0. */
 lar_status lar_factor_compute(lar_factor *factor, lar_error *error);
 
-/* x: [6 count] loads, which become the solution. */
-void lar_factor_solve(const lar_factor *factor, lar_loads *x);
+/* x: [6 count] two loads, which become the solution. */
+void lar_factor_solve(const lar_factor *factor, lar_pair *x);
 
 #endif

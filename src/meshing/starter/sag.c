@@ -80,8 +80,7 @@ static lar_status drop_loose(const lar_ways *s, bool *handle, int axis, bool *dr
 
 static lar_status solve(lar_ways *s, const bool *handle, int axis, lar_error *error) {
     apply_loads(s, handle, axis);
-    return lar_elastic_solve(&s->elastic, (const lar_load_vectors *)s->load, s->way, s->work,
-                             error);
+    return lar_ways_solve(s, error);
 }
 
 lar_status lar_sag_estimate(const lar_meshing *meshing, const bool *held, bool *handle, int axis,

@@ -19,6 +19,7 @@ lar_status lar_ways_create(const lar_mesh *mesh, lar_ways *ways, lar_error *erro
 }
 
 void lar_ways_clear(lar_ways *ways) {
+    lar_elastic_solver_destroy(ways->solver);
     free(ways->elastic.element);
     free(ways->material);
     free(ways->still);
@@ -34,6 +35,14 @@ void lar_ways_weigh(lar_ways *ways, lar_gid e, double density, lar_elastic_mater
     double eighth = density * lar_hexahedron_volume(corner) / 8;
     ways->material[e] = material;
     for (int a = 0; a < 8; a++) ways->mass[ways->mesh->element[e][a]] += eighth;
+}
+
+lar_status lar_ways_solve(lar_ways *ways, lar_error *error) {
+    lar_status status =
+        ways->solver ? LAR_OK : lar_elastic_solver_create(&ways->elastic, &ways->solver, error);
+    return status ? status
+                  : lar_elastic_solve(ways->solver, (const lar_load_vectors *)ways->load, ways->way,
+                                      ways->work, error);
 }
 
 double lar_ways_slowest(const lar_ways *ways) {
@@ -87,8 +96,7 @@ double lar_slowest_motion(const lar_model *model) {
         load_first(&ways);
     }
     for (int k = 0; !status && k < TIMES; k++) {
-        status = lar_elastic_solve(&ways.elastic, (const lar_load_vectors *)ways.load, ways.way,
-                                   ways.work, &ignored);
+        status = lar_ways_solve(&ways, &ignored);
         slowest = lar_ways_slowest(&ways);
         for (int32_t n = 0; n < ways.mesh->node_count; n++)
             for (int i = 0; i < 3; i++) ways.load[n][i] = ways.mass[n] * ways.way[n][i];

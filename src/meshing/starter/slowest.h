@@ -22,6 +22,7 @@ typedef struct lar_ways {
     double *mass;                   /* [nodes] */
     double *spring;                 /* [nodes] as in lar_elastic, or NULL */
     lar_load_vectors *load, *way;   /* [nodes] */
+    lar_elastic_solver *solver;     /* of `elastic`, made by the first lar_ways_solve */
     double work[LAR_LOADS];
 } lar_ways;
 
@@ -31,6 +32,9 @@ void lar_ways_clear(lar_ways *ways);
 
 /* Of element e. */
 void lar_ways_weigh(lar_ways *ways, lar_gid e, double density, lar_elastic_material material);
+
+/* Way and work under the load. `elastic` is as it was the last time. */
+lar_status lar_ways_solve(lar_ways *ways, lar_error *error);
 
 /* [1/s] the least of Rayleigh's quotients, 0: nothing moves. */
 double lar_ways_slowest(const lar_ways *ways);

@@ -24,8 +24,14 @@ typedef struct small_box {
     float lower[3], upper[3];
 } small_box;
 
+/* Two numbers side by side, as all processors compute with them. */
+typedef double two __attribute__((vector_size(16)));
+typedef int64_t two_integers __attribute__((vector_size(16)));
+typedef float two_small __attribute__((vector_size(8)));
+
+/* Children's boxes stand in their parent, side by side, so that one look into memory finds both. */
 typedef struct tree_node {
-    small_box box;
+    two_small lower[3], upper[3];
     int32_t next;  /* leaf: the first of its triangles; otherwise the second child */
     int32_t count; /* leaf: triangles; otherwise 0 */
 } tree_node;
@@ -34,14 +40,15 @@ typedef struct tree_node {
  * same bits on it, and are equally near. */
 typedef struct leaf_triangle {
     double at[3][3];
-    small_box box;
     int32_t triangle;
     uint8_t corner[3]; /* which of the triangle's it is */
 } leaf_triangle;
 
 struct lar_triangle_tree {
     leaf_triangle *leaf; /* those of a leaf side by side, ascending */
+    small_box *leaf_box; /* around each */
     tree_node *node;
+    small_box box;      /* around all */
     int32_t node_count; /* 0: no triangles */
 };
 
@@ -183,21 +190,31 @@ static int ascending(const void *a, const void *b) {
     return (i > k) - (i < k);
 }
 
-static void build(builder *b, int32_t first, int32_t count, int depth) {
+static void place_child(tree_node *node, int child, const small_box *around) {
+    for (int i = 0; i < 3; i++) {
+        node->lower[i][child] = around->lower[i];
+        node->upper[i][child] = around->upper[i];
+    }
+}
+
+/* The box around what was built. */
+static small_box build(builder *b, int32_t first, int32_t count, int depth) {
     lar_triangle_tree *tree = b->tree;
     tree_node *node = &tree->node[tree->node_count++];
     box around = nothing;
     for (int32_t k = 0; k < count; k++) widen(&around, &b->box[b->item[first + k]]);
-    node->box = small_box_of(&around);
     if (count <= LEAF) {
         node->next = first;
         node->count = count;
-        return;
+        return small_box_of(&around);
     }
-    int32_t part = divide(b, first, count, depth);
-    build(b, first, part, depth + 1);
+    const int32_t part = divide(b, first, count, depth);
+    small_box child = build(b, first, part, depth + 1);
+    place_child(node, 0, &child);
     node->next = tree->node_count;
-    build(b, first + part, count - part, depth + 1);
+    child = build(b, first + part, count - part, depth + 1);
+    place_child(node, 1, &child);
+    return small_box_of(&around);
 }
 
 /* Items become triangles. */
@@ -209,6 +226,11 @@ static void name_triangles(builder *b, const int32_t *index, int32_t count) {
         if (tree->node[n].count > 0)
             qsort(b->item + tree->node[n].next, (size_t)tree->node[n].count, sizeof *b->item,
                   ascending);
+}
+
+static small_box leaf_box_of(const leaf_triangle *leaf) {
+    const box around = box_around(leaf->at[0], leaf->at[1], leaf->at[2]);
+    return small_box_of(&around);
 }
 
 static leaf_triangle leaf_of(const lar_triangles *surface, int32_t triangle) {
@@ -223,8 +245,6 @@ static leaf_triangle leaf_of(const lar_triangles *surface, int32_t triangle) {
             }
     for (int a = 0; a < 3; a++)
         memcpy(leaf.at[a], surface->vertex[corner[leaf.corner[a]]], sizeof leaf.at[a]);
-    const box around = box_around(leaf.at[0], leaf.at[1], leaf.at[2]);
-    leaf.box = small_box_of(&around);
     return leaf;
 }
 
@@ -232,10 +252,11 @@ static bool allocate(builder *b, size_t triangles) {
     lar_triangle_tree *tree = b->tree = lar_calloc(1, sizeof *tree);
     if (!tree) return false;
     tree->leaf = lar_calloc(triangles, sizeof *tree->leaf);
+    tree->leaf_box = lar_calloc(triangles, sizeof *tree->leaf_box);
     tree->node = lar_calloc(2 * triangles, sizeof *tree->node);
     b->box = lar_calloc(triangles, sizeof *b->box);
     b->item = lar_calloc(triangles, sizeof *b->item);
-    return tree->leaf && tree->node && b->box && b->item;
+    return tree->leaf && tree->leaf_box && tree->node && b->box && b->item;
 }
 
 lar_status lar_triangle_tree_create(const lar_triangles *triangles, const int32_t *index,
@@ -247,9 +268,12 @@ lar_status lar_triangle_tree_create(const lar_triangles *triangles, const int32_
         b.box[k] = box_of(triangles, index ? index[k] : k);
         b.item[k] = k;
     }
-    if (ready && count > 0) build(&b, 0, count, 0);
+    if (ready && count > 0) b.tree->box = build(&b, 0, count, 0);
     if (ready) name_triangles(&b, index, count);
-    for (int32_t k = 0; ready && k < count; k++) b.tree->leaf[k] = leaf_of(triangles, b.item[k]);
+    for (int32_t k = 0; ready && k < count; k++) {
+        b.tree->leaf[k] = leaf_of(triangles, b.item[k]);
+        b.tree->leaf_box[k] = leaf_box_of(&b.tree->leaf[k]);
+    }
     free(b.box);
     free(b.item);
     if (!ready) {
@@ -267,6 +291,7 @@ lar_status lar_triangle_tree_create(const lar_triangles *triangles, const int32_
 void lar_triangle_tree_destroy(lar_triangle_tree *tree) {
     if (!tree) return;
     free(tree->leaf);
+    free(tree->leaf_box);
     free(tree->node);
     free(tree);
 }
@@ -340,15 +365,29 @@ static void nearest_on_triangle(const leaf_triangle *leaf, const double p[3],
 
 /* How far p lies beyond one of two ends. Without a branch, which would go one way as often as the
  * other: of x and 0 the larger one is (x + |x|) / 2, exactly. */
-static double beyond(double lower, double upper, double p) {
+static inline double beyond(double lower, double upper, double p) {
     const double below = lower - p, above = p - upper;
     return 0.5 * ((below + fabs(below)) + (above + fabs(above)));
 }
 
-static double box_distance(const small_box *around, const double p[3]) {
+static inline double box_distance(const small_box *around, const double p[3]) {
     double away[3];
     for (int i = 0; i < 3; i++) away[i] = beyond(around->lower[i], around->upper[i], p[i]);
     return square(away);
+}
+
+/* Of both children. */
+static inline two boxes_distance(const tree_node *node, const double p[3]) {
+    const two_integers sign = {INT64_MIN, INT64_MIN};
+    two sum = {0};
+    for (int i = 0; i < 3; i++) {
+        const two below = __builtin_convertvector(node->lower[i], two) - p[i];
+        const two above = p[i] - __builtin_convertvector(node->upper[i], two);
+        const two away = 0.5 * ((below + (two)((two_integers)below & ~sign)) +
+                                (above + (two)((two_integers)above & ~sign)));
+        sum += away * away;
+    }
+    return sum;
 }
 
 /* Distances to a triangle are rounded otherwise than those to its box. */
@@ -365,7 +404,7 @@ static void look_into_leaf(const lar_triangle_tree *tree, const tree_node *leaf,
     for (int32_t k = 0; k < leaf->count && !(any && best->triangle >= 0); k++) {
         lar_nearest candidate;
         /* Cheaper than the distance to the triangle itself, and mostly enough. */
-        if (box_distance(&tree->leaf[leaf->next + k].box, p) > best->distance * SLACK) continue;
+        if (box_distance(&tree->leaf_box[leaf->next + k], p) > best->distance * SLACK) continue;
         nearest_on_triangle(&tree->leaf[leaf->next + k], p, &candidate);
         if (candidate.distance < best->distance ||
             (candidate.distance == best->distance &&
@@ -381,7 +420,7 @@ static lar_nearest descend(const lar_triangle_tree *tree, const double point[3],
     waiting stack[STACK];
     int height = 0;
     if (tree->node_count > 0 && reach >= 0)
-        stack[height++] = (waiting){0, box_distance(&tree->node[0].box, point)};
+        stack[height++] = (waiting){0, box_distance(&tree->box, point)};
     while (height > 0 && !(any && best.triangle >= 0)) {
         waiting next = stack[--height];
         while (!(next.distance > best.distance * SLACK)) { /* of no number as well: who knows */
@@ -390,8 +429,8 @@ static lar_nearest descend(const lar_triangle_tree *tree, const double point[3],
                 look_into_leaf(tree, node, point, any, &best);
                 break;
             }
-            waiting near = {next.node + 1, box_distance(&node[1].box, point)};
-            waiting far = {node->next, box_distance(&tree->node[node->next].box, point)};
+            const two distance = boxes_distance(node, point);
+            waiting near = {next.node + 1, distance[0]}, far = {node->next, distance[1]};
             if (far.distance < near.distance) {
                 waiting swapped = near;
                 near = far;
@@ -419,14 +458,20 @@ bool lar_triangle_tree_is_near(const lar_triangle_tree *tree, const double point
 
 /* ---- boxes -------------------------------------------------------------------------------- */
 
-static bool boxes_meet(const small_box *a, const double lower[3], const double upper[3]) {
+static bool child_meets(const tree_node *node, int child, const double lower[3],
+                        const double upper[3]) {
     for (int i = 0; i < 3; i++)
-        if (a->upper[i] < lower[i] || a->lower[i] > upper[i]) return false;
+        if (node->upper[i][child] < lower[i] || node->lower[i][child] > upper[i]) return false;
     return true;
 }
 
-static bool meets(const leaf_triangle *leaf, const double lower[3], const double upper[3]) {
-    const box around = box_around(leaf->at[0], leaf->at[1], leaf->at[2]);
+static bool meets(const lar_triangle_tree *tree, int32_t k, const double lower[3],
+                  const double upper[3]) {
+    const small_box *rough = &tree->leaf_box[k];
+    for (int i = 0; i < 3; i++)
+        if (rough->upper[i] < lower[i] || rough->lower[i] > upper[i]) return false;
+    const double(*at)[3] = (const double(*)[3])tree->leaf[k].at;
+    const box around = box_around(at[0], at[1], at[2]);
     for (int i = 0; i < 3; i++)
         if (around.upper[i] < lower[i] || around.lower[i] > upper[i]) return false;
     return true;
@@ -446,27 +491,25 @@ void lar_triangle_tree_boxes(const lar_triangle_tree *tree, const double lower[3
     while (height > 0) {
         int32_t at = stack[--height];
         const tree_node *node = &tree->node[at];
-        if (!boxes_meet(&node->box, from, to)) continue;
         if (node->count == 0) {
-            stack[height++] = node->next;
-            stack[height++] = at + 1;
+            if (child_meets(node, 1, from, to)) stack[height++] = node->next;
+            if (child_meets(node, 0, from, to)) stack[height++] = at + 1;
             continue;
         }
-        for (int32_t k = 0; k < node->count; k++) {
-            const leaf_triangle *leaf = &tree->leaf[node->next + k];
-            if (meets(leaf, from, to) && !visit(context, leaf->triangle)) return;
-        }
+        for (int32_t k = node->next; k < node->next + node->count; k++)
+            if (meets(tree, k, from, to) && !visit(context, tree->leaf[k].triangle)) return;
     }
 }
 
 /* ---- lines -------------------------------------------------------------------------------- */
 
-/* Where a line comes into a box; INFINITY: not within `reach`. */
-static double line_enters(const small_box *around, const double origin[3],
+/* Where a line comes into a child's box; INFINITY: not within `reach`. */
+static double line_enters(const tree_node *node, int child, const double origin[3],
                           const double direction[3], double reach) {
     double from = 0, to = reach;
     for (int i = 0; i < 3; i++) {
-        const double below = around->lower[i] - origin[i], above = around->upper[i] - origin[i];
+        const double below = node->lower[i][child] - origin[i],
+                     above = node->upper[i][child] - origin[i];
         if (direction[i] == 0) {
             if (below > 0 || above < 0) return INFINITY;
             continue;
@@ -491,9 +534,8 @@ void lar_triangle_tree_line(const lar_triangle_tree *tree, const double origin[3
         for (int32_t k = 0; k < node->count; k++)
             if (!visit(context, tree->leaf[node->next + k].triangle)) return;
         if (node->count > 0) continue;
-        waiting near = {next.node + 1, line_enters(&node[1].box, origin, direction, *reach)};
-        waiting far = {node->next,
-                       line_enters(&tree->node[node->next].box, origin, direction, *reach)};
+        waiting near = {next.node + 1, line_enters(node, 0, origin, direction, *reach)};
+        waiting far = {node->next, line_enters(node, 1, origin, direction, *reach)};
         if (far.distance < near.distance) {
             waiting swapped = near;
             near = far;
