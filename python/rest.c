@@ -90,12 +90,13 @@ static PyObject *simulation_rest(PyObject *me, PyObject *args, PyObject *keyword
         return python_raise(&error);
     }
     const unsigned long long first = lar_simulation_steps(simulation);
-    unsigned long long last = rest.limit;
-    if (seconds != Py_None && steps < last - first) last = first + steps;
+    /* As --time of the command. */
+    if (seconds != Py_None) rest.limit = steps < UINT64_MAX - first ? first + steps : UINT64_MAX;
+    const unsigned long long last = rest.limit;
     bool ended = false;
     if (!run(self, &rest, last, callback, &ended)) return NULL;
     const unsigned long long now = lar_simulation_steps(self->simulation);
-    if (!rest.reached && !ended && last == rest.limit)
+    if (!rest.reached && !ended && seconds == Py_None)
         return restless(&rest, lar_simulation_time(self->simulation));
     return rest_dict(&rest, now - first);
 }
@@ -124,6 +125,6 @@ PyMethodDef python_rest_methods[] = {
      "looked [J], since (no load changes after that time [s]).\n\n"
      "seconds   of simulated time at most; not reached then is no error\n"
      "callback  called with the simulation some times in a period of a slow wave; False ends it\n\n"
-     "ModelError where the library gives up: a body without damping swings for good, and one "
-     "whose\nviscous terms are slow relaxes for long."},
+     "Without seconds, ModelError after a thousand periods of a slow wave: a body without damping "
+     "swings\nfor good, and one whose viscous terms are slow relaxes for longer; give it seconds."},
     {NULL, NULL, 0, NULL}};

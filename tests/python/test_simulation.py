@@ -163,6 +163,15 @@ class Rest(unittest.TestCase):
                 self.assertAlmostEqual(sim.positions()[model.node_count - 1, 2], top, places=8)
         self.assertEqual((len(steps), len(hashes)), (1, 1))
 
+    def test_seconds_go_on_beyond_where_the_library_gives_up(self):
+        with lariat.Simulation(block(damping=1e-6)) as sim:
+            with self.assertRaisesRegex(lariat.ModelError, "not at rest after"):
+                sim.rest()
+            given_up = sim.step
+            rest = sim.rest(seconds=given_up * sim.time_step)
+            self.assertFalse(rest["reached"])
+            self.assertEqual(sim.step, 2 * given_up)
+
     @unittest.skipUnless(LARIAT, "LARIAT_COMMAND does not say where the command is")
     def test_as_the_command_finds_it(self):
         with tempfile.TemporaryDirectory() as folder:
