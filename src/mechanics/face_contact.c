@@ -485,8 +485,7 @@ void lar_face_grid_near(const lar_segment *segment, const double corner[4][3],
 
 /* ---- smoothly from face to face ------------------------------------------------------------- */
 
-/* A share of a corner that is none. */
-static const double NOTHING = 1e-12;
+static const double NOTHING = 1e-12; /* of a corner's shares */
 
 /* Slopes of the shares of a triangle's corners in its plane: across the side opposite to each. */
 static void triangle_slopes(const double corner[3][3], double slope[3][3]) {
@@ -501,9 +500,10 @@ static void triangle_slopes(const double corner[3][3], double slope[3][3]) {
     }
 }
 
-/* How far from its sides the foot of x is within a triangle; 0 where it is on one. */
+/* How far from its sides the foot of x is within a triangle, and `more`, which goes to nothing as
+ * far outside: who passes a side to a triangle beside it counts as much there. */
 static double within(const double x[3], const double corner[4][3], const double middle[3], int t,
-                     const double weight[4], double distance, bool closest) {
+                     const double weight[4], double distance, double more, bool closest) {
     int next = (t + 1) % 4, other = (t + 2) % 4;
     double place[3][3], slope[3][3], min = INFINITY;
     double part[3] = {weight[t] - weight[other], weight[next] - weight[other], 4 * weight[other]};
@@ -514,15 +514,16 @@ static double within(const double x[3], const double corner[4][3], const double 
         triangle_slopes((const double(*)[3])place, slope);
         for (int c = 0; c < 3; c++)
             min = fmin(min, share(part[c], sqrt(lar_dot(slope[c], slope[c]))));
-        return min;
+        return more + min;
     }
-    if (!closest) return 0;
     double height = height_over(x, corner, middle, t, weight);
-    return sqrt(fmax(distance * distance - height * height, 0));
+    double outside = sqrt(fmax(distance * distance - height * height, 0));
+    return closest ? fmax(more, outside) : fmax(more - outside, 0);
 }
 
 double lar_face_blend(const double x[3], const double corner[4][3], double min, double fade,
                       double sum[4], double *far) {
+    static const double MORE = 0.2; /* of the fade */
     double middle[3], all = 0;
     lar_face_parts parts;
     middle_of(corner, middle);
@@ -532,7 +533,7 @@ double lar_face_blend(const double x[3], const double corner[4][3], double min, 
         double distance = parts.distance[t];
         double count = 1 - (distance - min) / fade;
         if (!(count > 0)) continue;
-        count *= within(x, corner, middle, t, weight, distance, distance <= min);
+        count *= within(x, corner, middle, t, weight, distance, MORE * fade, distance <= min);
         if (!(count > 0)) continue;
         for (int a = 0; a < 4; a++) sum[a] += count * weight[a];
         *far += count * distance;

@@ -196,12 +196,86 @@ static void bodies_come_to_rest_around_a_tool(void **unused) {
     press_around_a_rod(0.8);
 }
 
+/* Bends a brick around the axis z, a quarter of a ring between two radii: axis x goes around it, y
+ * outwards. */
+static void bend(lar_model *model, const brick *b, int32_t first, double inner, double outer) {
+    const double right = acos(0);
+    for (int32_t n = first; n < model->mesh.node_count; n++) {
+        double *x = model->mesh.position[n];
+        double turn = right * (1 - x[0] / (b->edge * b->cells[0]));
+        double radius = inner + (outer - inner) * x[1] / (b->edge * b->cells[1]);
+        x[0] = radius * cos(turn);
+        x[1] = radius * sin(turn);
+    }
+}
+
+static void press_outside(lar_model *model, int32_t first, double pressure, int curve) {
+    enum { OUTER = 3 }; /* the local face that looks along y */
+    int32_t count, kept = 0, *faces = outer_faces(model, first, model->mesh.element_count, &count);
+    for (int32_t i = 0; i < count; i++)
+        if (faces[i] % 6 == OUTER) faces[kept++] = faces[i];
+    *(lar_pressure_load *)LAR_MODEL_APPEND(model, pressure) =
+        (lar_pressure_load){kept, faces, pressure, curve};
+}
+
+static lar_node_list shifted(lar_node_list nodes, int32_t by) {
+    for (int32_t i = 0; i < nodes.count; i++) nodes.node[i] += by;
+    return nodes;
+}
+
+/* What lies on x = 0 or y = 0 has its mirror image there. */
+static void fix_planes(lar_model *model, const brick *b, int32_t first) {
+    fix_nodes(model, shifted(brick_side(b, 0, 0), first), LAR_AXIS_X);
+    fix_nodes(model, shifted(brick_side(b, 0, -1), first), LAR_AXIS_Y);
+    fix_nodes(model, shifted(brick_side(b, 2, 0), first), LAR_AXIS_Z);
+    fix_nodes(model, shifted(brick_side(b, 2, -1), first), LAR_AXIS_Z);
+}
+
+/* A cuff that is pressed on a limb of as many elements around: its nodes go over the limb's, whose
+ * feet in hollows of the cuff lie on sides of faces. It may tremble for ever, but contact
+ * gives nothing, and it is not stopped. */
+static void put_a_cuff_around_a_limb(int around, double friction) {
+    const double bone = 0.015, skin = 0.045, wall = 0.003, gap = 0.0003;
+    const brick limb = {{around, 4, 2}, 0.01, 0, LAR_LAW_neo_hookean, 5e3, 1e5, 1000};
+    const brick cuff = {{around, 2, 2}, 0.01, 0, LAR_LAW_neo_hookean, 2e4, 4e5, 1000};
+    lar_model *model = empty_model(&limb);
+    add_brick(model, &limb, (double[]){0, 0, 0});
+    bend(model, &limb, 0, bone, skin);
+    int32_t split = model->mesh.element_count;
+    int32_t first = add_brick(model, &cuff, (double[]){0, 0, 0});
+    bend(model, &cuff, first, skin + gap, skin + gap + wall);
+    fix_nodes(model, brick_side(&limb, 1, 0), LAR_AXIS_ALL);
+    fix_planes(model, &limb, 0);
+    fix_planes(model, &cuff, first);
+    press_outside(model, split, 500, add_ramp(model, 0.2));
+    touch_between(model, split);
+    model->contact[0].friction = friction;
+    model->damping = 50;
+    lar_simulation *s = start(model);
+    advance(s, (uint64_t)(1.2 / lar_simulation_time_step(s)));
+    lar_energy e;
+    lar_simulation_energy(s, &e);
+    print_message("cuff of %d elements, friction %g: kinetic %.2g of %.2g J, contact %.2g J\n",
+                  around, friction, e.kinetic, e.strain, e.contact);
+    assert_below(0, e.contact);
+    assert_below(trembling(s, 0, (double[]){0, 0, 0}), (friction > 0 ? 1e-6 : 1e-2) * e.strain);
+    finish(s, model);
+}
+
+static void cuffs_stay_around_limbs(void **unused) {
+    (void)unused;
+    static const int around[] = {6, 9};
+    for (int i = 0; i < 2; i++)
+        for (int rubs = 0; rubs < 2; rubs++) put_a_cuff_around_a_limb(around[i], 0.3 * rubs);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_body_comes_to_rest_on_another),
         cmocka_unit_test(a_body_comes_to_rest_amid_another),
         cmocka_unit_test(a_body_beside_the_middle_slides_and_does_not_tremble),
         cmocka_unit_test(bodies_come_to_rest_around_a_tool),
+        cmocka_unit_test(cuffs_stay_around_limbs),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

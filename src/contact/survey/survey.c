@@ -52,6 +52,7 @@ static double survey_face(lar_body_contact *contact, const lar_state *state, int
             s->gap = -INFINITY;
             return INFINITY;
         }
+        if (s->inside && !(point->height < 0)) return point->distance = INFINITY;
         if (distance <= s->reach && distance < s->min) s->min = distance;
     }
     if (distance - s->reach < s->gap) s->gap = distance - s->reach;
@@ -157,15 +158,45 @@ static void find_hidden(lar_survey *s) {
     }
 }
 
+/* Of all faces the closest one says on which side the node is, whether it is seen or not. Whether
+ * it is behind one that it does not see, and those that it is before are farther. */
+static bool is_inside(const lar_body_contact *contact, int32_t g, const lar_survey *s) {
+    const int32_t *face = contact->list.face + contact->list.group[g].first;
+    double unseen = INFINITY, before = INFINITY;
+    for (int32_t k = 0; k < s->count; k++) {
+        if (s->distance[k] == INFINITY)
+            unseen = fmin(unseen, s->point[k].distance + tie_of(contact, face[s->entry[k]]));
+        else if (s->distance[k] <= s->min + s->fade && !(s->point[k].height < 0))
+            before = fmin(before, s->distance[k]);
+    }
+    return before < INFINITY && unseen < before;
+}
+
+/* Once more, all of them. */
+static void survey_again(lar_body_contact *contact, const lar_state *state, int32_t g,
+                         lar_survey *s) {
+    const lar_contact_group *group = &contact->list.group[g];
+    for (int32_t i = 0; i < group->count; i++) contact->away[group->first + i] = 0;
+    survey_group(contact, state, g, s);
+}
+
+/* Then it is pushed by one that it is behind, and none that it is before takes the place of that
+ * at once. */
+__attribute__((noinline, cold)) static void
+look_inside(lar_body_contact *contact, const lar_state *state, int32_t g, lar_survey *s) {
+    s->inside = true;
+    survey_again(contact, state, g, s);
+    s->inside = s->min < INFINITY;
+    if (!s->inside) survey_again(contact, state, g, s);
+}
+
 int32_t lar_survey_closest(lar_body_contact *contact, const lar_state *state, int32_t g,
                            lar_survey *s, lar_face_point *point) {
     const lar_contact_group *group = &contact->list.group[g];
+    s->inside = false;
     survey_group(contact, state, g, s);
     /* Who was farther than a face that is not seen now may be the closest one. */
-    if (s->gap == -INFINITY && s->next < INFINITY) {
-        for (int32_t i = 0; i < group->count; i++) contact->away[group->first + i] = 0;
-        survey_group(contact, state, g, s);
-    }
+    if (s->gap == -INFINITY && s->next < INFINITY) survey_again(contact, state, g, s);
     /* A little earlier, for rounding. */
     contact->due[g] = s->gap > 0 && !s->flush
                           ? lar_lesser(contact->travel + 0.999 * s->gap / LAR_APPROACH, s->next)
@@ -173,7 +204,10 @@ int32_t lar_survey_closest(lar_body_contact *contact, const lar_state *state, in
     if (s->beyond) s->gap = 0;
     if (!(s->min < INFINITY) || s->beyond) return -1;
     if (s->across > 0) lar_edge_enters(contact, state, g, s);
-    if (s->border < 0 && !s->over && s->gap == -INFINITY) find_hidden(s);
+    if (s->border < 0 && !s->over && s->gap == -INFINITY) {
+        if (is_inside(contact, g, s)) look_inside(contact, state, g, s);
+        find_hidden(s);
+    }
     int32_t chosen = choose_face(contact, g, s, point);
     if (chosen < 0) return -1;
     if (s->over) point->height = -point->height;
