@@ -100,6 +100,15 @@ static uint64_t bytes_received(struct lws *wsi) {
     return info.tcpi_bytes_received;
 }
 
+/* libwebsockets answers a ping before it sends what we want to say: who goes on may never be told.
+ */
+static void stop_flood(lar_viewer *viewer) {
+    if (viewer->closing == LAR_CLOSE_NOT)
+        lar_viewer_close(viewer, LAR_CLOSE_POLICY, "more than 300 messages in a second");
+    else
+        lws_set_timeout(viewer->wsi, PENDING_TIMEOUT_USER_REASON_BASE, LWS_TO_KILL_ASYNC);
+}
+
 /* Who takes nothing, and who floods us with what is no message (pings). */
 static void check_session(lar_server *server, int64_t now) {
     double seconds = (double)(now - server->checked_at) / (double)LAR_SECOND_NS;
@@ -112,7 +121,7 @@ static void check_session(lar_server *server, int64_t now) {
         if (viewer->writable_since && now - viewer->writable_since > SLOW)
             lar_viewer_close(viewer, LAR_CLOSE_SLOW, "nothing could be sent for 10 s");
         else if (before > 0 && (double)(bytes - before) > BYTES_A_SECOND * seconds)
-            lar_viewer_close(viewer, LAR_CLOSE_POLICY, "more than 300 messages in a second");
+            stop_flood(viewer);
     }
 }
 
