@@ -248,10 +248,9 @@ typedef struct lar_survey {
     bool over;      /* the node comes to that, and is pushed as if it were before the face */
     int32_t hidden; /* the closest of those that it does not see, within that; -1: none */
     double inset;   /* how far the node is behind the one or the other [m] */
-    bool
-        inside; /* the node is behind one that it does not see, and none that it is before counts */
-    bool beyond; /* it is in another body still, on the other side of a joint */
-    double next; /* travel at which the first of the others may matter [m] */
+    bool inside;    /* it is behind one that it does not see: none that it is before counts */
+    bool beyond;    /* it is in another body still, on the other side of a joint */
+    double next;    /* travel at which the first of the others may matter [m] */
 } lar_survey;
 
 /* The face that counts of group g, and where; -1: none is within reach. Sets when it is due. */

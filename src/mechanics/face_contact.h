@@ -120,7 +120,8 @@ void lar_face_grid_near(const lar_segment *segment, const double corner[4][3],
  * points of all triangles that are about as close to x as the closest of all, `min` away. Adds
  * those of one face: to sum[] their weights of its corners, times how much each of them counts, all
  * of which is returned, and to *far their distances [m], times the same. A triangle counts
- * 1 - (distance - min) / fade, and next to nothing where x is not straight above it. */
+ * 1 - (distance - min) / fade times how far within it the foot of x is, and a little more, which
+ * goes to nothing as far outside; the closest one counts wherever the foot is. */
 double lar_face_blend(const double x[3], const double corner[4][3], double min, double fade,
                       double sum[4], double *far);
 

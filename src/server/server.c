@@ -100,8 +100,7 @@ static uint64_t bytes_received(struct lws *wsi) {
     return info.tcpi_bytes_received;
 }
 
-/* libwebsockets answers a ping before it sends what we want to say: who goes on may never be told.
- */
+/* libwebsockets answers pings before it sends what we say: who goes on may never be told. */
 static void stop_flood(lar_viewer *viewer) {
     if (viewer->closing == LAR_CLOSE_NOT)
         lar_viewer_close(viewer, LAR_CLOSE_POLICY, "more than 300 messages in a second");
