@@ -48,8 +48,8 @@
  * up, step by step, how far any node has moved along any axis at most. A group whose faces are all
  * farther away than their reach, by a `gap`, is due when travel has grown by gap / (2 sqrt 3): two
  * nodes, three axes. Groups due beyond a horizon are not even compared until travel gets there. The
- * list is good until travel since its search is half its skin. Then the real motion is looked at,
- * and the search is made anew if it is true that something has moved.
+ * list is good until travel since its search is half its skin. Before that the real motion is
+ * looked at, and the search is made anew if it is true that something has moved (contact_motion.h).
  *
  * Several threads and processors: contact_exchange.h.
  */
@@ -61,13 +61,9 @@
 
 #include "contact/conditions.h"
 #include "contact/contact_search.h"
+#include "contact/search/contact_motion.h"
 #include "mechanics/contact.h"
 #include "mechanics/face_contact.h"
-
-/* The larger of two ways or speeds. What is not a number stays: nothing is larger. */
-static inline double lar_larger(double max, double other) {
-    return other <= max || isnan(max) ? max : other;
-}
 
 /* Of a contact node in the exchange buffer: place, velocity, offset. */
 enum { LAR_PLACE_VALUES = 7 };
@@ -131,8 +127,11 @@ typedef struct lar_body_contact_search_state {
     int32_t *local;            /* [contact nodes] of lar_contact_view */
     double (*x)[3];            /* [contact nodes] places at the search under way [m] */
     double (*searched)[3];     /* and at the last one */
-    double since;              /* what has moved since the search under way began [m] */
     double skin_min, skin_max; /* [m] */
+    double looked, look_at;    /* contact->moved when somebody looked, and what it must be feared
+                                  to be before somebody does again [m] */
+    double taking;             /* what it takes to take a list [s] */
+    double steps;              /* that the list is good for, as it looked then */
     uint64_t next;             /* the round that follows the last one */
     bool searching;            /* a search is under way */
     bool whole;                /* the list is that of `searched`: nothing was left out */
@@ -347,6 +346,10 @@ void lar_body_contact_destroy(lar_body_contact *contact); /* idempotent */
 
 /* The state was changed by others: nothing is known of its motion. */
 void lar_body_contact_forget(lar_body_contact *contact);
+
+/* Between steps, while nobody waits: what there will be to search soon, up to `until` by
+ * lar_clock_seconds. */
+void lar_body_contact_work_ahead(lar_body_contact *contact, const lar_state *state, double until);
 
 /* Adds the forces at the state's step to state->force, after a search where that is due. Asks for
  * no memory. */

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/clock.h"
 #include "contact/history/body_friction.h"
 #include "contact/history/flush.h"
 
@@ -74,49 +75,78 @@ void lar_body_contact_end_offsets(lar_body_contact *contact, const lar_state *st
 
 /* ---- motion and searches, of the whole model ------------------------------------------------ */
 
-/* Steps that a search should last, and those that the next one may take within the last fifth of
- * the skin. */
+/* Steps that a search should last, and those that the next one may take; the part of what nodes may
+ * move after which that one begins. */
 enum { SEARCH_STEPS = 200, PART_STEPS = 60 };
+#define BEGIN_AT 0.6
 
-/* Fetches the places; returns how far the farthest has moved since the search. */
-static double fetch_places(lar_body_contact *contact, const lar_state *state) {
-    lar_body_contact_search_state *search_state = contact->search_state;
-    double max = 0;
-    for (int32_t n = 0; n < contact->surface->node_count; n++) {
-        double u[3];
-        lar_state_displacement(state, contact->view.local[n], u);
-        for (int i = 0; i < 3; i++) {
-            search_state->x[n][i] = contact->surface->rest[n][i] + u[i];
-            max = lar_larger(max, fabs(search_state->x[n][i] - search_state->searched[n][i]));
-        }
+/* The same where nobody waits for it; and the part of what is left, after which somebody looks. */
+#define AHEAD_AT 0.5
+#define LOOK_AT  0.7
+
+/* Where a contact node is; returns what it goes in a step along an axis, at most. */
+static double place_of(const lar_body_contact *contact, const lar_state *state, int32_t n,
+                       double x[3]) {
+    double u[3], v[3], speed = 0;
+    lar_state_displacement(state, contact->view.local[n], u);
+    lar_state_velocity(state, contact->view.local[n], v);
+    for (int i = 0; i < 3; i++) {
+        x[i] = contact->surface->rest[n][i] + u[i];
+        speed = lar_larger(speed, fabs(v[i]));
     }
-    return max;
+    return speed * contact->time_step;
 }
 
-static double skin_for(const lar_body_contact_search_state *search_state, double way) {
-    return fmin(fmax(2 * way * SEARCH_STEPS, search_state->skin_min), search_state->skin_max);
-}
-
-/* A search is done; `moved` says what has moved since its places. */
-static void take_list(lar_body_contact *contact, double moved) {
+/* What has really moved since the list's search? */
+static lar_contact_motion look(lar_body_contact *contact, const lar_state *state) {
     lar_body_contact_search_state *search_state = contact->search_state;
+    lar_contact_motion motion = lar_contact_no_motion();
+    for (int32_t n = 0; n < contact->surface->node_count; n++) {
+        double x[3], moved = 0, way = place_of(contact, state, n, x);
+        for (int i = 0; i < 3; i++)
+            moved = lar_larger(moved, fabs(x[i] - search_state->searched[n][i]));
+        lar_contact_motion_add(&motion, moved, way, contact->list.allow[n], 0);
+    }
+    contact->moved = lar_contact_motion_alike(&motion, contact->list.skin);
+    search_state->looked = contact->moved;
+    search_state->look_at = contact->moved + LOOK_AT * (0.5 * contact->list.skin - contact->moved);
+    search_state->steps = lar_contact_motion_steps(&motion);
+    return motion;
+}
+
+/* Fetches the places for a search, and says what each node may move until the next one. */
+static double prepare(lar_body_contact *contact, const lar_state *state, double way) {
+    lar_body_contact_search_state *search_state = contact->search_state;
+    double skin =
+        fmin(fmax(2 * way * SEARCH_STEPS, search_state->skin_min), search_state->skin_max);
+    for (int32_t n = 0; n < contact->surface->node_count; n++)
+        search_state->search->share[n] = lar_contact_share_of(
+            place_of(contact, state, n, search_state->x[n]), way, search_state->skin_min / skin);
+    return skin;
+}
+
+/* A search is done. */
+static void take_list(lar_body_contact *contact, const lar_state *state) {
+    lar_body_contact_search_state *search_state = contact->search_state;
+    const double begin = lar_clock_seconds();
     contact->list = search_state->search->list;
     memcpy(search_state->searched, search_state->x,
            (size_t)contact->surface->node_count * sizeof *search_state->x);
     contact->info.searches++;
     contact->info.boxed += (uint64_t)contact->list.face_count;
     lar_body_contact_restart(contact);
-    contact->moved = contact->travel = moved;
+    contact->travel = look(contact, state).farthest;
     search_state->searching = false;
+    search_state->taking = lar_clock_seconds() - begin;
 }
 
 static void search_now(lar_body_contact *contact, const lar_state *state, double way) {
     lar_body_contact_search_state *search_state = contact->search_state;
-    fetch_places(contact, state);
-    search_state->whole = lar_contact_search_run(
-        search_state->search, (const double(*)[3])search_state->x, skin_for(search_state, way));
+    double skin = prepare(contact, state, way);
+    search_state->whole =
+        lar_contact_search_run(search_state->search, (const double(*)[3])search_state->x, skin);
     if (!search_state->whole) contact->too_many_pairs = true;
-    take_list(contact, 0);
+    take_list(contact, state);
     search_state->valid = true;
 }
 
@@ -127,26 +157,37 @@ static bool rejoin(lar_body_contact *contact, const lar_state *state) {
     lar_body_contact_search_state *search_state = contact->search_state;
     if (!search_state->whole) return false;
     search_state->searching = false;
-    double moved = fetch_places(contact, state);
-    if (!(moved < 0.3 * contact->list.skin)) return false;
+    lar_contact_motion motion = look(contact, state);
+    if (!(motion.used < BEGIN_AT)) return false;
     lar_body_contact_restart(contact);
-    contact->moved = contact->travel = moved;
+    contact->travel = motion.farthest;
     search_state->valid = true;
     return true;
 }
 
-/* What has really moved? */
-static void look(lar_body_contact *contact, const lar_state *state, double way) {
+/* Looks; and begins the next search, when nodes have moved by such a part of what they may. */
+static void look_and_begin(lar_body_contact *contact, const lar_state *state, double way,
+                           double begin_at) {
     lar_body_contact_search_state *search_state = contact->search_state;
-    double moved = fetch_places(contact, state);
-    if (moved < 0.15 * contact->list.skin) {
-        contact->moved = moved;
-        return;
-    }
-    lar_contact_search_begin(search_state->search, (const double(*)[3])search_state->x,
-                             skin_for(search_state, way));
-    search_state->since = 0;
+    double used = look(contact, state).used;
+    if (search_state->searching || used < begin_at) return;
+    double skin = prepare(contact, state, way);
+    lar_contact_search_begin(search_state->search, (const double(*)[3])search_state->x, skin);
     search_state->searching = true;
+}
+
+/* Some nodes of the search under way: as many as must be, when the time that is left is to be
+ * enough for the others. */
+static void go_on(lar_body_contact *contact, const lar_state *state, double way) {
+    lar_body_contact_search_state *search_state = contact->search_state;
+    bool last = !(contact->moved < 0.5 * contact->list.skin);
+    int32_t left = lar_contact_search_left(search_state->search);
+    int32_t nodes = (int32_t)(left / fmax(fmin(search_state->steps, PART_STEPS), 1)) + 1;
+    search_state->steps--;
+    lar_contact_progress progress =
+        lar_contact_search_go_on(search_state->search, last ? INT32_MAX : nodes);
+    if (progress == LAR_SEARCH_DONE) take_list(contact, state);
+    if (progress == LAR_SEARCH_FULL) search_now(contact, state, way);
 }
 
 /* The list is good for this step, whatever happens. `way` is what a step takes at present. */
@@ -157,21 +198,31 @@ static void keep_list(lar_body_contact *contact, const lar_state *state, double 
         search_now(contact, state, way);
         return;
     }
-    if (!search_state->searching && contact->moved > 0.3 * contact->list.skin)
-        look(contact, state, way);
-    bool last = !(contact->moved < 0.5 * contact->list.skin);
-    if (search_state->searching) {
-        /* As many as must be, when the rest of the way is to be enough for the others. */
-        double steps = way > 0 ? (0.5 * contact->list.skin - contact->moved) / (1.25 * way) : 1e9;
-        int32_t left = lar_contact_search_left(search_state->search);
-        int32_t nodes = (int32_t)(left / fmax(fmin(steps, PART_STEPS), 1)) + 1;
-        lar_contact_progress progress =
-            lar_contact_search_go_on(search_state->search, last ? INT32_MAX : nodes);
-        if (progress == LAR_SEARCH_DONE) take_list(contact, search_state->since);
-        if (progress == LAR_SEARCH_FULL) search_now(contact, state, way);
-    }
+    if (!(contact->moved < search_state->look_at)) look_and_begin(contact, state, way, BEGIN_AT);
+    if (search_state->searching) go_on(contact, state, way);
     /* It has become so fast that even the new list is old. */
     if (!(contact->moved < 0.5 * contact->list.skin)) search_now(contact, state, way);
+}
+
+void lar_body_contact_work_ahead(lar_body_contact *contact, const lar_state *state, double until) {
+    lar_body_contact_search_state *search_state = contact->search_state;
+    if (!contact->surface || !search_state->valid || search_state->always ||
+        search_state->next != state->round)
+        return;
+    const double way = contact->time_step * state->fastest;
+    if (2 * contact->moved > search_state->looked + search_state->look_at)
+        look_and_begin(contact, state, way, AHEAD_AT);
+    if (!search_state->searching) return;
+    const double after = 2 * search_state->taking;
+    switch (lar_contact_search_until(search_state->search, until, after)) {
+    case LAR_SEARCH_UNDER_WAY:
+        break;
+    case LAR_SEARCH_DONE:
+        take_list(contact, state);
+        break;
+    case LAR_SEARCH_FULL:
+        search_state->valid = false; /* from there, with a thinner skin */
+    }
 }
 
 void lar_body_contact_apply(lar_body_contact *contact, const lar_condition_context *context,
@@ -202,7 +253,6 @@ void lar_body_contact_moved(lar_body_contact *contact, lar_state *state, double 
     if (!contact->search_state) return;
     /* Who does not have all nodes hears how fast the others are (contact_exchange.h). */
     contact->travel += way;
-    contact->search_state->since += way;
 }
 
 void lar_body_contact_forget(lar_body_contact *contact) {

@@ -4,14 +4,16 @@
  *                   []                   the places at rest, refitted at every search
  *         []    []      []    []
  *        ffff  ffff    ffff  fff         every node goes down the branches whose boxes, grown by
- *                                        the reach of the faces and a skin, hold it
+ *                                        the reach of the faces and what these may move, it may
+ *                                        come to be in
  *
  * Four boxes are looked at together, in single precision: rounding to the nearest keeps the order
  * of numbers, so what a box holds is held by the rounded one.
  *
  * The result is a list of groups: a node, and the faces of ONE body that it may meet, ascending.
- * It misses nothing as long as no contact node has moved by more than half the skin along any axis
- * since the search: a node and a face come closer by twice what each of them moves at most.
+ * It misses nothing as long as no contact node has moved along any axis, since the search, by more
+ * than it may: half the skin, or a share of that. Where an instrument strikes tissue some nodes are
+ * much faster than most; with the same skin for all of them, a list has many times the pairs.
  *
  * A search of an organ takes as long as some twenty steps. So that nobody waits for it, it can be
  * made a few nodes at a time, for the places at its beginning, while the last list is still good.
@@ -23,6 +25,8 @@
  */
 #ifndef LAR_CONTACT_CONTACT_SEARCH_H
 #define LAR_CONTACT_CONTACT_SEARCH_H
+
+#include <math.h>
 
 #include "contact/contact_surface.h"
 
@@ -56,6 +60,8 @@ typedef struct lar_contact_search {
     lar_fork_box *fork_box; /* [tree->fork_count] */
     lar_box *face_box;      /* [face_count] in the tree's order */
     int32_t *apart;         /* [face_count] the last node, plus 1, that never meets it */
+    float *share;           /* [contact nodes] of half the skin, that each may move, in the searches
+                               that begin from now on: in (0, 1] */
     lar_contact_list list;  /* of the last search */
     lar_contact_list next;  /* of the one under way */
     const double (*x)[3];   /* its places, not owned */
@@ -74,6 +80,16 @@ lar_status lar_contact_search_create(const lar_contact_tree *tree, lar_contact_s
                                      lar_error *error);
 void lar_contact_search_clear(lar_contact_search *search); /* idempotent */
 
+/* A node's share, from its greatest velocity along an axis and that of all: half as much again as
+ * it would use if all went on like that, and no less than `least`. */
+static inline float lar_contact_share_of(double speed, double fastest, double least) {
+    static const double LESS = 0.25, MORE = 1.5;
+    double share = fmax(fmax(LESS, least), fastest > 0 ? MORE * speed / fastest : 1);
+    return (float)fmin(share, 1);
+}
+/* All may move by half the skin. */
+void lar_contact_share_alike(lar_contact_search *search);
+
 /* Makes the list anew for the places x, [contact nodes][3], with a skin of at most `skin` [m];
  * list.skin says what it became. False when even without a skin there are too many pairs: the
  * surface is crushed beyond use, or not finite. */
@@ -87,6 +103,10 @@ typedef enum lar_contact_progress {
     LAR_SEARCH_FULL  /* too many pairs: take lar_contact_search_run */
 } lar_contact_progress;
 lar_contact_progress lar_contact_search_go_on(lar_contact_search *search, int32_t nodes);
+/* The same for so long: up to `until` by lar_clock_seconds. What is found last is not looked for
+ * when there would be less than `after` of it left to take the list [s]. */
+lar_contact_progress lar_contact_search_until(lar_contact_search *search, double until,
+                                              double after);
 /* What is left to do, in nodes. */
 int32_t lar_contact_search_left(const lar_contact_search *search);
 

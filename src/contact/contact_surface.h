@@ -105,7 +105,8 @@ typedef struct lar_contact_list {
     int32_t *face;            /* [face_count] contact faces */
     float *gap;               /* [face_count] the same for each of them [m] */
     int32_t group_room, face_room;
-    double skin; /* [m] */
+    double skin;   /* twice the most that any node may move [m] */
+    double *allow; /* [contact nodes] what each may, along any axis [m]; NULL: nobody looks */
 } lar_contact_list;
 
 /* Whether a group's faces are of its node's own body. */

@@ -42,9 +42,15 @@ typedef struct lar_computer_contact {
     size_t *shift;       /* [processors] bytes of a receive buffer before contact's */
     /* of processor zero: */
     lar_contact_search *search;     /* the whole model's, not owned */
-    double (*x)[3], (*searched)[3]; /* [contact nodes] places now, and at the last search [m] */
-    double skin;                    /* of that search [m] */
+    double (*x)[3], (*searched)[3]; /* [contact nodes] places at the search under way, and at the
+                                       last one [m] */
+    double *allow;                  /* [contact nodes] of the last one's list */
+    double skin;                    /* likewise [m] */
     double moved, way;              /* since then, and in the last step, at most [m] */
+    double looked, look_at;         /* what `moved` was when somebody looked, and what it may
+                                       become before somebody does again [m] */
+    double taking;                  /* what it takes to hand a list out [s] */
+    double steps;                   /* that the list is good for, as it looked then */
     double since;                   /* what had moved when the search under way began [m] */
     uint64_t stretch;               /* steps between the last two stops */
     bool searching;                 /* a search is under way */
@@ -176,6 +182,9 @@ void lar_contact_close(lar_computer *computer); /* idempotent */
 /* Processor zero, before a stretch: looks and searches where that is due. *fault: too many pairs.
  */
 lar_status lar_contact_refresh(lar_computer *computer, lar_fault *fault, lar_error *error);
+/* Between advances, while nobody waits: what there will be to search soon, up to `until` by
+ * lar_clock_seconds. Threads only. */
+lar_status lar_contact_work_ahead(lar_computer *computer, double until, lar_error *error);
 /* The round that a stretch from `round` towards `end` may reach at most. */
 uint64_t lar_contact_until(const lar_computer *computer, uint64_t round, uint64_t end);
 /* After a stretch of so many steps. */

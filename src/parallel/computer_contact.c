@@ -1,22 +1,31 @@
 /* Contact of bodies on all processors: processor zero looks and searches between two stretches, and
  * everyone takes the same list (contact_exchange.h). */
-#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/clock.h"
 #include "parallel/computer.h"
 
 /* Steps that a search should last, those that it must last besides the way of a stop, and those
  * that the next one may take, so that no stop is much longer than others. */
 enum { SEARCH_STEPS = 200, MIN_STEPS = 16, PART_STEPS = 60 };
 
-/* The share of the way that a list is good for, after which the next search begins. */
+/* The part of what nodes may move, after which the next search begins. */
 #define BEGIN_AT 0.75
+
+/* Where nobody waits for it, it begins when they have moved by this part. */
+#define AHEAD_AT 0.5
+
+/* The part of what is left, after which somebody looks: that costs as much as half a step. */
+#define LOOK_AT 0.7
+
+/* What they may move at least, as a part of the least reach. */
+#define LEAST 0.125
 
 /* What is sent: the groups of the list, its faces and their gaps follow. */
 typedef struct list_head {
-    double skin, moved;
+    double skin, moved, travel;
     int32_t group_count, face_count; /* -1: the list stays */
 } list_head;
 
@@ -43,9 +52,10 @@ lar_status lar_contact_open(lar_computer *computer, lar_error *error) {
     contact->shift = lar_calloc((size_t)count, sizeof *contact->shift);
     contact->x = lar_calloc(nodes, sizeof *contact->x);
     contact->searched = lar_calloc(nodes, sizeof *contact->searched);
+    contact->allow = lar_calloc(nodes, sizeof *contact->allow);
     lar_status status = LAR_OK;
-    if (!owner || !contact->shift || !contact->x || !contact->searched)
-        status = lar_fail_memory(error, 4 * elements + 48 * nodes, "contact of bodies");
+    if (!owner || !contact->shift || !contact->x || !contact->searched || !contact->allow)
+        status = lar_fail_memory(error, 4 * elements + 56 * nodes, "contact of bodies");
     if (!status) {
         list_elements(computer, owner, contact->shift);
         status =
@@ -64,13 +74,14 @@ void lar_contact_close(lar_computer *computer) {
     free(contact->shift);
     free(contact->x);
     free(contact->searched);
+    free(contact->allow);
     *contact = (lar_computer_contact){0};
 }
 
 /* ---- looking --------------------------------------------------------------------------------- */
 
-/* A node's displacement, and its velocity. */
-static void values_of(const lar_computer *computer, int32_t n, double u[3], double v[3]) {
+/* Where a contact node is; returns what it goes in a step along an axis, at most. */
+static double place_of(const lar_computer *computer, int32_t n, double x[3]) {
     const lar_contact_map *map = &computer->contact.map;
     const lar_state *state = computer->state;
     int32_t local;
@@ -81,33 +92,14 @@ static void values_of(const lar_computer *computer, int32_t n, double u[3], doub
         state = &p->worker[0].state;
         local = p->exchange->local[n];
     }
+    double u[3], v[3], speed = 0;
     lar_state_displacement(state, local, u);
     lar_state_velocity(state, local, v);
-}
-
-/* Fetches the places of all contact nodes; returns how far the farthest has moved since the search,
- * *way what it goes in a step. */
-static lar_status fetch_places(lar_computer *computer, double *moved, double *way,
-                               lar_error *error) {
-    lar_computer_contact *contact = &computer->contact;
-    const lar_contact_surface *surface = contact->map.surface;
-    double farthest = 0, fastest = 0;
-    if (computer->control) {
-        lar_status status = lar_computer_gather(computer, error);
-        if (status) return status;
+    for (int i = 0; i < 3; i++) {
+        x[i] = map->surface->rest[n][i] + u[i];
+        speed = lar_larger(speed, fabs(v[i]));
     }
-    for (int32_t n = 0; n < surface->node_count; n++) {
-        double u[3], v[3];
-        values_of(computer, n, u, v);
-        for (int i = 0; i < 3; i++) {
-            contact->x[n][i] = surface->rest[n][i] + u[i];
-            farthest = lar_larger(farthest, fabs(contact->x[n][i] - contact->searched[n][i]));
-            fastest = lar_larger(fastest, fabs(v[i]));
-        }
-    }
-    *moved = farthest;
-    *way = fastest * computer->whole->time_step;
-    return LAR_OK;
+    return speed * computer->whole->time_step;
 }
 
 /* What nodes may move until all have stopped for a search, if they become fast meanwhile, and a
@@ -117,25 +109,64 @@ static double reserve(const lar_computer *computer, double way) {
     return (computer->division.spread + 3) * max + MIN_STEPS * way;
 }
 
+/* What nodes may still move until the list must be another one [m]. */
+static double left_of(const lar_computer *computer, double moved, double reserved) {
+    return 0.5 * computer->contact.skin - reserved - moved;
+}
+
+/* What has really moved since the search, as on a list on which all may move alike. Processes do
+ * not have all nodes: for them that takes longer. */
+static lar_contact_motion motion_of(const lar_computer *computer) {
+    const lar_computer_contact *contact = &computer->contact;
+    lar_contact_motion motion = lar_contact_no_motion();
+    const double reserved = reserve(computer, contact->way);
+    for (int32_t n = 0; n < contact->map.surface->node_count; n++) {
+        double x[3], moved = 0, way = place_of(computer, n, x);
+        for (int i = 0; i < 3; i++) moved = lar_larger(moved, fabs(x[i] - contact->searched[n][i]));
+        lar_contact_motion_add(&motion, moved, way, contact->allow[n], reserved);
+    }
+    return motion;
+}
+
+/* What follows from that: when somebody looks again, halfway from here to the end. */
+static void note_motion(lar_computer *computer, const lar_contact_motion *motion) {
+    lar_computer_contact *contact = &computer->contact;
+    contact->moved = lar_contact_motion_alike(motion, contact->skin);
+    contact->steps = lar_contact_motion_steps(motion);
+    const double left = left_of(computer, contact->moved, reserve(computer, contact->way));
+    contact->looked = contact->moved;
+    contact->look_at = contact->moved + (computer->control ? BEGIN_AT : LOOK_AT) * left;
+}
+
+static lar_status look(lar_computer *computer, lar_contact_motion *motion, lar_error *error) {
+    lar_status status = computer->control ? lar_computer_gather(computer, error) : LAR_OK;
+    if (status) return status;
+    *motion = motion_of(computer);
+    note_motion(computer, motion);
+    return LAR_OK;
+}
+
 /* ---- handing out ----------------------------------------------------------------------------- */
 
-/* What a processor does with a list. */
+/* What a processor does with a list, since the search of which nodes have gone as far as `travel`.
+ */
 static void take_list(lar_processor *p, const lar_contact_map *map, const lar_contact_list *list,
-                      double moved) {
+                      double moved, double travel) {
     if (list) lar_contact_compile(p, map, list);
     for (int32_t t = 0; t < p->thread_count; t++) {
         lar_body_contact *contact = &p->worker[t].interactions.body_contact;
         contact->moved = moved;
-        if (list) contact->travel = moved;
+        if (list) contact->travel = travel;
     }
 }
 
-static lar_status send_list(lar_computer *computer, const lar_contact_list *list, double moved,
+static lar_status send_list(lar_computer *computer, const lar_contact_list *list, double travel,
                             lar_error *error) {
+    const double moved = computer->contact.moved;
     list_head head = {.moved = moved, .group_count = -1};
     size_t groups = 0, faces = 0;
     if (list) {
-        head = (list_head){list->skin, moved, list->group_count, list->face_count};
+        head = (list_head){list->skin, moved, travel, list->group_count, list->face_count};
         groups = (size_t)list->group_count * sizeof *list->group;
         faces = (size_t)list->face_count * sizeof *list->face;
     }
@@ -158,11 +189,12 @@ static lar_status send_list(lar_computer *computer, const lar_contact_list *list
 }
 
 /* NULL: the list stays. */
-static lar_status hand_out(lar_computer *computer, const lar_contact_list *list, double moved,
+static lar_status hand_out(lar_computer *computer, const lar_contact_list *list, double travel,
                            lar_error *error) {
     for (int32_t i = 0; i < computer->hosted; i++)
-        take_list(&computer->processor[i], &computer->contact.map, list, moved);
-    return computer->control ? send_list(computer, list, moved, error) : LAR_OK;
+        take_list(&computer->processor[i], &computer->contact.map, list, computer->contact.moved,
+                  travel);
+    return computer->control ? send_list(computer, list, travel, error) : LAR_OK;
 }
 
 static bool list_fits(const lar_contact_surface *surface, const lar_contact_list *list) {
@@ -205,7 +237,8 @@ lar_status lar_contact_execute(lar_computer *computer, const void *payload, size
         return lar_fail(error, LAR_ERROR_PEER,
                         "processor 0 sends pairs for contact that do not fit this model; start all "
                         "processors again, from the same installation");
-    take_list(&computer->processor[0], map, head.group_count >= 0 ? &list : NULL, head.moved);
+    take_list(&computer->processor[0], map, head.group_count >= 0 ? &list : NULL, head.moved,
+              head.travel);
     return LAR_OK;
 }
 
@@ -228,45 +261,46 @@ static bool search_with(lar_computer_contact *contact, double skin, double way) 
     return list->skin == fits || lar_contact_search_run(contact->search, x, fits);
 }
 
-static double skin_for(const lar_computer *computer, double way) {
-    const lar_contact_surface *surface = computer->contact.map.surface;
-    double room = fmin(fmax(way * SEARCH_STEPS, 0.125 * surface->reach), surface->reach_max);
-    return 2 * (reserve(computer, way) + room);
-}
-
-/* No node is farther from its place at the search than that. Processes do not have all nodes. */
-static void check_moved(const lar_computer *computer, double moved) {
-#ifndef NDEBUG
-    const lar_contact_surface *surface = computer->contact.map.surface;
-    for (int32_t n = 0; n < surface->node_count && !computer->control; n++) {
-        double u[3], v[3];
-        values_of(computer, n, u, v);
-        for (int i = 0; i < 3; i++)
-            assert(fabs(surface->rest[n][i] + u[i] - computer->contact.x[n][i]) <= moved);
+/* Fetches the places for a search, and says what each node may move until the next one: processes
+ * would have to ask too often. Returns the skin. */
+static double prepare(lar_computer *computer, double way) {
+    lar_computer_contact *contact = &computer->contact;
+    const lar_contact_surface *surface = contact->map.surface;
+    double reserved = reserve(computer, way), room = way * SEARCH_STEPS,
+           least = LEAST * surface->reach;
+    room = fmin(fmax(room, least), surface->reach_max);
+    for (int32_t n = 0; n < surface->node_count; n++) {
+        float part = lar_contact_share_of(place_of(computer, n, contact->x[n]), way, least / room);
+        contact->search->share[n] =
+            computer->control ? 1 : (float)((reserved + (double)part * room) / (reserved + room));
     }
-#else
-    (void)computer, (void)moved;
-#endif
+    return 2 * (reserved + room);
 }
 
-/* A search is done, of places since which nodes have `moved`: everyone takes its list. */
-static lar_status take_found(lar_computer *computer, double moved, lar_error *error) {
+/* A search is done, since the places of which nodes have gone as far as `travel`, as far as is
+ * known: everyone takes its list. */
+static lar_status take_found(lar_computer *computer, double travel, lar_error *error) {
     lar_computer_contact *contact = &computer->contact;
     const lar_contact_list *list = &contact->search->list;
-    check_moved(computer, moved);
-    memcpy(contact->searched, contact->x,
-           (size_t)contact->map.surface->node_count * sizeof *contact->x);
+    const double begin = lar_clock_seconds();
+    const size_t nodes = (size_t)contact->map.surface->node_count;
+    memcpy(contact->searched, contact->x, nodes * sizeof *contact->x);
+    memcpy(contact->allow, list->allow, nodes * sizeof *contact->allow);
     contact->skin = list->skin;
-    contact->moved = moved;
     contact->searching = false;
     contact->info.searches++;
     contact->info.boxed += (uint64_t)list->face_count;
-    return hand_out(computer, list, moved, error);
+    lar_contact_motion motion = {.farthest = travel, .spent = travel - 0.5 * contact->skin};
+    if (!computer->control) motion = motion_of(computer);
+    note_motion(computer, &motion);
+    lar_status status = hand_out(computer, list, motion.farthest, error);
+    contact->taking = lar_clock_seconds() - begin;
+    return status;
 }
 
 static lar_status search(lar_computer *computer, double way, lar_fault *fault, lar_error *error) {
     lar_computer_contact *contact = &computer->contact;
-    double skin = skin_for(computer, way);
+    double skin = prepare(computer, way);
     contact->searching = false;
     if (!search_with(contact, skin, way)) {
         *fault = (lar_fault){.kind = LAR_FAULT_TOO_MANY_PAIRS,
@@ -287,24 +321,24 @@ static bool is_crowded(const lar_computer *computer) {
            contact->moved + reserve(computer, contact->way) >= 0.5 * contact->skin;
 }
 
-/* What nodes may still move until the list must be another one [m]. */
-static double left_of(const lar_computer *computer, double moved, double reserved) {
-    return 0.5 * computer->contact.skin - reserved - moved;
-}
-
-/* Nodes that are to be looked for in this stop: as many as must be, when the rest of the way is to
- * be enough for the others, and all when there is none. */
-static int32_t portion(const lar_computer_contact *contact, double left) {
+/* Nodes that are to be looked for in this stop: as many as must be, when the time that is left is
+ * to be enough for the others, and all when there is none. */
+static int32_t portion(const lar_computer *computer) {
+    const lar_computer_contact *contact = &computer->contact;
+    double left = left_of(computer, contact->moved, reserve(computer, contact->way));
     if (!(left > 0)) return INT32_MAX;
-    double steps = contact->way > 0 ? left / (1.25 * contact->way) : PART_STEPS;
+    double steps = contact->steps;
+    if (computer->control) steps = contact->way > 0 ? left / (1.25 * contact->way) : PART_STEPS;
     double stops = fmin(steps, PART_STEPS) / (double)(contact->stretch ? contact->stretch : 1);
     return (int32_t)(lar_contact_search_left(contact->search) / fmax(stops, 1)) + 1;
 }
 
-/* Some more of the search under way, whose places are those of when nodes had moved by `since`. */
-static lar_status go_on(lar_computer *computer, double left, lar_error *error) {
+/* What follows from how far the search under way has come; its places are those of when nodes had
+ * moved by `since`. */
+static lar_status take_progress(lar_computer *computer, lar_contact_progress progress,
+                                lar_error *error) {
     lar_computer_contact *contact = &computer->contact;
-    switch (lar_contact_search_go_on(contact->search, portion(contact, left))) {
+    switch (progress) {
     case LAR_SEARCH_UNDER_WAY:
         return LAR_OK;
     case LAR_SEARCH_DONE:
@@ -317,44 +351,62 @@ static lar_status go_on(lar_computer *computer, double left, lar_error *error) {
     return LAR_OK;
 }
 
+/* Looks; and begins the next search, when nodes have moved by such a part of what they may. */
+static lar_status look_and_begin(lar_computer *computer, double begin_at, lar_error *error) {
+    lar_computer_contact *contact = &computer->contact;
+    lar_contact_motion motion;
+    lar_status status = look(computer, &motion, error);
+    if (!status) status = hand_out(computer, NULL, 0, error);
+    if (status || contact->searching || motion.used < begin_at) return status;
+    lar_contact_search_begin(contact->search, (const double(*)[3])contact->x,
+                             prepare(computer, motion.way));
+    contact->since = contact->moved;
+    contact->searching = true;
+    return LAR_OK;
+}
+
 /* The next search begins before it is due, a part of it at every stop. */
 static lar_status look_ahead(lar_computer *computer, lar_error *error) {
     lar_computer_contact *contact = &computer->contact;
-    double reserved = reserve(computer, contact->way), left;
-    if (!contact->searching) {
-        double way, moved, good = left_of(computer, 0, reserved);
-        if (contact->too_many_pairs || !(contact->moved > BEGIN_AT * good)) return LAR_OK;
-        lar_status status = fetch_places(computer, &moved, &way, error);
-        if (status) return status;
-        /* All count from the same place now: what is added to the largest of their ways would be no
-         * bound for who had a shorter one. */
-        contact->moved = contact->since = moved;
-        status = hand_out(computer, NULL, moved, error);
-        if (status || moved < 0.5 * BEGIN_AT * good) return status;
-        lar_contact_search_begin(contact->search, (const double(*)[3])contact->x,
-                                 skin_for(computer, way));
-        contact->searching = true;
-    }
-    left = left_of(computer, contact->moved, reserved);
-    return go_on(computer, left, error);
+    if (contact->too_many_pairs) return LAR_OK;
+    contact->steps -= (double)contact->stretch;
+    const bool blind = computer->control && contact->searching; /* gathering takes too long */
+    lar_status status = LAR_OK;
+    if (contact->moved > contact->look_at && !blind)
+        status = look_and_begin(computer, computer->control ? 0.5 * BEGIN_AT : BEGIN_AT, error);
+    if (status || !contact->searching) return status;
+    return take_progress(computer, lar_contact_search_go_on(contact->search, portion(computer)),
+                         error);
+}
+
+lar_status lar_contact_work_ahead(lar_computer *computer, double until, lar_error *error) {
+    lar_computer_contact *contact = &computer->contact;
+    if (!contact->map.surface || !contact->valid || contact->always || contact->too_many_pairs ||
+        computer->control)
+        return LAR_OK;
+    lar_status status = LAR_OK;
+    if (2 * contact->moved > contact->looked + contact->look_at)
+        status = look_and_begin(computer, AHEAD_AT, error);
+    if (status || !contact->searching) return status;
+    const double after = 2 * contact->taking;
+    return take_progress(computer, lar_contact_search_until(contact->search, until, after), error);
 }
 
 /* The list must be another one, or nodes have moved less than was feared. */
 static lar_status renew(lar_computer *computer, bool due, bool crowded, lar_fault *fault,
                         lar_error *error) {
     lar_computer_contact *contact = &computer->contact;
-    double moved, way;
-    lar_status status = fetch_places(computer, &moved, &way, error);
+    lar_contact_motion motion;
+    lar_status status = look(computer, &motion, error);
     if (status) return status;
     contact->searching = false;
     if (crowded)
-        due = due || !(moved < 0.25 * contact->skin);
+        due = due || !(motion.farthest < 0.25 * contact->skin);
     else
-        due = due || !(moved < 0.125 * contact->skin) ||
-              !(left_of(computer, moved, reserve(computer, way)) > 0);
-    if (due) return search(computer, way, fault, error);
-    contact->moved = moved;
-    return hand_out(computer, NULL, moved, error);
+        due = due || !(motion.used < BEGIN_AT) ||
+              !(left_of(computer, contact->moved, reserve(computer, motion.way)) > 0);
+    if (due) return search(computer, motion.way, fault, error);
+    return hand_out(computer, NULL, 0, error);
 }
 
 static bool is_late(const lar_computer *computer, bool crowded) {

@@ -297,6 +297,16 @@ static void wait_until_due(lar_session *session) {
     if (session->owed < 0) session->owed = 0;
 }
 
+/* What the engine will have to do soon is done while the clock is waited for. */
+static void work_ahead(lar_session *session) {
+    static const double BEFORE = 150e-6; /* [s] */
+    double until = 1e-9 * (double)session->pace.deadline.due - BEFORE;
+    lar_error error;
+    if (session->pace.pace > 0 && lar_clock_seconds() < until &&
+        lar_simulation_work_ahead(session->simulation, until, &error))
+        lar_session_stop(session, &error);
+}
+
 /* Until the next tick is due. In very slow motion that is long: requests and snapshots are served
  * meanwhile, as in a pause. */
 static void wait_for_tick(lar_session *session) {
@@ -311,6 +321,7 @@ static void wait_for_tick(lar_session *session) {
                            look < wake ? look : wake);
         execute_requests(session);
     }
+    if (!session->ended && session->status.state == LAR_SESSION_PLAYING) work_ahead(session);
     if (!session->ended && session->status.state == LAR_SESSION_PLAYING) wait_until_due(session);
 }
 

@@ -414,6 +414,13 @@ void lar_simulation_rouse(const lar_simulation *simulation) {
     if (simulation->computer) lar_thread_pool_rouse(simulation->computer->pool);
 }
 
+lar_status lar_simulation_work_ahead(lar_simulation *simulation, double until, lar_error *error) {
+    if (simulation->fault.kind) return LAR_OK;
+    if (simulation->computer) return lar_contact_work_ahead(simulation->computer, until, error);
+    lar_body_contact_work_ahead(&simulation->interactions.body_contact, &simulation->state, until);
+    return LAR_OK;
+}
+
 lar_status lar_simulation_look(lar_simulation *simulation, lar_error *error) {
     return simulation->computer ? lar_computer_look(simulation->computer, error) : LAR_OK;
 }

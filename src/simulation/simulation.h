@@ -75,6 +75,10 @@ lar_status lar_simulation_look(lar_simulation *simulation, lar_error *error);
 void lar_simulation_go_before(const lar_simulation *simulation, int priority);
 void lar_simulation_rouse(const lar_simulation *simulation);
 
+/* Between advances, while nobody waits: what will have to be done soon, such as searching for
+ * contact, up to `until` by lar_clock_seconds. Changes no bit. */
+lar_status lar_simulation_work_ahead(lar_simulation *simulation, double until, lar_error *error);
+
 /* A session lets its own thread alone change the simulation, or everyone again. */
 void lar_simulation_reserve(lar_simulation *simulation, bool held);
 /* Called by that thread: it is the one. */

@@ -108,6 +108,38 @@ static void nothing_is_missed(void **unused) {
     }
 }
 
+/* Nodes that may move less than others are in fewer pairs, and these are enough. */
+static void each_has_its_share(void **unused) {
+    (void)unused;
+    lar_model *model = two_bricks(&one_brick, &other_brick, 0.003, false);
+    touch_self(model);
+    create(model);
+    double(*x)[3] = places(), (*moved)[3] = places();
+    for (int32_t n = 0; n < tree.surface.node_count; n++)
+        if (tree.surface.node[n].body > 0) x[n][2] -= 0.006;
+    assert_true(lar_contact_search_run(&search, (const double(*)[3])x, 0.008));
+    int32_t pairs = search.list.face_count;
+    for (int32_t n = 0; n < tree.surface.node_count; n++)
+        search.share[n] = 0.1f + 0.9f * (float)(n % 23 == 0);
+    assert_true(lar_contact_search_run(&search, (const double(*)[3])x, 0.008));
+    assert_true(2 * search.list.face_count < pairs);
+    for (int trial = 0; trial < 20; trial++) {
+        for (int32_t n = 0; n < tree.surface.node_count; n++)
+            for (int i = 0; i < 3; i++) {
+                double may = search.list.allow[n];
+                assert_true(may == 0.004 * (double)search.share[n]);
+                moved[n][i] =
+                    x[n][i] + (noise((uint32_t)(7919 * trial + 3 * n + i)) > 0 ? may : -may);
+            }
+        assert_true(check_complete((const double(*)[3])moved) > 50);
+    }
+    free(x);
+    free(moved);
+    lar_contact_search_clear(&search);
+    lar_contact_tree_clear(&tree);
+    lar_model_destroy(model);
+}
+
 /* In parts it is the same list, made of the places at its beginning. */
 static void in_parts_it_is_the_same(void **unused) {
     (void)unused;
@@ -145,6 +177,8 @@ static void gaps_are_no_more_than_that(void **unused) {
     lar_model *model = two_bricks(&one_brick, &other_brick, 0.012, false);
     create(model);
     double(*x)[3] = places();
+    for (int32_t n = 0; n < tree.surface.node_count; n++)
+        search.share[n] = 0.2f + 0.8f * (float)(n % 3 == 0);
     assert_true(lar_contact_search_run(&search, (const double(*)[3])x, 0.02));
     const lar_contact_surface *s = &tree.surface;
     int32_t outside = 0;
@@ -214,6 +248,7 @@ static void without_contact_there_is_nothing(void **unused) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(nothing_is_missed),
+        cmocka_unit_test(each_has_its_share),
         cmocka_unit_test(in_parts_it_is_the_same),
         cmocka_unit_test(gaps_are_no_more_than_that),
         cmocka_unit_test(the_shape_of_a_body_is_no_contact),
