@@ -1171,9 +1171,9 @@ LAR_API int lar_model_until_rest(const lar_model *model);
 typedef struct lar_session lar_session;
 
 typedef struct lar_session_options {
-    double tick;            /* seconds of simulated time between exchanges; 0: 1 ms. In whole steps,
-                               10,000 at most, lar_session_info.tick, for a clock of one's own:
-                               lar_options.tick makes it exact */
+    double tick;            /* seconds of simulated time between exchanges; 0: 1 ms, or what 10,000
+                               steps take. In whole steps, 10,000 at most, lar_session_info.tick,
+                               for a clock of one's own: lar_options.tick makes it exact */
     double pace;            /* simulated seconds per second of the clock; 0: as fast as it goes */
     int paused;             /* not 0: starts paused */
     double tool_speed;      /* tools follow their devices no faster than this [m/s]; 0: 1 m/s */

@@ -368,7 +368,7 @@ static const char session_doc[] =
     "Advances a simulation in real time, on a thread of its own, from now on, and exchanges poses "
     "and\n"
     "forces of tools with it once in a tick. Takes the simulation over until it is closed.\n\n"
-    "tick        seconds of simulated time between exchanges; 0: 1 ms\n"
+    "tick        seconds of simulated time between exchanges; 0: 1 ms, 10,000 steps at most\n"
     "pace        simulated seconds per second of the clock; 0: as fast as it goes\n"
     "tool_speed  tools follow no faster than this [m/s]; 0: 1 m/s\n"
     "hand_force  hands pull no harder than this [N]; 0: 1 N\n"

@@ -269,12 +269,14 @@ static int report_failure(run *r, const lar_error *error) {
     return status;
 }
 
-/* Up to the next frame or look, whichever comes first. */
+/* Up to the next frame or look, whichever comes first, or to the last step but one: what tools felt
+ * is a mean over all steps of a stretch, and the report is about the last one. */
 static int advance_stretch(run *r) {
     const lar_step_glance glance = {.every = 0.1, .look = look, .context = r};
     uint64_t now = lar_simulation_steps(r->simulation), frame = next_frame(r), stop = frame;
     lar_error error;
     if (r->follows && r->rest.next < stop) stop = r->rest.next;
+    if (stop == r->last_step && stop > now + 1) stop--;
     if (lar_step_clock_advance(&r->clock, r->simulation, stop - now, &glance, &cli_stop_asked,
                                &error))
         return report_failure(r, &error);

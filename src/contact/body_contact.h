@@ -347,6 +347,10 @@ void lar_body_contact_destroy(lar_body_contact *contact); /* idempotent */
 /* The state was changed by others: nothing is known of its motion. */
 void lar_body_contact_forget(lar_body_contact *contact);
 
+/* Energy that says nothing [J]: that of all nodes as deep as a hundred-millionth of a layer. Where
+ * loads have hardly begun, what moves is the rounding of places and forces. */
+double lar_body_contact_nothing(const lar_body_contact *contact);
+
 /* Between steps, while nobody waits: what there will be to search soon, up to `until` by
  * lar_clock_seconds. */
 void lar_body_contact_work_ahead(lar_body_contact *contact, const lar_state *state, double until);

@@ -259,6 +259,15 @@ void lar_body_contact_forget(lar_body_contact *contact) {
     if (contact->search_state) contact->search_state->valid = false;
 }
 
+double lar_body_contact_nothing(const lar_body_contact *contact) {
+    double mass = 0;
+    if (!contact->surface) return 0;
+    for (int32_t n = 0; n < contact->surface->node_count; n++)
+        mass += contact->surface->node[n].mass;
+    const double depth = 1e-8 * contact->surface->reach;
+    return 0.5 * contact->law.stiffness * mass * depth * depth;
+}
+
 /* ---- creation ------------------------------------------------------------------------------- */
 
 static lar_status allocate(lar_body_contact *contact, const int32_t *local, lar_error *error) {

@@ -38,7 +38,7 @@ static lar_status choose(lar_session *session, const lar_session_options *asked,
                           o->priority);
     if (!status) status = check_number("hand_force", o->hand_force, error);
     if (status) return status;
-    if (o->tick == 0) o->tick = 1e-3;
+    if (o->tick == 0) o->tick = fmin(1e-3, TICK_STEPS_MAX * session->time_step);
     if (o->tool_speed == 0) o->tool_speed = 1;
     if (o->hand_force == 0) o->hand_force = 1;
     if (o->hash_every == 0) o->hash_every = 100;

@@ -314,7 +314,7 @@ static bool may_touch(const lar_simulation *simulation) {
  * nothing is measured by the energy that the bodies have and have lost, or quiet ones would be
  * stopped for what they did not mind in motion (that of muscle may be below zero), and by what
  * contact has exchanged, for faces are flat: what slides takes a little here and gives it there.
- * The first is asked for only when contact is behind by more than it was the last time, or may be:
+ * Where loads have hardly begun there is rounding only. The first is asked for only when contact is behind by more than it was the last time, or may be:
  * what a report has lacks half of its last step, which is taken for as much as all steps since the
  * last look. The steps of looks are the same however a run is divided into advances, and intervals
  * end there (step/interval.h). */
@@ -324,6 +324,8 @@ static lar_status check_contact(lar_simulation *simulation, lar_error *error) {
     double taken = simulation->report.taken, change = fabs(taken - simulation->taken);
     simulation->taken = taken;
     double slid = SLIDING * simulation->report.exchanged;
+    if (!(change - taken > NOTHING * simulation->measured + slid)) return LAR_OK;
+    slid += lar_body_contact_nothing(&simulation->interactions.body_contact);
     if (!(change - taken > NOTHING * simulation->measured + slid)) return LAR_OK;
     lar_status status = lar_simulation_gather(simulation, error);
     if (status) return status;

@@ -182,6 +182,17 @@ expect 0 "$LARIAT" run "$SCRATCH/foam.yaml" --time-step 1.5e-5 --json
 value_of tools.0.depth | awk '{ exit !($1 > 0 && $1 < 0.5 * deep) }' deep="$deep" ||
     fail "as deep with hard springs: $(value_of tools.0.depth)"
 
+# What a tool feels in the end is of the last step: drawn out again it feels nothing, and pressed and
+# kept what the last row of a probe says.
+for last in "0.08, 0.02, 0.02, 0.018" "0.08, 0.02, 0.02, 0.014"; do
+    sed "s/0.014\]\]/0.014], [$last]]/" "$SCRATCH/foam.yaml" >"$SCRATCH/out_again.yaml"
+    echo 'output: { probes: [ { tool: bar, name: bar } ] }' >>"$SCRATCH/out_again.yaml"
+    expect 0 "$LARIAT" run "$SCRATCH/out_again.yaml" --json --out "$SCRATCH/again${last##* }"
+    tail -1 "$SCRATCH/again${last##* }/probes.csv" | awk -F, '{ exit !(($NF - z) ^ 2 <= 1e-6 * z ^ 2) }' \
+        z="$(value_of tools.0.force.2)" ||
+        fail "$(value_of tools.0.force.2) N, and $(tail -1 "$SCRATCH/again${last##* }/probes.csv")"
+done
+
 # Rounding of a strain energy that large moduli leave next to nothing of is no matter of the step.
 one_cube "$SCRATCH/cube.inp"
 cat >"$SCRATCH/tiny.yaml" <<'END'

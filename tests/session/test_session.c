@@ -360,6 +360,20 @@ static void endless_ticks_are_refused(void **unused) {
     close_bench(&b);
 }
 
+/* Those that nobody has asked for are not: of a cell a millisecond would be too many steps. */
+static void ticks_of_small_steps_are_shorter(void **unused) {
+    (void)unused;
+    bench b = {.model = hanging_block()};
+    lar_options how = block_options(NULL, 0);
+    how.time_step = 3e-8;
+    DONE(lar_simulation_create(b.model, &how, &b.simulation, &failure));
+    DONE(lar_session_open(b.simulation, NULL, &b.session, &failure));
+    lar_session_info info;
+    lar_session_inspect(b.session, &info);
+    assert_int_equal(info.tick_steps, 10000);
+    close_bench(&b);
+}
+
 static void wrong_calls_are_refused(void **unused) {
     (void)unused;
     bench b = open_bench(NULL, 0, NULL);
@@ -546,6 +560,7 @@ int main(void) {
                                        cmocka_unit_test(tools_are_felt),
                                        cmocka_unit_test(wrong_calls_are_refused),
                                        cmocka_unit_test(endless_ticks_are_refused),
+                                       cmocka_unit_test(ticks_of_small_steps_are_shorter),
                                        cmocka_unit_test(goes_back_and_on),
                                        cmocka_unit_test(stops_with_a_message),
                                        cmocka_unit_test(everybody_at_once)};
