@@ -15,6 +15,16 @@ static bool mine(const lar_model *model, const lar_condition_share *share, int32
     return !share || share->presses[model->surface.element[face]] == share->thread;
 }
 
+/* Faster than any hand moves; and, in stiff or light bodies, than their nodes go to and fro before
+ * a tool that presses them, from step to step: by depth over time step, which goes with that of
+ * pressure waves. Without the second the spring would push in every other step, for ever. */
+static double lets_go(const lar_material *material) {
+    static const double HANDS = 0.5, WAVES = 0.02; /* [m/s]; of their speed */
+    double modulus =
+        lar_material_instant_bulk(material) + 4.0 / 3 * lar_material_instant_shear(material);
+    return fmax(HANDS, WAVES * sqrt(modulus / material->density));
+}
+
 static void add_face(const lar_model *model, const int32_t *local, const uint8_t *faces_at,
                      int32_t face, lar_tool_faces *faces) {
     lar_tool_contact_face *f = &faces->face[faces->face_count++];
@@ -33,6 +43,7 @@ static void add_face(const lar_model *model, const int32_t *local, const uint8_t
         }
         f->edge = fmax(f->edge, sqrt(square));
     }
+    f->lets_go = lets_go(lar_model_material_of(model, model->surface.element[face]));
 }
 
 /* Corners of own faces that other threads move. */

@@ -54,6 +54,7 @@ typedef struct lar_tool_contact_face {
     double share[4];   /* of a corner's mass: one over the number of faces that it is a corner of */
     double rest[4][3]; /* positions at rest [m] */
     double edge;       /* the longest at rest [m] */
+    double lets_go;    /* what leaves a tool faster is pushed with less [m/s] */
 } lar_tool_contact_face;
 
 /* Weights of the corners in the points of a face, n x n of them (lar_tool_contact_points). */

@@ -89,13 +89,11 @@ static double facing(lar_tool_contact_patch *patch, const double normal[3], int 
 }
 
 /* A face that comes into a hard tool from the side, or turns round in it, is deep in it at once.
- * What leaves the tool faster than any hand moves is pushed no further: contact brings out, and
- * does not throw [m/s]. */
-static const double LEAVES = 0.5, THROWN = 1.5;
-
-static double not_thrown(double rate) {
-    double away = -rate - LEAVES;
-    return away <= 0 ? 1 : lar_greater(0, 1 - away / (THROWN - LEAVES));
+ * What leaves the tool too fast is pushed with less, and from three times as fast on no further:
+ * contact brings out, and does not throw. */
+static double not_thrown(const lar_tool_contact_face *face, double rate) {
+    double away = -rate - face->lets_go;
+    return away <= 0 ? 1 : lar_greater(0, 1 - away / (2 * face->lets_go));
 }
 
 /* For who looks. `deep`: how deep the point counts as. */
@@ -124,7 +122,7 @@ static double push_point(lar_tool_contact_patch *patch, const lar_contact_law *l
         double begin = next->end[0][i] - now->end[0][i], end = next->end[1][i] - now->end[1][i];
         rate += normal[i] * ((begin + along * (end - begin)) * patch->rate_of - v[i]);
     }
-    double force = not_thrown(rate) * lar_contact_force(law, mass, depth, rate);
+    double force = not_thrown(patch->face, rate) * lar_contact_force(law, mass, depth, rate);
     const double n[3] = {normal[0], normal[1], normal[2]};
     double share[4];
     for (int a = 0; a < 4; a++) share[a] = weight[a] * force;

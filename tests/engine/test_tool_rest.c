@@ -187,8 +187,43 @@ static void what_lies_along_faces_comes_to_rest(void **unused) {
     lie_along(0.45, LAR_LAW_neo_hookean, 0.012);
 }
 
+/* Foam, and what is as stiff as a hard plastic: however fast the ball comes, it is pressed with the
+ * same force in the end, in every step. */
+static void light_and_stiff_bodies_come_to_rest(void **unused) {
+    (void)unused;
+    static const brick bodies[] = {
+        {{8, 8, 4}, 0.005, 0, LAR_LAW_coupled_neo_hookean, 5e4, 1.5e5, 30},
+        {{8, 8, 4}, 0.005, 0, LAR_LAW_neo_hookean, 1e8, 2e9, 1000}};
+    static const double speeds[] = {0.3, 1, 3}, radius = 0.008;
+    for (int b = 0; b < 2; b++) {
+        double slow = 0;
+        for (int v = 0; v < 3; v++) {
+            lar_model *model = brick_model(&bodies[b]);
+            fix_nodes(model, brick_side(&bodies[b], 2, 0), LAR_AXIS_ALL);
+            touch_tool(model, "ball", (lar_tool){.shape = LAR_TOOL_SPHERE, .radius = radius},
+                       (double[]){0.02, 0.02, height + radius + 0.0005});
+            model->damping = b == 0 ? 300 : 3e4;
+            lar_simulation *simulation = start(model);
+            const double to[3] = {0.02, 0.02, height + radius - 0.003};
+            double step = lar_simulation_time_step(simulation);
+            place(simulation, 0, to, upright, 1, (uint64_t)(0.0035 / speeds[v] / step));
+            advance(simulation, (uint64_t)(0.0035 / 0.3 / step) + 8000);
+            lar_tool_force force, next;
+            advance(simulation, 1);
+            assert_int_equal(lar_simulation_tool_force(simulation, 0, &force, NULL), LAR_OK);
+            advance(simulation, 1);
+            assert_int_equal(lar_simulation_tool_force(simulation, 0, &next, NULL), LAR_OK);
+            assert_below(fabs(next.force[2] - force.force[2]), 1e-6 * force.force[2]);
+            if (v == 0) slow = force.force[2];
+            assert_below(fabs(force.force[2] - slow), 1e-6 * slow);
+            finish(simulation, model);
+        }
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(light_and_stiff_bodies_come_to_rest),
         cmocka_unit_test(tissue_comes_to_rest),
         cmocka_unit_test(a_pinch_is_straight),
         cmocka_unit_test(what_looks_elsewhere_comes_to_rest),
