@@ -185,10 +185,11 @@ lar_status lar_simulation_remove_tool(lar_simulation *simulation, int32_t tool, 
                         "there is no tool %ld; the simulation has %ld, counted from 0", (long)tool,
                         (long)simulation->list.count);
     if (place < 0)
-        return lar_fail(error, LAR_ERROR_ARGUMENT,
-                        "%s belongs to the scene and stays; only tools that were added can be "
-                        "removed",
-                        simulation->list.tool[tool].name);
+        return lar_fail(
+            error, LAR_ERROR_ARGUMENT,
+            "%s belongs to the scene or a viewer and stays; only tools that were added can be "
+            "removed",
+            simulation->list.tool[tool].name);
     if (!simulation->tools.spare[place].placed)
         return lar_fail(error, LAR_ERROR_ARGUMENT, "tool %ld is not there", (long)tool);
     lar_grasp_drop(tool, &simulation->tools);

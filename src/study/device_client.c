@@ -168,7 +168,7 @@ static lar_status finish(client *c, lar_error *error) {
     if (r->answered == 0)
         return lar_fail(error, LAR_ERROR_PEER,
                         "nobody at %s answered %llu packets; start a session with a tool on that "
-                        "device first, and give the same token",
+                        "device first, give the same token, and end who moves that tool already",
                         c->options->address, (unsigned long long)r->sent);
     r->round_trip_p50 = 1e-9 * lar_histogram_quantile(&c->trip, 0.5);
     r->round_trip_p99 = 1e-9 * lar_histogram_quantile(&c->trip, 0.99);
