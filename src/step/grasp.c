@@ -42,6 +42,20 @@ static double reach_of(const lar_reach *reach, const double point[3], double own
     return aside || beyond || !between ? INFINITY : distance;
 }
 
+/* Whether a face is so far from the tip that none of its points matters: a hand that has nothing
+ * within its radius looks twice as far. */
+static bool is_far(const lar_reach *reach, const double x[4][3]) {
+    const lar_tool *tool = reach->tool;
+    double length = tool->shape == LAR_TOOL_HAND ? tool->radius : tool->length;
+    double center[3], square = 0, far = lar_tool_contact_ball_of(x, center);
+    far += (1 + 1e-9) * (length + tool->radius);
+    for (int i = 0; i < 3; i++) {
+        double from_tip = center[i] - reach->pose.position[i];
+        square += from_tip * from_tip;
+    }
+    return square > far * far;
+}
+
 /* Goes through all points in the order of the faces: counts those that are no farther than `max`,
  * notes the nearest distance, and adds every `every`-th to the grasps when it is not 0. */
 static int32_t go_through(const lar_domain *whole, const lar_state *state, const lar_reach *reach,
@@ -53,6 +67,7 @@ static int32_t go_through(const lar_domain *whole, const lar_state *state, const
         const lar_tool_contact_face *face = &faces->face[faces->face_of[s]];
         double x[4][3], weight[4], point[3], own[3];
         lar_tool_contact_corners(face, state, x);
+        if (is_far(reach, (const double(*)[3])x)) continue;
         int n = lar_tool_contact_points(face, reach->tool->radius);
         for (int i = 0; i < n * n; i++) {
             lar_tool_contact_weights(i, n, weight);
