@@ -87,14 +87,8 @@ enum { SEARCH_STEPS = 200, PART_STEPS = 60 };
 /* Where a contact node is; returns what it goes in a step along an axis, at most. */
 static double place_of(const lar_body_contact *contact, const lar_state *state, int32_t n,
                        double x[3]) {
-    double u[3], v[3], speed = 0;
-    lar_state_displacement(state, contact->view.local[n], u);
-    lar_state_velocity(state, contact->view.local[n], v);
-    for (int i = 0; i < 3; i++) {
-        x[i] = contact->surface->rest[n][i] + u[i];
-        speed = lar_larger(speed, fabs(v[i]));
-    }
-    return speed * contact->time_step;
+    return contact->time_step *
+           lar_contact_node_place(contact->surface, n, state, contact->view.local[n], x);
 }
 
 /* What has really moved since the list's search? */
@@ -102,10 +96,9 @@ static lar_contact_motion look(lar_body_contact *contact, const lar_state *state
     lar_body_contact_search_state *search_state = contact->search_state;
     lar_contact_motion motion = lar_contact_no_motion();
     for (int32_t n = 0; n < contact->surface->node_count; n++) {
-        double x[3], moved = 0, way = place_of(contact, state, n, x);
-        for (int i = 0; i < 3; i++)
-            moved = lar_larger(moved, fabs(x[i] - search_state->searched[n][i]));
-        lar_contact_motion_add(&motion, moved, way, contact->list.allow[n], 0);
+        double x[3], way = place_of(contact, state, n, x);
+        lar_contact_motion_add(&motion, search_state->searched[n], x, way, contact->list.allow[n],
+                               0);
     }
     contact->moved = lar_contact_motion_alike(&motion, contact->list.skin);
     search_state->looked = contact->moved;

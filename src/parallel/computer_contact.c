@@ -92,14 +92,7 @@ static double place_of(const lar_computer *computer, int32_t n, double x[3]) {
         state = &p->worker[0].state;
         local = p->exchange->local[n];
     }
-    double u[3], v[3], speed = 0;
-    lar_state_displacement(state, local, u);
-    lar_state_velocity(state, local, v);
-    for (int i = 0; i < 3; i++) {
-        x[i] = map->surface->rest[n][i] + u[i];
-        speed = lar_larger(speed, fabs(v[i]));
-    }
-    return speed * computer->whole->time_step;
+    return computer->whole->time_step * lar_contact_node_place(map->surface, n, state, local, x);
 }
 
 /* What nodes may move until all have stopped for a search, if they become fast meanwhile, and a
@@ -121,14 +114,13 @@ static lar_contact_motion motion_of(const lar_computer *computer) {
     lar_contact_motion motion = lar_contact_no_motion();
     const double reserved = reserve(computer, contact->way);
     for (int32_t n = 0; n < contact->map.surface->node_count; n++) {
-        double x[3], moved = 0, way = place_of(computer, n, x);
-        for (int i = 0; i < 3; i++) moved = lar_larger(moved, fabs(x[i] - contact->searched[n][i]));
-        lar_contact_motion_add(&motion, moved, way, contact->allow[n], reserved);
+        double x[3], way = place_of(computer, n, x);
+        lar_contact_motion_add(&motion, contact->searched[n], x, way, contact->allow[n], reserved);
     }
     return motion;
 }
 
-/* What follows from that: when somebody looks again, halfway from here to the end. */
+/* What follows from that: when somebody looks again. */
 static void note_motion(lar_computer *computer, const lar_contact_motion *motion) {
     lar_computer_contact *contact = &computer->contact;
     contact->moved = lar_contact_motion_alike(motion, contact->skin);

@@ -76,6 +76,15 @@ static double (*places(void))[3] {
     return x;
 }
 
+/* Every node moves by all that it may, one way or the other along each axis. */
+static void shake(const double (*x)[3], int trial, double (*moved)[3]) {
+    for (int32_t n = 0; n < tree.surface.node_count; n++)
+        for (int i = 0; i < 3; i++) {
+            double may = search.list.allow[n];
+            moved[n][i] = x[n][i] + (noise((uint32_t)(7919 * trial + 3 * n + i)) > 0 ? may : -may);
+        }
+}
+
 static void nothing_is_missed(void **unused) {
     (void)unused;
     for (int self = 0; self < 2; self++) {
@@ -90,14 +99,10 @@ static void nothing_is_missed(void **unused) {
             for (int i = 0; i < 3; i++) x[n][i] += 0.002 * noise((uint32_t)(3 * n + i));
         }
         assert_true(lar_contact_search_run(&search, (const double(*)[3])x, skin));
-        assert_true(search.list.skin == skin);
+        assert_true(search.list.skin == skin && search.list.allow[0] == 0.5 * skin);
         assert_true(check_complete((const double(*)[3])x) > 100);
         for (int trial = 0; trial < 20; trial++) {
-            for (int32_t n = 0; n < tree.surface.node_count; n++)
-                for (int i = 0; i < 3; i++)
-                    moved[n][i] =
-                        x[n][i] + (noise((uint32_t)(7919 * trial + 3 * n + i)) > 0 ? 0.5 * skin
-                                                                                   : -0.5 * skin);
+            shake((const double(*)[3])x, trial, moved);
             assert_true(check_complete((const double(*)[3])moved) > 50);
         }
         free(x);
@@ -123,14 +128,10 @@ static void each_has_its_share(void **unused) {
         search.share[n] = 0.1f + 0.9f * (float)(n % 23 == 0);
     assert_true(lar_contact_search_run(&search, (const double(*)[3])x, 0.008));
     assert_true(2 * search.list.face_count < pairs);
+    for (int32_t n = 0; n < tree.surface.node_count; n++)
+        assert_true(search.list.allow[n] == 0.004 * (double)search.share[n]);
     for (int trial = 0; trial < 20; trial++) {
-        for (int32_t n = 0; n < tree.surface.node_count; n++)
-            for (int i = 0; i < 3; i++) {
-                double may = search.list.allow[n];
-                assert_true(may == 0.004 * (double)search.share[n]);
-                moved[n][i] =
-                    x[n][i] + (noise((uint32_t)(7919 * trial + 3 * n + i)) > 0 ? may : -may);
-            }
+        shake((const double(*)[3])x, trial, moved);
         assert_true(check_complete((const double(*)[3])moved) > 50);
     }
     free(x);

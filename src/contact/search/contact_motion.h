@@ -10,6 +10,9 @@
 
 #include <math.h>
 
+#include "contact/contact_surface.h"
+#include "layout/state.h"
+
 /* The larger one, or no number where one of them is none. */
 static inline double lar_larger(double max, double other) {
     return other <= max || isnan(max) ? max : other;
@@ -27,10 +30,28 @@ static inline lar_contact_motion lar_contact_no_motion(void) {
     return (lar_contact_motion){.spent = -INFINITY};
 }
 
-/* One more node, which has `moved`, goes `way` in a step, and may move by `allow` [m]. */
-static inline void lar_contact_motion_add(lar_contact_motion *motion, double moved, double way,
-                                          double allow, double reserved) {
+/* Where a contact node is, which has the number `local` in the state; returns how fast it is along
+ * an axis, at most [m/s]. */
+static inline double lar_contact_node_place(const lar_contact_surface *surface, int32_t n,
+                                            const lar_state *state, int32_t local, double x[3]) {
+    double u[3], v[3], speed = 0;
+    lar_state_displacement(state, local, u);
+    lar_state_velocity(state, local, v);
+    for (int i = 0; i < 3; i++) {
+        x[i] = surface->rest[n][i] + u[i];
+        speed = lar_larger(speed, fabs(v[i]));
+    }
+    return speed;
+}
+
+/* One more node, from its place at the search to where it is; it goes `way` in a step, and may move
+ * by `allow` [m]. */
+static inline void lar_contact_motion_add(lar_contact_motion *motion, const double from[3],
+                                          const double x[3], double way, double allow,
+                                          double reserved) {
     const double own = allow - reserved;
+    double moved = 0;
+    for (int i = 0; i < 3; i++) moved = lar_larger(moved, fabs(x[i] - from[i]));
     motion->farthest = lar_larger(motion->farthest, moved);
     motion->spent = lar_larger(motion->spent, moved - allow);
     motion->used = lar_larger(motion->used, own > 0 ? moved / own : INFINITY);
