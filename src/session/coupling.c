@@ -71,7 +71,7 @@ void lar_coupling_set_speed(lar_coupling *c, double speed) {
 }
 
 void lar_coupling_reset(lar_coupling *c, const lar_tool_pose *pose) {
-    c->hand = c->tool = *pose;
+    c->hand = c->end = c->tool = *pose;
     c->begun = false;
     c->held = 0;
     c->energy = c->paid = c->turn_paid = c->credit;
@@ -99,18 +99,27 @@ static void remember(const lar_coupling *c, lar_coupling_ways *ways, const doubl
     ways->change = fmax(length_of(change), ways->change * keep);
 }
 
-/* The hand has moved, with the force that it was given before, and still holds: what it has put in,
- * and how fast it is. */
+/* How fast the spring's end goes on the hand's side. */
+static void move_end(lar_coupling *c, const lar_tool_pose *end) {
+    double share = c->seconds / (SMOOTH + c->seconds), change[3];
+    for (int i = 0; i < 3; i++) {
+        double step = c->begun ? end->position[i] - c->end.position[i] : 0;
+        change[i] = share * (step / c->seconds - c->hand_velocity[i]);
+    }
+    /* Positions that come late come in bunches: that is a jump, not a blow. */
+    shorten(change, ACCELERATION * c->seconds);
+    for (int i = 0; i < 3; i++) c->hand_velocity[i] += change[i];
+    c->end = *end;
+}
+
+/* The hand has moved, with the force that it was given before, and still holds: what it has put in.
+ */
 static void move_hand(lar_coupling *c, const lar_tool_pose *hand) {
-    double share = c->seconds / (SMOOTH + c->seconds), change[3], step[3] = {0}, turn[3] = {0};
+    double step[3] = {0}, turn[3] = {0};
     if (c->begun) {
         lar_quaternion_turn(c->hand.orientation, hand->orientation, turn);
         for (int i = 0; i < 3; i++) step[i] = hand->position[i] - c->hand.position[i];
     }
-    for (int i = 0; i < 3; i++) change[i] = share * (step[i] / c->seconds - c->hand_velocity[i]);
-    /* Positions that come late come in bunches: that is a jump, not a blow. */
-    shorten(change, ACCELERATION * c->seconds);
-    for (int i = 0; i < 3; i++) c->hand_velocity[i] += change[i];
     remember(c, &c->steps, step, JUMP * c->seconds);
     remember(c, &c->turns, turn, JUMP * c->seconds / c->lever);
     double work = dot(c->felt, step);
@@ -134,7 +143,7 @@ static void pull_tool(lar_coupling *c) {
     double apart[3], s0[3], v[3];
     double k = c->stiffness, b = c->damping, t = c->seconds;
     for (int i = 0; i < 3; i++) {
-        apart[i] = c->hand.position[i] - c->tool.position[i];
+        apart[i] = c->end.position[i] - c->tool.position[i];
         s0[i] = k * apart[i] + b * c->hand_velocity[i];
     }
     solve(c, s0, -(k * t + b), v);
@@ -149,24 +158,26 @@ static void pull_tool(lar_coupling *c) {
 }
 
 static void turn_tool(lar_coupling *c) {
-    double angle = lar_quaternion_angle(c->tool.orientation, c->hand.orientation);
+    double angle = lar_quaternion_angle(c->tool.orientation, c->end.orientation);
     double max = c->turn * c->seconds;
-    lar_quaternion_blend(c->tool.orientation, c->hand.orientation, angle > max ? max / angle : 1,
+    lar_quaternion_blend(c->tool.orientation, c->end.orientation, angle > max ? max / angle : 1,
                          c->tool.orientation);
 }
 
 /* A hand that holds nothing has nothing to feel: it is where it is wanted. */
 static void put_hand(lar_coupling *c) {
     double jump[3];
-    for (int i = 0; i < 3; i++) jump[i] = c->hand.position[i] - c->tool.position[i];
-    bool closes = c->tool.opening >= CLOSES && c->hand.opening < CLOSES;
-    double opening = closes && length_of(jump) > 0 ? c->tool.opening : c->hand.opening;
-    c->tool = c->hand;
+    for (int i = 0; i < 3; i++) jump[i] = c->end.position[i] - c->tool.position[i];
+    bool closes = c->tool.opening >= CLOSES && c->end.opening < CLOSES;
+    double opening = closes && length_of(jump) > 0 ? c->tool.opening : c->end.opening;
+    c->tool = c->end;
     c->tool.opening = opening;
     for (int i = 0; i < 3; i++) c->tool_velocity[i] = c->way[i] = c->spring[i] = c->tissue[i] = 0;
 }
 
-void lar_coupling_follow(lar_coupling *coupling, const lar_tool_pose *hand, lar_tool_pose *tool) {
+void lar_coupling_follow(lar_coupling *coupling, const lar_tool_pose *hand,
+                         const lar_tool_pose *evenly, lar_tool_pose *tool) {
+    move_end(coupling, evenly ? evenly : hand);
     move_hand(coupling, hand);
     if (coupling->shape == LAR_TOOL_HAND && coupling->held == 0) {
         put_hand(coupling);

@@ -76,6 +76,7 @@ typedef struct lar_coupling {
     double rate;        /* of what the hand feels, at most [N/s] */
     double seconds;
     lar_tool_pose hand, tool; /* where they are: the hand now, the tool at the tick's end */
+    lar_tool_pose end;        /* of the spring, on the hand's side */
     double hand_velocity[3], tool_velocity[3]; /* [m/s] */
     double tissue[3];                          /* mean force of the last tick [N] */
     double tissue_stiffness;                   /* as seen lately [N/m] */
@@ -108,9 +109,12 @@ void lar_coupling_set_rate(lar_coupling *coupling, double rate);
 void lar_coupling_reset(lar_coupling *coupling, const lar_tool_pose *pose);
 
 /* The hand is at `hand` now: where the tool must be at the end of this tick. Call it in every tick,
- * also when the hand has not moved. A hand that holds nothing is put where it is wanted at once;
- * when it closes in the same tick in which it is put somewhere, it closes in the next. */
-void lar_coupling_follow(lar_coupling *coupling, const lar_tool_pose *hand, lar_tool_pose *tool);
+ * also when the hand has not moved. `evenly`: where the spring is led to; NULL: there too. News of
+ * a hand may come early and late, and the spring should not feel that, but the account goes by the
+ * news. A hand that holds nothing is put where it is wanted at once; when it closes in the same
+ * tick in which it is put somewhere, it closes in the next. */
+void lar_coupling_follow(lar_coupling *coupling, const lar_tool_pose *hand,
+                         const lar_tool_pose *evenly, lar_tool_pose *tool);
 
 /* The tick is done and the tissue pushed the tool with `force`: what the hand feels. Counts are
  * copied. `passed`: time of the clock since the last call [s], which is not the tick's at another

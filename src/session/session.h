@@ -60,6 +60,7 @@ typedef struct lar_session_tool {
     lar_device_status device_status; /* as last summed up */
     lar_coupling coupling;           /* between the hand and it */
     lar_tool_pose target;            /* where its hand is */
+    lar_tool_pose evenly;            /* where it was, to the tick: what it is led to */
     lar_tool_pose pose;              /* where the coupling asks it to be at the tick's end */
     lar_tool_pose sent;              /* where the simulation was told to move it */
     lar_tool_pose place;             /* where it is at the tick's end: tissue may keep it */

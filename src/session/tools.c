@@ -73,6 +73,13 @@ void lar_session_look_at_spares(lar_session *session) {
     }
 }
 
+/* Without a pace there is no clock that ticks keep to. */
+static void lead_evenly(const lar_session *session, lar_session_tool *tool, bool fresh) {
+    tool->evenly = tool->target;
+    if (fresh && tool->device && session->pace.pace > 0)
+        lar_device_evenly(tool->device, session->pace.deadline.due, &tool->evenly);
+}
+
 /* Where the hands are. */
 static void look_at_hands(lar_session *session) {
     const lar_device_tick now = tick_of(session);
@@ -84,6 +91,7 @@ static void look_at_hands(lar_session *session) {
             fresh = lar_device_poll(tool->device, &now, &tool->target);
         else if (fresh)
             tool->target = *hand;
+        lead_evenly(session, tool, fresh);
         if (tool->info.shape == LAR_TOOL_NONE) continue;
         tool->led = tool->led || (fresh && lar_session_follows(session, i));
     }
@@ -123,7 +131,7 @@ lar_status lar_session_move_tools(lar_session *session, lar_error *error) {
     for (int32_t i = 0; i < session->tools && !status; i++) {
         lar_session_tool *tool = &session->tool[i];
         if (!tool->led) continue;
-        lar_coupling_follow(&tool->coupling, &tool->target, &tool->pose);
+        lar_coupling_follow(&tool->coupling, &tool->target, &tool->evenly, &tool->pose);
         status = send_tool(session, i, error);
     }
     return status;

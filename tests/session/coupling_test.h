@@ -38,7 +38,7 @@ static inline void tick(world *w, double x, double z) {
     w->hand.position[0] = x;
     w->hand.position[2] = z;
     w->hand_work -= w->felt.force[0] * (x - before[0]) + w->felt.force[2] * (z - before[2]);
-    lar_coupling_follow(&w->coupling, &w->hand, &w->tool);
+    lar_coupling_follow(&w->coupling, &w->hand, NULL, &w->tool);
     double to = w->tool.position[2];
     double speed = hypot(to - from, w->tool.position[0] - from_x) / w->seconds;
     w->fastest = fmax(w->fastest, speed);

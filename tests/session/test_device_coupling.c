@@ -134,7 +134,7 @@ static void test_turns_are_counted_too(void **state) {
         work -= w.felt.torque[2] * (angle - before) - REFILL * TICK;
         before = angle;
         min = fmin(min, work);
-        lar_coupling_follow(&w.coupling, &w.hand, &w.tool);
+        lar_coupling_follow(&w.coupling, &w.hand, NULL, &w.tool);
         at = 2 * atan2(w.tool.orientation[3], w.tool.orientation[0]);
         lar_tool_force tissue = {.torque = {0, 0, -at}};
         lar_coupling_feel(&w.coupling, &tissue, TICK, &w.felt);
@@ -291,7 +291,7 @@ static void test_rate_is_the_clocks(void **state) {
         double passed = i % 7 ? 1e-4 * any() : 0.02, before = felt[1].force[2];
         hand.position[2] = -1e-4 * i;
         for (int k = 0; k < 2; k++) {
-            lar_coupling_follow(&coupling[k], &hand, &tool[k]);
+            lar_coupling_follow(&coupling[k], &hand, NULL, &tool[k]);
             lar_tool_force tissue = {.force = {0, 0, -2000 * tool[k].position[2]}};
             lar_coupling_feel(&coupling[k], &tissue, k ? passed : TICK, &felt[k]);
         }
@@ -407,7 +407,7 @@ static void test_reset_forgets(void **state) {
     assert_true(w.felt.force[2] > 1);
     lar_tool_pose pose = {.position = {0, 0, 0.05}, .orientation = {1}};
     lar_coupling_reset(&w.coupling, &pose);
-    lar_coupling_follow(&w.coupling, &pose, &w.tool);
+    lar_coupling_follow(&w.coupling, &pose, NULL, &w.tool);
     lar_coupling_feel(&w.coupling, &(lar_tool_force){.held = 0}, TICK, &w.felt);
     assert_true(w.felt.force[2] == 0);
     assert_true(w.tool.position[2] == 0.05);

@@ -61,7 +61,7 @@ static void test_held_torque_is_felt(void **state) {
         world w = start_at(&PROBE, 0, 0, TICKS[i]);
         const lar_tool_force tissue = {.torque = {0.1, 0, 0.15}};
         for (int n = 0; n < 50; n++) {
-            lar_coupling_follow(&w.coupling, &w.hand, &w.tool);
+            lar_coupling_follow(&w.coupling, &w.hand, NULL, &w.tool);
             lar_coupling_feel(&w.coupling, &tissue, TICKS[i], &w.felt);
         }
         assert_true(fabs(w.felt.torque[0] - 0.1) < 1e-9 && fabs(w.felt.torque[2] - 0.15) < 1e-9);

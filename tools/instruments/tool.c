@@ -156,7 +156,7 @@ void lar_guide_reset(lar_guide *guide, const lar_simulation *simulation) {
 lar_status lar_guide_follow(lar_guide *guide, lar_simulation *simulation, const lar_tool_pose *hand,
                             lar_error *error) {
     lar_tool_pose pose = *hand;
-    if (guide->coupled) lar_coupling_follow(&guide->coupling, hand, &pose);
+    if (guide->coupled) lar_coupling_follow(&guide->coupling, hand, NULL, &pose);
     if (memcmp(&pose, &guide->sent, sizeof pose) == 0) return LAR_OK;
     lar_status status =
         lar_simulation_tool_move(simulation, guide->tool, &pose, guide->steps, error);
@@ -171,6 +171,5 @@ void lar_guide_feel(lar_guide *guide, const lar_simulation *simulation) {
     lar_tool_force force, felt;
     lar_simulation_tool_force(simulation, guide->tool, &force, NULL);
     /* As at pace 1, with no tick late. */
-    if (guide->coupled)
-        lar_coupling_feel(&guide->coupling, &force, guide->coupling.seconds, &felt);
+    if (guide->coupled) lar_coupling_feel(&guide->coupling, &force, guide->coupling.seconds, &felt);
 }

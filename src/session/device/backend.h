@@ -34,6 +34,8 @@ typedef struct lar_device_backend {
     void (*close)(void *state);
     /* The newest pose; false when there is none. */
     bool (*poll)(void *state, const lar_device_tick *tick, lar_tool_pose *pose);
+    /* The pose of lar_device_evenly; NULL: the newest. */
+    void (*evenly)(void *state, int64_t due, lar_tool_pose *pose);
     /* NULL: feels nothing. Force and pose in the device's axes. */
     void (*feel)(void *state, const lar_device_tick *tick, const lar_tool_force *force,
                  const lar_tool_pose *pose);

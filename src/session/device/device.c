@@ -268,6 +268,13 @@ bool lar_device_poll(lar_device *device, const lar_device_tick *tick, lar_tool_p
     return true;
 }
 
+void lar_device_evenly(lar_device *device, int64_t due, lar_tool_pose *pose) {
+    lar_tool_pose own;
+    if (!device->backend->evenly) return;
+    device->backend->evenly(device->state, due, &own);
+    into_scene(device, &own, pose);
+}
+
 void lar_device_feel(lar_device *device, const lar_device_tick *tick, const lar_tool_force *force,
                      const lar_tool_pose *pose) {
     if (!device->backend->feel) return;

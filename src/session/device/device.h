@@ -47,6 +47,11 @@ double lar_device_rate(const lar_device *device);
  */
 bool lar_device_poll(lar_device *device, const lar_device_tick *tick, lar_tool_pose *pose);
 
+/* After it was true: where the hand was a little before the tick was due [ns], as far on from the
+ * tick before as it has gone in that time, however packets came. As it is where a device has no
+ * times of its own. */
+void lar_device_evenly(lar_device *device, int64_t due, lar_tool_pose *pose);
+
 /* What the hand feels, after the coupling, and where the tool is. `tick` is the one that ended,
  * with `now` of now. */
 void lar_device_feel(lar_device *device, const lar_device_tick *tick, const lar_tool_force *force,

@@ -51,6 +51,7 @@ static void take_owner(lar_link *link, const lar_link_address *from) {
     link->word = another_word(link);
     link->proved = false;
     link->told_at = 0; /* it was told nothing yet */
+    lar_jitter_buffer_clear(&link->evenly);
     for (int i = 0; i < 3; i++) link->force[i] = link->torque[i] = 0;
 }
 
@@ -76,6 +77,7 @@ lar_link_verdict lar_link_take(lar_link *link, const lar_link_address *from, con
     }
     if (packet.buttons & LAR_BUTTON_CLOSE) packet.pose.opening = 0;
     link->newest = packet;
+    lar_jitter_buffer_put(&link->evenly, &packet.pose, packet.time);
     link->last_packet = now;
     link->received++;
     return LAR_LINK_TAKEN;
@@ -86,13 +88,13 @@ static double toward(double value, double target, double max) {
 }
 
 /* Between the place where the approach began and the hand; starts and ends without a jerk. */
-static void approach(lar_link *link) {
+static void approach(const lar_link *link, const lar_tool_pose *to, lar_tool_pose *pose) {
     double a = link->approach, share = a * a * (3 - 2 * a);
-    const lar_tool_pose *from = &link->from, *to = &link->newest.pose;
+    const lar_tool_pose *from = &link->from;
     for (int i = 0; i < 3; i++)
-        link->pose.position[i] = (1 - share) * from->position[i] + share * to->position[i];
-    lar_quaternion_blend(from->orientation, to->orientation, share, link->pose.orientation);
-    link->pose.opening = to->opening;
+        pose->position[i] = (1 - share) * from->position[i] + share * to->position[i];
+    lar_quaternion_blend(from->orientation, to->orientation, share, pose->orientation);
+    pose->opening = to->opening;
 }
 
 bool lar_link_advance(lar_link *link, bool paused, uint64_t now) {
@@ -123,8 +125,14 @@ bool lar_link_advance(lar_link *link, bool paused, uint64_t now) {
     link->strength = toward(link->strength, lively, ms / (lively ? APPROACH : FADE));
     if (!lively) return false;
     link->approach = toward(link->approach, 1, ms / APPROACH);
-    approach(link);
+    approach(link, &link->newest.pose, &link->pose);
     return true;
+}
+
+void lar_link_evenly(lar_link *link, int64_t due, lar_tool_pose *pose) {
+    lar_tool_pose hand = link->newest.pose;
+    lar_jitter_buffer_at(&link->evenly, due, &hand);
+    approach(link, &hand, pose);
 }
 
 void lar_link_feel(lar_link *link, const double force[3], const double torque[3],

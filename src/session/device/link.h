@@ -29,6 +29,7 @@
 #define LAR_SESSION_DEVICE_LINK_H
 
 #include "base/device_packet.h"
+#include "session/device/jitter_buffer.h"
 
 typedef enum lar_link_verdict {
     LAR_LINK_TAKEN = 0, /* the newest */
@@ -61,9 +62,10 @@ typedef struct lar_link {
     double rate;                          /* of that, at most [N/s] */
     uint64_t told_at;                     /* [ns]; 0: never */
     lar_position_packet newest;
-    lar_tool_pose tool; /* where the tool is; the caller's to keep */
-    lar_tool_pose from; /* where the approach began: where the tool was */
-    lar_tool_pose pose; /* what was given last */
+    lar_jitter_buffer evenly; /* the positions, by the device's own times */
+    lar_tool_pose tool;       /* where the tool is; the caller's to keep */
+    lar_tool_pose from;       /* where the approach began: where the tool was */
+    lar_tool_pose pose;       /* what was given last */
     uint64_t received, refused, late, lost, timeouts;
 } lar_link;
 
@@ -78,6 +80,10 @@ lar_link_verdict lar_link_take(lar_link *link, const lar_link_address *from, con
  * the force fades as in a silence. True when the pose is the hand's (false: nobody is there, and
  * it stays where it was). */
 bool lar_link_advance(lar_link *link, bool paused, uint64_t now);
+
+/* After it was true: where the hand was a little before `due`, a time that goes evenly [ns]; led to
+ * in the same way. */
+void lar_link_evenly(lar_link *link, int64_t due, lar_tool_pose *pose);
 
 /* What the device should get of this force and torque now. `held_back`: the shares of the ones
  * before that nobody has paid for, and that they lose at once. */

@@ -231,6 +231,11 @@ static bool udp_poll(void *data, const lar_device_tick *tick, lar_tool_pose *pos
     return here;
 }
 
+static void udp_evenly(void *data, int64_t due, lar_tool_pose *pose) {
+    udp_state *state = data;
+    lar_link_evenly(&state->link, due, pose);
+}
+
 /* ---- forces out ------------------------------------------------------------------------------ */
 
 static lar_force_packet force_packet(const udp_state *state, const lar_device_tick *tick,
@@ -329,6 +334,7 @@ const lar_device_backend lar_device_udp = {.name = "udp",
                                            .open = udp_open,
                                            .close = udp_close,
                                            .poll = udp_poll,
+                                           .evenly = udp_evenly,
                                            .feel = udp_feel,
                                            .told = udp_told,
                                            .reset = udp_reset,
