@@ -175,6 +175,37 @@ static void what_is_no_number_is_the_most(void **unused) {
     assert_true(isnan(sum.moved) && isnan(sum.way));
 }
 
+/* Two strips one element high side by side; a tooth of the second stands `deep` in the first. */
+static void bite(double deep, double apart, const char *refused) {
+    static const brick strip = {{5, 1, 1}, 0.01, 0, LAR_LAW_neo_hookean, 2e4, 4e5, 1000};
+    lar_model *model = empty_model(&strip);
+    lar_simulation *s = NULL;
+    lar_error error = {0};
+    add_brick(model, &strip, (double[]){0, 0, 0});
+    int32_t first = model->mesh.node_count;
+    add_brick(model, &strip, (double[]){0.0037, 0.01 + apart, 0});
+    for (int32_t n = first; n < model->mesh.node_count; n++) {
+        double *x = model->mesh.position[n];
+        if (fabs(x[0] - 0.0237) < 1e-9 && fabs(x[1] - 0.01 - apart) < 1e-9) x[1] -= deep;
+    }
+    touch_self(model);
+    assert_int_equal(lar_model_check(model, &error), LAR_OK);
+    lar_status status = lar_simulation_create(model, NULL, &s, &error);
+    assert_int_equal(status, refused ? LAR_ERROR_MODEL : LAR_OK);
+    if (refused && !strstr(error.message, refused)) fail_msg("%s", error.message);
+    lar_simulation_destroy(s);
+    lar_model_destroy(model);
+}
+
+/* With all nodes on surfaces, as in polygons one element high, that are turned in each other. */
+static void flat_bodies_in_each_other_are_refused(void **unused) {
+    (void)unused;
+    bite(0.001, 0.0009, "lie in each other at the start");
+    bite(0, 0, NULL);
+    bite(0.001, 0.0011, NULL);
+    bite(0, -1e-9, NULL);
+}
+
 /* ---- energy --------------------------------------------------------------------------------- */
 
 /* Largest total energy over the first one of a body that is thrown on another. */
@@ -490,6 +521,7 @@ int main(void) {
         cmocka_unit_test(forces_come_in_pairs),
         cmocka_unit_test(a_body_given_twice_is_refused),
         cmocka_unit_test(bodies_in_each_other_are_refused),
+        cmocka_unit_test(flat_bodies_in_each_other_are_refused),
         cmocka_unit_test(what_is_no_number_is_the_most),
         cmocka_unit_test(a_collision_adds_no_energy),
         cmocka_unit_test(what_is_crushed_holds_or_stops_and_says_why),

@@ -169,21 +169,29 @@ static void measure_clearance(lar_contact_surface *s, const lar_contact_list *li
     }
 }
 
-/* Whether a face lies over one of another body, in its plane, and looks the same way. */
+/* Whether a face lies over one of another body, in its plane, and looks the same way: with its
+ * middle, or with a corner, a little inwards, for bodies that stand side by side have corners on
+ * each other's sides. */
 static bool lies_on(const lar_contact_surface *s, int32_t face, int32_t other, double rounding) {
-    static const double middle[4] = {0.25, 0.25, 0.25, 0.25};
-    double own[4][3], corner[4][3], x[3], way[2][3];
-    lar_face_point point;
+    static const double INWARDS = 1e-3;
+    double own[4][3], corner[4][3], way[2][3];
+    bool on = false;
     for (int a = 0; a < 4; a++) {
         memcpy(own[a], s->rest[s->face[face].corner[a]], sizeof own[a]);
         memcpy(corner[a], s->rest[s->face[other].corner[a]], sizeof corner[a]);
     }
-    lar_face_mean((const double(*)[3])own, middle, x);
-    lar_face_closest(x, (const double(*)[3])corner, LAR_FACE_TIE * s->face[other].size, &point);
+    for (int p = 0; p < 5 && !on; p++) {
+        double weight[4], x[3];
+        lar_face_point point;
+        for (int a = 0; a < 4; a++) weight[a] = p == 4 ? 0.25 : 0.25 * INWARDS;
+        if (p < 4) weight[p] += 1 - INWARDS;
+        lar_face_mean((const double(*)[3])own, weight, x);
+        lar_face_closest(x, (const double(*)[3])corner, LAR_FACE_TIE * s->face[other].size, &point);
+        on = point.distance <= rounding;
+    }
     lar_face_normal((const double(*)[3])own, way[0]);
     lar_face_normal((const double(*)[3])corner, way[1]);
-    double along = way[0][0] * way[1][0] + way[0][1] * way[1][1] + way[0][2] * way[1][2];
-    return point.distance <= rounding && along > 0;
+    return on && lar_dot(way[0], way[1]) > 0;
 }
 
 /* A face of another body that this one lies on, among those near its corners; -1: none. Groups come
