@@ -389,9 +389,12 @@ static bool in_contact(lar_body_contact *contact, const lar_state *state, int32_
     lar_offset_out(contact, state, g, face < 0 ? s.gap : INFINITY);
     if (s.flush) {
         lar_offset_stay_flush(contact, g, face, &point);
-    } else if (face >= 0 && s.gap > -INFINITY) {
-        double clear = 0.999 * lar_survey_clear(contact, g, &s, &point) / LAR_APPROACH;
-        contact->due[g] = fmax(contact->due[g], fmin(contact->travel + clear, s.next));
+    } else if (face >= 0) {
+        double clear = lar_offset_meet(contact, state, g, face, &point);
+        if (!(s.gap > -INFINITY)) return false;
+        clear = 0.999 * fmin(clear, lar_survey_clear(contact, g, &s, &point)) / LAR_APPROACH;
+        if (clear > 0)
+            contact->due[g] = fmax(contact->due[g], fmin(contact->travel + clear, s.next));
     }
     return false;
 }

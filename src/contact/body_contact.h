@@ -38,7 +38,7 @@
  *
  * Blocks that stand exactly on each other (history/flush.h). A node has parted from the block that
  * it was flush with once it is beside it, or above it by a part of a face: then it sees all faces,
- * for good, which is remembered in the sign of its offset.
+ * which is remembered in the sign of its offset, until it stands straight before the block again.
  *
  * Offsets are the one thing that contact remembers: they stand in state->level [m], 0 for who is
  * not inside, and belong to the state like u and v.
@@ -114,6 +114,8 @@ static inline bool lar_offset_is_behind(double offset) {
 /* No offset: the node has parted from what it was flush with (history/flush.h), which the sign of
  * its offset says from then on. */
 #define LAR_OFFSET_PARTED (-0.0)
+/* And no longer: it stands before that again. Only noted, no offset is so. */
+#define LAR_OFFSET_MET INFINITY
 
 /* An offset that is another than in the last step. */
 typedef struct lar_penetration_offset {
@@ -331,6 +333,12 @@ bool lar_offset_is_flush(const lar_body_contact *contact, const lar_state *state
  * beside it, or too far above. `face`: the closest one that it sees, or -1. */
 void lar_offset_stay_flush(lar_body_contact *contact, int32_t g, int32_t face,
                            const lar_face_point *closest);
+
+/* The node of group g is not flush and touches nothing of that body: where it has been flush with
+ * it and is straight before a face now, and near, it is so again. How far it may go before that has
+ * to be looked at once more [m]. */
+double lar_offset_meet(lar_body_contact *contact, const lar_state *state, int32_t g, int32_t face,
+                       const lar_face_point *closest);
 
 /* A node has parted from all that it was flush with, from when it moves on. */
 void lar_offset_part(lar_body_contact *contact, int32_t node);

@@ -230,9 +230,12 @@ void lar_body_contact_apply(lar_body_contact *contact, const lar_condition_conte
     contact->info.steps++;
 }
 
-/* Who has parted stays so, whatever its offset is. */
+/* Who has parted stays so until it meets again, whatever its offset is. */
 static void take_offset(const lar_penetration_offset *offset, double *level) {
-    *level = signbit(offset->depth) ? -fabs(*level) : copysign(offset->depth, *level);
+    if (signbit(offset->depth) || offset->depth == LAR_OFFSET_MET)
+        *level = copysign(*level, offset->depth);
+    else
+        *level = copysign(offset->depth, *level);
 }
 
 void lar_body_contact_moved(lar_body_contact *contact, lar_state *state, double way) {

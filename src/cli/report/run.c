@@ -244,7 +244,8 @@ static void print_contact(const run_report *report, FILE *out) {
     if (part > MUCH)
         fprintf(out,
                 "%-17s%.2g of the shortest edge: forces are less than those of bodies that only "
-                "touch; --time-step %.2g lets in a quarter of it\n",
+                "touch; --time-step %.2g lets in a quarter of it, but at edges, where only "
+                "smaller elements help\n",
                 "", part, two_digits_of(0.5 * lar_simulation_time_step(simulation)));
     print_through(report, &info, out);
 }

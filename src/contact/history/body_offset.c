@@ -98,6 +98,41 @@ void lar_offset_stay_flush(lar_body_contact *contact, int32_t g, int32_t face,
     if (face < 0 || !(closest->distance < near)) lar_offset_part(contact, node);
 }
 
+static bool is_straight(const lar_face_point *point) {
+    static const double STRAIGHT = 0.9; /* cosine */
+    return fabs(point->height) > STRAIGHT * point->distance;
+}
+
+/* Who was flush with one body. What it remembers is for all together, so who was with two does not
+ * meet one of them again. */
+static bool may_meet(const lar_body_contact *contact, const lar_state *state, int32_t g) {
+    const lar_contact_surface *s = contact->surface;
+    const lar_contact_group *group = &contact->list.group[g];
+    int32_t at = 0, body = -1;
+    return group->node < s->node_count && has_parted(contact, state, group->node) &&
+           lar_flush_next_body(s, group->node, &at, &body) &&
+           body == s->face[contact->list.face[group->first]].body &&
+           !lar_flush_next_body(s, group->node, &at, &body);
+}
+
+double lar_offset_meet(lar_body_contact *contact, const lar_state *state, int32_t g, int32_t face,
+                       const lar_face_point *closest) {
+    const lar_contact_surface *s = contact->surface;
+    const lar_contact_group *group = &contact->list.group[g];
+    const int32_t *faces = contact->list.face + group->first;
+    double most = 0;
+    if (!may_meet(contact, state, g)) return INFINITY;
+    for (int32_t i = 0; i < group->count; i++) most = fmax(most, s->face[faces[i]].size);
+    /* Who is out of reach is not looked at in every step. */
+    const double reach = lar_contact_reach(s, &s->node[group->node], &s->face[face]);
+    if (closest->height > 0 && is_straight(closest) && closest->distance < reach &&
+        closest->distance < LAR_FLUSH_NEAR * s->face[face].size &&
+        !lar_flush_hides(s, group->node, face) && (!contact->keeps || contact->keeps[group->node]))
+        contact->offset[contact->offset_count++] =
+            (lar_penetration_offset){contact->view.local[group->node], LAR_OFFSET_MET};
+    return fmax(0, closest->distance - LAR_FLUSH_NEAR * most);
+}
+
 /* ---- sharp edges ----------------------------------------------------------------------------- */
 
 bool lar_looks_away(const lar_body_contact *contact, const lar_state *state, int32_t node,
@@ -126,11 +161,6 @@ bool lar_looks_away(const lar_body_contact *contact, const lar_state *state, int
     }
     if (through) *through = least < -AGAINST && !(deeper > 0) ? -1 : deeper;
     return least < AWAY && !(most > AGAINST);
-}
-
-static bool is_straight(const lar_face_point *point) {
-    static const double STRAIGHT = 0.9; /* cosine */
-    return fabs(point->height) > STRAIGHT * point->distance;
 }
 
 /* Whether face f stands against the one with that normal, which the node at x is straight behind by

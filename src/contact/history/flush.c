@@ -18,7 +18,7 @@ static void corners_at_rest(const lar_contact_surface *s, int32_t face, double c
  * looks the same way. */
 static bool goes_on_in(const lar_contact_surface *s, int32_t own, int32_t other, int32_t node,
                        double rounding) {
-    static const double SAME = 0.9; /* cosine */
+    static const double SAME = 0.9;    /* cosine */
     static const double WITHIN = 0.25; /* of a face */
     double corner[2][4][3], way[2][3], from[3];
     corners_at_rest(s, own, corner[0]);
@@ -28,6 +28,15 @@ static bool goes_on_in(const lar_contact_surface *s, int32_t own, int32_t other,
     double length = lar_length(way[1]), out = lar_dot(from, way[1]) / length;
     return lar_dot(way[0], way[1]) > SAME * lar_length(way[0]) * length && out <= rounding &&
            out >= -fmax(rounding, WITHIN * s->face[other].size);
+}
+
+static bool looks_against(const lar_contact_surface *s, int32_t own, int32_t other) {
+    static const double AGAINST = -0.9; /* cosine */
+    double corner[2][4][3], way[2][3];
+    corners_at_rest(s, own, corner[0]);
+    corners_at_rest(s, other, corner[1]);
+    for (int k = 0; k < 2; k++) lar_face_normal((const double(*)[3])corner[k], way[k]);
+    return lar_dot(way[0], way[1]) < AGAINST * lar_length(way[0]) * lar_length(way[1]);
 }
 
 /* Faces by their corners: those of node n are at[first[n]] up to at[first[n + 1]]. */
@@ -53,32 +62,44 @@ static bool has_corner(const lar_contact_face *face, int32_t node) {
     return has;
 }
 
-/* Whether one of the faces that a node, or all nodes of a point, are corners of goes on in
- * `other`. */
-static bool is_flush_with(const lar_contact_surface *s, const around *faces, int32_t node,
-                          int32_t other, double rounding) {
+/* Whether one of the faces that a node, or all nodes of a point, are corners of goes on in `other`,
+ * or looks against it. */
+static bool has_face(const lar_contact_surface *s, const around *faces, int32_t node, int32_t other,
+                     bool against, double rounding) {
     int32_t parent[LAR_CONTACT_PARENTS];
     double weight[LAR_CONTACT_PARENTS];
     int count = lar_contact_parents(s, node, parent, weight);
     for (int32_t i = faces->first[parent[0]]; i < faces->first[parent[0] + 1]; i++) {
-        bool common = s->face[faces->at[i]].fades;
-        for (int k = 1; k < count; k++)
-            common = common && has_corner(&s->face[faces->at[i]], parent[k]);
-        if (common && goes_on_in(s, faces->at[i], other, node, rounding)) return true;
+        const int32_t own = faces->at[i];
+        bool common = against || s->face[own].fades;
+        for (int k = 1; k < count; k++) common = common && has_corner(&s->face[own], parent[k]);
+        if (common &&
+            (against ? looks_against(s, own, other) : goes_on_in(s, own, other, node, rounding)))
+            return true;
     }
     return false;
 }
 
-/* How far the node of a group is from its faces at rest, in parts of their size. */
-static double distance_at_rest(const lar_contact_surface *s, const lar_contact_list *list,
-                               const lar_contact_group *group) {
+/* Whether the node of a group is near its faces at rest, in parts of their size, or straight before
+ * one that a face of its own looks against. */
+static bool stands_before(const lar_contact_surface *s, const lar_contact_list *list,
+                          const around *faces, const lar_contact_group *group) {
+    static const double STRAIGHT = 0.9; /* cosine */
     double min = INFINITY, corner[4][3];
+    bool straight = false;
+    lar_face_point point;
     for (int32_t i = group->first; i < group->first + group->count; i++) {
-        const double size = s->face[list->face[i]].size;
-        corners_at_rest(s, list->face[i], corner);
-        min = fmin(min, lar_face_distance(s->rest[group->node], (const double(*)[3])corner) / size);
+        const int32_t face = list->face[i];
+        const double size = s->face[face].size, tie = LAR_FACE_TIE * size;
+        corners_at_rest(s, face, corner);
+        lar_face_closest(s->rest[group->node], (const double(*)[3])corner, tie, &point);
+        if (point.distance < LAR_FLUSH_NEAR * size) return true;
+        if (point.distance < min - tie) straight = false;
+        if (point.distance <= min + tie && point.height > STRAIGHT * point.distance)
+            straight = straight || has_face(s, faces, group->node, face, true, 0);
+        min = fmin(min, point.distance);
     }
-    return min;
+    return straight;
 }
 
 lar_status lar_flush_find(lar_contact_surface *s, const lar_contact_list *list, double rounding,
@@ -91,13 +112,12 @@ lar_status lar_flush_find(lar_contact_surface *s, const lar_contact_list *list, 
     int32_t count = 0, next = 0;
     for (int32_t g = 0; g < list->group_count && fits; g++) {
         const lar_contact_group *group = &list->group[g];
-        if (lar_group_is_own(s, list, group) || !(s->node[group->node].blunt < 1) ||
-            !(distance_at_rest(s, list, group) < LAR_FLUSH_NEAR))
-            continue;
+        if (lar_group_is_own(s, list, group) || !(s->node[group->node].blunt < 1)) continue;
         while (next <= group->node) s->flush_first[next++] = count;
+        if (!stands_before(s, list, &faces, group)) continue;
         for (int32_t i = group->first; i < group->first + group->count; i++)
             if (s->face[list->face[i]].fades &&
-                is_flush_with(s, &faces, group->node, list->face[i], rounding))
+                has_face(s, &faces, group->node, list->face[i], false, rounding))
                 s->flush[count++] = list->face[i];
     }
     while (fits && next <= s->point_count) s->flush_first[next++] = count;

@@ -2,10 +2,11 @@
  *
  *          |      |            A node on the edge of the upper block that sinks in goes down along
  *          |      |            the other's side, which would be the closest face, at distance 0 or
- *     -----o------o            nearly: nothing would push it up. As long as a node has never parted
+ *     -----o------o            nearly: nothing would push it up. As long as a node has not parted
  *          |      |            from the block that it is flush with, it does not see those of its
  *          |      |            faces that its own body's faces go on in, or go on a little within
- *                              and turned, and stands on what is left.
+ *                              and turned, and stands on what is left. So it is with one that
+ *                              begins straight before the block, or comes there again.
  *
  * Points of edges are flush as the nodes are of which they are made. What becomes of it in a run is
  * in body_contact.h, offsets.
