@@ -80,11 +80,13 @@ static bool has_face(const lar_contact_surface *s, const around *faces, int32_t 
     return false;
 }
 
+typedef enum standing { AWAY, STRAIGHT, NEAR } standing;
+
 /* Whether the node of a group is near its faces at rest, in parts of their size, or straight before
  * one that a face of its own looks against. */
-static bool stands_before(const lar_contact_surface *s, const lar_contact_list *list,
-                          const around *faces, const lar_contact_group *group) {
-    static const double STRAIGHT = 0.9; /* cosine */
+static standing standing_of(const lar_contact_surface *s, const lar_contact_list *list,
+                            const around *faces, const lar_contact_group *group) {
+    static const double COSINE = 0.9;
     double min = INFINITY, corner[4][3];
     bool straight = false;
     lar_face_point point;
@@ -93,13 +95,33 @@ static bool stands_before(const lar_contact_surface *s, const lar_contact_list *
         const double size = s->face[face].size, tie = LAR_FACE_TIE * size;
         corners_at_rest(s, face, corner);
         lar_face_closest(s->rest[group->node], (const double(*)[3])corner, tie, &point);
-        if (point.distance < LAR_FLUSH_NEAR * size) return true;
+        if (point.distance < LAR_FLUSH_NEAR * size) return NEAR;
         if (point.distance < min - tie) straight = false;
-        if (point.distance <= min + tie && point.height > STRAIGHT * point.distance)
+        if (point.distance <= min + tie && point.height > COSINE * point.distance)
             straight = straight || has_face(s, faces, group->node, face, true, 0);
         min = fmin(min, point.distance);
     }
-    return straight;
+    return straight ? STRAIGHT : AWAY;
+}
+
+/* Whether a node that stands so may be flush with the body of group g. What parts from one has
+ * parted from all, so who is near one is not listed with those that it is only straight before. */
+static bool may_be_flush(const lar_contact_surface *s, const lar_contact_list *list,
+                         const around *faces, int32_t g) {
+    const lar_contact_group *group = &list->group[g];
+    const standing with = standing_of(s, list, faces, group);
+    int32_t parent[LAR_CONTACT_PARENTS], h = g;
+    double weight[LAR_CONTACT_PARENTS];
+    if (with != STRAIGHT) return with == NEAR;
+    int count = lar_contact_parents(s, group->node, parent, weight);
+    for (int k = 0; k < count && count > 1; k++)
+        if (!lar_flush_at_rest(s, parent[k], s->face[list->face[group->first]].body)) return false;
+    while (h > 0 && list->group[h - 1].node == group->node) h--;
+    for (; h < list->group_count && list->group[h].node == group->node; h++)
+        if (h != g && !lar_group_is_own(s, list, &list->group[h]) &&
+            standing_of(s, list, faces, &list->group[h]) != AWAY)
+            return false;
+    return true;
 }
 
 lar_status lar_flush_find(lar_contact_surface *s, const lar_contact_list *list, double rounding,
@@ -114,7 +136,7 @@ lar_status lar_flush_find(lar_contact_surface *s, const lar_contact_list *list, 
         const lar_contact_group *group = &list->group[g];
         if (lar_group_is_own(s, list, group) || !(s->node[group->node].blunt < 1)) continue;
         while (next <= group->node) s->flush_first[next++] = count;
-        if (!stands_before(s, list, &faces, group)) continue;
+        if (!may_be_flush(s, list, &faces, g)) continue;
         for (int32_t i = group->first; i < group->first + group->count; i++)
             if (s->face[list->face[i]].fades &&
                 has_face(s, &faces, group->node, list->face[i], false, rounding))
