@@ -1,5 +1,6 @@
 /* Scenes that are right: every key, every selector, what ends up in the model. The meshes are the
  * bricks of brick.h. */
+#include "model/settings.h"
 #include "model/scene_test.h"
 
 static void test_node_selectors(void **state) {
@@ -128,6 +129,31 @@ static void test_springs(void **state) {
             same(bed->stiffness[k], i ? share[k] : 2);
         }
     }
+    lar_model_destroy(model);
+}
+
+static void test_gravity_with_a_course(void **state) {
+    (void)state;
+    double g[3];
+    lar_model *model = scene(HEAD MATERIAL "gravity: {acceleration: [1, 0, -8], over: 0.2}\n");
+    same(lar_model_duration(model), 0.2);
+    lar_gravity_at(model, NULL, 0.1, g);
+    same(g[0], 0.5);
+    same(g[1], 0);
+    same(g[2], -4);
+    lar_model_destroy(model);
+    model =
+        scene(HEAD MATERIAL "gravity:\n"
+                            "  - {acceleration: [0, 0, -8], curve: {points: [[0, 1], [2, 0]]}}\n"
+                            "  - {acceleration: [4, 0, 0], curve: {points: [[0, 0], [1, 1]]}}\n");
+    lar_gravity_at(model, NULL, 0.5, g);
+    same(g[0], 2);
+    same(g[1], 0);
+    same(g[2], -6);
+    lar_model_destroy(model);
+    model = scene(HEAD MATERIAL "gravity: {acceleration: [0, 0, -8]}\n");
+    lar_gravity_at(model, NULL, 0, g);
+    same(g[2], -8);
     lar_model_destroy(model);
 }
 
@@ -513,6 +539,7 @@ int main(void) {
         cmocka_unit_test(test_face_selectors),
         cmocka_unit_test(test_whole_selections),
         cmocka_unit_test(test_springs),
+        cmocka_unit_test(test_gravity_with_a_course),
         cmocka_unit_test(test_plain_values),
         cmocka_unit_test(test_materials),
         cmocka_unit_test(test_stiffening_laws),

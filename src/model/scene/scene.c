@@ -121,6 +121,44 @@ static lar_status read_title(lar_scene *scene, const lar_yaml *node) {
     return LAR_OK;
 }
 
+/* One acceleration with a course of its own: the model has a curve for each axis. */
+static lar_status read_gravity_entry(lar_scene *scene, const lar_yaml *entry) {
+    static const char *const keys[] = {"acceleration", "over", "curve", NULL};
+    const char *const what = "gravity";
+    lar_model *model = scene->model;
+    const lar_yaml *value;
+    double acceleration[3];
+    int curve;
+    lar_status status = lar_scene_keys(scene, entry, what, keys);
+    if (!status)
+        status = lar_scene_need(scene, entry, what, "acceleration", "acceleration: [0, 0, -9.81]",
+                                &value);
+    if (!status) status = lar_scene_vector(scene, value, LAR_IN_GRAVITY, acceleration);
+    if (!status) status = lar_scene_read_course(scene, entry, false, &curve);
+    for (int axis = 0; !status && axis < 3; axis++) {
+        if (acceleration[axis] == 0) continue;
+        if (model->gravity[axis] != 0)
+            return lar_scene_fail(scene, entry, LAR_ERROR_MODEL,
+                                  "gravity along %c stands in two entries; write one, with the "
+                                  "curve of both together",
+                                  'x' + axis);
+        model->gravity[axis] = acceleration[axis];
+        model->gravity_curve[axis] = curve;
+    }
+    return status;
+}
+
+/* [x, y, z], or with a course, or several that act along different axes. */
+static lar_status read_gravity(lar_scene *scene, const lar_yaml *node) {
+    bool list = node->kind == LAR_YAML_LIST && node->first && node->first->kind == LAR_YAML_MAPPING;
+    if (node->kind == LAR_YAML_MAPPING) return read_gravity_entry(scene, node);
+    if (!list) return lar_scene_vector(scene, node, LAR_IN_GRAVITY, scene->model->gravity);
+    lar_status status = LAR_OK;
+    for (const lar_yaml *entry = node->first; !status && entry; entry = entry->next)
+        status = read_gravity_entry(scene, entry);
+    return status;
+}
+
 /* What needs no mesh, first: its mistakes should not wait for a large file. */
 static lar_status read_plain_values(lar_scene *scene, double *scale) {
     lar_model *model = scene->model;
@@ -132,8 +170,7 @@ static lar_status read_plain_values(lar_scene *scene, double *scale) {
                                     "a number, metres per unit of the mesh file, "
                                     "for example 0.001 for millimetres",
                                     scale);
-    if (!status && (value = lar_yaml_get(root, "gravity")))
-        status = lar_scene_vector(scene, value, LAR_IN_GRAVITY, model->gravity);
+    if (!status && (value = lar_yaml_get(root, "gravity"))) status = read_gravity(scene, value);
     if (!status && (value = lar_yaml_get(root, "time_step"))) status = read_time_step(scene, value);
     if (!status && (value = lar_yaml_get(root, "damping"))) {
         model->damping_line = value->line;
