@@ -299,6 +299,35 @@ __attribute__((noinline, cold)) static double come_past(const lar_body_contact *
     return part * force;
 }
 
+static bool is_beside(const lar_face_point *closest) {
+    static const double STRAIGHT = 0.7; /* 45 degrees */
+    return closest->height < 0 && -closest->height < STRAIGHT * closest->distance;
+}
+
+static bool is_past(const lar_body_contact *contact, int32_t node, const lar_survey *s,
+                    const known_face *known, const lar_face_point *closest, lar_rim *rim) {
+    return s->flush && lar_flush_past(contact->surface, node, known->face, s->x,
+                                      (const double(*)[3])known->x, closest, rim);
+}
+
+/* The point that pushes moves from an edge to below a node that is past it. */
+static bool shift(touching *t, int32_t face, const lar_rim *rim) {
+    for (int32_t f = 0; f < t->count; f++) {
+        if (t->face[f] != face) continue;
+        for (int a = 0; a < 4; a++) t->weight[f][a] += rim->shift[a];
+        return true;
+    }
+    return false;
+}
+
+/* There is less of the force the farther the node is past the edge, and what it stores there it
+ * gives back along the way. */
+static double slide_off(const lar_rim *rim, const lar_face_point *closest, int32_t face,
+                        double energy, double force, touching *t) {
+    t->border = face;
+    return lar_flush_left(rim, closest, energy, t->pay) * force;
+}
+
 /* The force on the node of group g by a face which it is behind, or before it by less than the
  * contact distance. False: they do not touch, or no longer push. */
 static bool push(lar_body_contact *contact, const lar_state *state, int32_t g, int32_t face,
@@ -316,6 +345,8 @@ static bool push(lar_body_contact *contact, const lar_state *state, int32_t g, i
     bool before = !(closest->height < 0), own = lar_same_body(contact, node, face);
     if ((before || !own) && lar_contact_active(&surface->node[node], f))
         blend(contact, g, closest, s, t);
+    lar_rim rim;
+    const bool past = is_past(contact, node, s, &known, closest, &rim) && shift(t, face, &rim);
     point_of(contact, state, t, &known, &point);
     double depth = outward(x, &point, before ? -1 : 1, LAR_FACE_TIE * f->size,
                            (const double(*)[3])known.x, way);
@@ -336,6 +367,8 @@ static bool push(lar_body_contact *contact, const lar_state *state, int32_t g, i
         force = come_in(contact, g, s, &m, two, together, energy, force, t);
     else if (s->hidden >= 0)
         force = come_past(contact, g, s, together * energy, force, t);
+    else if (past)
+        force = slide_off(&rim, closest, face, together * energy, force, t);
     t->depth = fmax(depth, 0);
     for (int i = 0; i < 3; i++) {
         t->force[i] = together * force * way[i];
@@ -358,20 +391,24 @@ static bool push(lar_body_contact *contact, const lar_state *state, int32_t g, i
     return true;
 }
 
-/* Who does not see the sides of a body is beside it, and not in it, where it is not straight behind
- * a face. */
-static bool is_beside(const lar_face_point *closest) {
-    static const double STRAIGHT = 0.7; /* 45 degrees */
-    return closest->height < 0 && -closest->height < STRAIGHT * closest->distance;
-}
-
-static bool touches(const lar_body_contact *contact, int32_t node, int32_t face,
-                    const lar_survey *s, const lar_face_point *point) {
+/* Who does not see the sides of a body, and is past its edge, may be beside it, and not in it. */
+static bool touches(const lar_body_contact *contact, const lar_state *state, int32_t node,
+                    int32_t face, const lar_survey *s, const lar_face_point *point) {
     const lar_contact_surface *surface = contact->surface;
-    if (s->flush && is_beside(point)) return false;
+    known_face known = {.face = face};
+    lar_rim rim;
+    double away = point->distance;
+    if (s->flush) {
+        lar_contact_corners(contact, state, face, known.x, known.v);
+        if (is_past(contact, node, s, &known, point, &rim)) {
+            if (!(rim.part < 1)) return false;
+            away = fabs(point->height);
+        } else if (is_beside(point)) {
+            return false;
+        }
+    }
     return point->height < 0 ||
-           point->distance <
-               lar_contact_standoff(surface, &surface->node[node], &surface->face[face]);
+           away < lar_contact_standoff(surface, &surface->node[node], &surface->face[face]);
 }
 
 /* Contact of group g. */
@@ -380,7 +417,7 @@ static bool in_contact(lar_body_contact *contact, const lar_state *state, int32_
     lar_face_point point;
     lar_survey s;
     int32_t face = lar_survey_closest(contact, state, g, &s, &point);
-    if (face >= 0 && touches(contact, group->node, face, &s, &point))
+    if (face >= 0 && touches(contact, state, group->node, face, &s, &point))
         return push(contact, state, g, face, &point, &s, t);
     if (lar_group_is_own(contact->surface, &contact->list, group)) {
         lar_offset_leave(contact, state, group->node, face);

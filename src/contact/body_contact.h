@@ -251,6 +251,8 @@ typedef struct lar_survey {
     double inset;   /* how far the node is behind the one or the other [m] */
     bool inside;    /* it is behind one that it does not see: none that it is before counts */
     bool beyond;    /* it is in another body still, on the other side of a joint */
+    bool joints;    /* closed joints are not in the way */
+    double beside;  /* how far from an edge those are, at least; INFINITY: there are none [m] */
     double next;    /* travel at which the first of the others may matter [m] */
 } lar_survey;
 
@@ -298,14 +300,18 @@ bool lar_looks_away(const lar_body_contact *contact, const lar_state *state, int
 /* A face that the node of group g, on a sharp edge, is behind may stand against one of a third body
  * that looks the other way: a joint that is closed, with nothing between. Through that nobody comes
  * in, so the face is not in the way of who came along in the third body, and pushes as little as if
- * the two were one. `corner` and `point` are the face's. */
+ * the two were one. Not so where one of the two faces goes on beyond the edge of the other: there
+ * its side is in the way. `corner` and `point` are the face's; *within becomes how far from its
+ * edge that is [m]. */
+#define LAR_JOINT_STEP 0.02 /* of a face: who differs by less does not stand out */
 typedef enum lar_joint {
     LAR_JOINT_NONE,
     LAR_JOINT_PASSED, /* the node is past the third body's face, */
     LAR_JOINT_AHEAD   /* or behind that still: bodies may lie in each other there */
 } lar_joint;
 lar_joint lar_joint_of(const lar_body_contact *contact, const lar_state *state, int32_t g,
-                       const double x[3], const double corner[4][3], const lar_face_point *point);
+                       int32_t face, const double x[3], const double corner[4][3],
+                       const lar_face_point *point, double *within);
 
 /* The edge of the node of group g may go into the other body through one face, the border, and lie
  * on another one, as that of a slab under a block that slides along it. Then only the other one is

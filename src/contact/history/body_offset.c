@@ -163,10 +163,29 @@ bool lar_looks_away(const lar_body_contact *contact, const lar_state *state, int
     return least < AWAY && !(most > AGAINST);
 }
 
+/* How far within a body's edges a point of one of its faces is; INFINITY: it has none [m]. */
+static double within_edges(const lar_contact_surface *s, int32_t f, const double corner[4][3],
+                           const lar_face_point *point) {
+    static const double SHARP = 0.5;
+    const int32_t *nodes = s->face[f].corner;
+    double at[3], along[3], from[3], away[3], least = INFINITY;
+    lar_face_mean(corner, point->weight, at);
+    for (int a = 0; a < 4; a++) {
+        const int next = (a + 1) % 4;
+        if (!(fmax(s->node[nodes[a]].blunt, s->node[nodes[next]].blunt) < SHARP)) continue;
+        lar_minus(corner[next], corner[a], along);
+        lar_minus(at, corner[a], from);
+        lar_cross(along, from, away);
+        least = fmin(least, lar_length(away) / lar_length(along));
+    }
+    return least;
+}
+
 /* Whether face f stands against the one with that normal, which the node at x is straight behind by
- * `-height`. Who is out of reach is not in every list. */
+ * `-height`, `within` of the edges of. Who is out of reach is not in every list. */
 static lar_joint joint_with(const lar_body_contact *contact, const lar_state *state, int32_t node,
-                            int32_t f, const double x[3], const double normal[3], double height) {
+                            int32_t f, const double x[3], const double normal[3], double height,
+                            double within) {
     static const double NEAR = 0.02;    /* of a face */
     static const double AGAINST = -0.9; /* cosine */
     const double size = contact->surface->face[f].size, near = NEAR * size;
@@ -183,11 +202,15 @@ static lar_joint joint_with(const lar_body_contact *contact, const lar_state *st
     lar_face_normal((const double(*)[3])corner, way);
     if (!(lar_dot(way, normal) < AGAINST * lar_length(way) * lar_length(normal)))
         return LAR_JOINT_NONE;
+    /* Where the one goes on beyond the other's edge, its side is in the way. */
+    const double other = within_edges(contact->surface, f, (const double(*)[3])corner, &point);
+    if (!(fabs(other - within) < LAR_JOINT_STEP * size)) return LAR_JOINT_NONE;
     return point.height < 0 ? LAR_JOINT_AHEAD : LAR_JOINT_PASSED;
 }
 
 lar_joint lar_joint_of(const lar_body_contact *contact, const lar_state *state, int32_t g,
-                       const double x[3], const double corner[4][3], const lar_face_point *point) {
+                       int32_t face, const double x[3], const double corner[4][3],
+                       const lar_face_point *point, double *within) {
     const lar_contact_list *list = &contact->list;
     const int32_t node = list->group[g].node;
     lar_joint joint = LAR_JOINT_NONE;
@@ -195,12 +218,14 @@ lar_joint lar_joint_of(const lar_body_contact *contact, const lar_state *state, 
     int32_t h = g;
     if (!is_straight(point)) return LAR_JOINT_NONE;
     lar_face_normal(corner, normal);
+    *within = within_edges(contact->surface, face, corner, point);
     while (h > 0 && list->group[h - 1].node == node) h--;
     for (; h < list->group_count && list->group[h].node == node; h++) {
         const lar_contact_group *third = &list->group[h];
         if (h == g || lar_group_is_own(contact->surface, list, third)) continue;
         for (int32_t i = third->first; i < third->first + third->count && !joint; i++)
-            joint = joint_with(contact, state, node, list->face[i], x, normal, point->height);
+            joint =
+                joint_with(contact, state, node, list->face[i], x, normal, point->height, *within);
     }
     return joint;
 }

@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "base/vector.h"
-#include "mechanics/face_contact.h"
 
 /* ---- at rest --------------------------------------------------------------------------------- */
 
@@ -14,29 +13,29 @@ static void corners_at_rest(const lar_contact_surface *s, int32_t face, double c
         memcpy(corner[a], s->rest[s->face[face].corner[a]], 3 * sizeof(double));
 }
 
+/* Cosines between faces that look the same way, and against each other. */
+static const double SAME = 0.9, AGAINST = -0.9;
+
+static double cosine_between(const lar_contact_surface *s, int32_t one, int32_t other) {
+    double corner[2][4][3], way[2][3];
+    corners_at_rest(s, one, corner[0]);
+    corners_at_rest(s, other, corner[1]);
+    for (int k = 0; k < 2; k++) lar_face_normal((const double(*)[3])corner[k], way[k]);
+    return lar_dot(way[0], way[1]) / (lar_length(way[0]) * lar_length(way[1]));
+}
+
 /* Whether a face of one body goes on in the plane of one of another, or a little within it, and
  * looks the same way. */
 static bool goes_on_in(const lar_contact_surface *s, int32_t own, int32_t other, int32_t node,
                        double rounding) {
-    static const double SAME = 0.9;    /* cosine */
     static const double WITHIN = 0.25; /* of a face */
-    double corner[2][4][3], way[2][3], from[3];
-    corners_at_rest(s, own, corner[0]);
-    corners_at_rest(s, other, corner[1]);
-    for (int k = 0; k < 2; k++) lar_face_normal((const double(*)[3])corner[k], way[k]);
-    lar_minus(s->rest[node], corner[1][0], from);
-    double length = lar_length(way[1]), out = lar_dot(from, way[1]) / length;
-    return lar_dot(way[0], way[1]) > SAME * lar_length(way[0]) * length && out <= rounding &&
-           out >= -fmax(rounding, WITHIN * s->face[other].size);
-}
-
-static bool looks_against(const lar_contact_surface *s, int32_t own, int32_t other) {
-    static const double AGAINST = -0.9; /* cosine */
-    double corner[2][4][3], way[2][3];
-    corners_at_rest(s, own, corner[0]);
-    corners_at_rest(s, other, corner[1]);
-    for (int k = 0; k < 2; k++) lar_face_normal((const double(*)[3])corner[k], way[k]);
-    return lar_dot(way[0], way[1]) < AGAINST * lar_length(way[0]) * lar_length(way[1]);
+    double corner[4][3], way[3], from[3];
+    if (!(cosine_between(s, own, other) > SAME)) return false;
+    corners_at_rest(s, other, corner);
+    lar_face_normal((const double(*)[3])corner, way);
+    lar_minus(s->rest[node], corner[0], from);
+    double out = lar_dot(from, way) / lar_length(way);
+    return out <= rounding && out >= -fmax(rounding, WITHIN * s->face[other].size);
 }
 
 /* Faces by their corners: those of node n are at[first[n]] up to at[first[n + 1]]. */
@@ -62,21 +61,56 @@ static bool has_corner(const lar_contact_face *face, int32_t node) {
     return has;
 }
 
-/* Whether one of the faces that a node, or all nodes of a point, are corners of goes on in `other`,
- * or looks against it. */
-static bool has_face(const lar_contact_surface *s, const around *faces, int32_t node, int32_t other,
-                     bool against, double rounding) {
+/* The faces that a node, or all nodes of a point, are corners of; at most MOST_OWN. Returns their
+ * number. */
+enum { MOST_OWN = 16 };
+static int faces_of(const lar_contact_surface *s, const around *faces, int32_t node,
+                    int32_t own[MOST_OWN]) {
     int32_t parent[LAR_CONTACT_PARENTS];
     double weight[LAR_CONTACT_PARENTS];
-    int count = lar_contact_parents(s, node, parent, weight);
+    int count = lar_contact_parents(s, node, parent, weight), found = 0;
     for (int32_t i = faces->first[parent[0]]; i < faces->first[parent[0] + 1]; i++) {
-        const int32_t own = faces->at[i];
-        bool common = against || s->face[own].fades;
-        for (int k = 1; k < count; k++) common = common && has_corner(&s->face[own], parent[k]);
-        if (common &&
-            (against ? looks_against(s, own, other) : goes_on_in(s, own, other, node, rounding)))
-            return true;
+        bool common = found < MOST_OWN;
+        for (int k = 1; k < count; k++)
+            common = common && has_corner(&s->face[faces->at[i]], parent[k]);
+        if (common) own[found++] = faces->at[i];
     }
+    return found;
+}
+
+/* Whether one of a node's own faces looks against `other`. */
+static bool stands_against(const lar_contact_surface *s, const around *faces, int32_t node,
+                           int32_t other) {
+    int32_t own[MOST_OWN];
+    int count = faces_of(s, faces, node, own);
+    for (int k = 0; k < count; k++)
+        if (cosine_between(s, own[k], other) < AGAINST) return true;
+    return false;
+}
+
+/* Whether one of the faces `own` that is not in the plane of own[k] looks against a face of a
+ * group: own[k] ends at a joint. However blunt the edge is between them: what one body has more of
+ * a straight angle the other has less. */
+static bool ends_at_joint(const lar_contact_surface *s, const lar_contact_list *list,
+                          const lar_contact_group *group, const int32_t *own, int count, int k) {
+    for (int j = 0; j < count; j++) {
+        if (!(fabs(cosine_between(s, own[j], own[k])) < SAME)) continue;
+        for (int32_t i = group->first; i < group->first + group->count; i++)
+            if (cosine_between(s, own[j], list->face[i]) < AGAINST) return true;
+    }
+    return false;
+}
+
+/* Whether one of the faces of the node of a group goes on in `other`, at sharp edges or a joint. */
+static bool goes_on(const lar_contact_surface *s, const lar_contact_list *list, const around *faces,
+                    const lar_contact_group *group, int32_t other, double rounding) {
+    const bool sharp = s->node[group->node].blunt < 1 && s->face[other].fades;
+    int32_t own[MOST_OWN];
+    int count = faces_of(s, faces, group->node, own);
+    for (int k = 0; k < count; k++)
+        if (goes_on_in(s, own[k], other, group->node, rounding) &&
+            ((sharp && s->face[own[k]].fades) || ends_at_joint(s, list, group, own, count, k)))
+            return true;
     return false;
 }
 
@@ -98,7 +132,7 @@ static standing standing_of(const lar_contact_surface *s, const lar_contact_list
         if (point.distance < LAR_FLUSH_NEAR * size) return NEAR;
         if (point.distance < min - tie) straight = false;
         if (point.distance <= min + tie && point.height > COSINE * point.distance)
-            straight = straight || has_face(s, faces, group->node, face, true, 0);
+            straight = straight || stands_against(s, faces, group->node, face);
         min = fmin(min, point.distance);
     }
     return straight ? STRAIGHT : AWAY;
@@ -134,12 +168,11 @@ lar_status lar_flush_find(lar_contact_surface *s, const lar_contact_list *list, 
     int32_t count = 0, next = 0;
     for (int32_t g = 0; g < list->group_count && fits; g++) {
         const lar_contact_group *group = &list->group[g];
-        if (lar_group_is_own(s, list, group) || !(s->node[group->node].blunt < 1)) continue;
+        if (lar_group_is_own(s, list, group)) continue;
         while (next <= group->node) s->flush_first[next++] = count;
         if (!may_be_flush(s, list, &faces, g)) continue;
         for (int32_t i = group->first; i < group->first + group->count; i++)
-            if (s->face[list->face[i]].fades &&
-                has_face(s, &faces, group->node, list->face[i], false, rounding))
+            if (goes_on(s, list, &faces, group, list->face[i], rounding))
                 s->flush[count++] = list->face[i];
     }
     while (fits && next <= s->point_count) s->flush_first[next++] = count;
@@ -172,4 +205,74 @@ bool lar_flush_hides(const lar_contact_surface *s, int32_t node, int32_t face) {
     for (int32_t i = s->flush_first[node]; i < s->flush_first[node + 1] && !hides; i++)
         hides = s->flush[i] == face;
     return hides;
+}
+
+/* ---- past an edge -------------------------------------------------------------------------- */
+
+/* Whether a hidden face has all corners that the closest point is made of. */
+static bool is_on_rim(const lar_contact_surface *s, int32_t node, int32_t face,
+                      const lar_face_point *closest) {
+    for (int32_t i = s->flush_first[node]; i < s->flush_first[node + 1]; i++) {
+        const lar_contact_face *hidden = &s->face[s->flush[i]];
+        bool has = hidden->body == s->face[face].body;
+        for (int a = 0; a < 4 && has; a++)
+            has = !(closest->weight[a] > 0) || has_corner(hidden, s->face[face].corner[a]);
+        if (has) return true;
+    }
+    return false;
+}
+
+/* From a corner of a triangle of a face to the next one, and to the middle. */
+static void sides_of(const double corner[4][3], int triangle, double one[3], double two[3]) {
+    static const double even[4] = {0.25, 0.25, 0.25, 0.25};
+    double middle[3];
+    lar_face_mean(corner, even, middle);
+    lar_minus(corner[(triangle + 1) % 4], corner[triangle], one);
+    lar_minus(middle, corner[triangle], two);
+}
+
+/* What has to be added to the weights of a point in the plane of a triangle to move it by `way`. */
+static bool shift_of(const double one[3], const double two[3], int triangle, const double way[3],
+                     double shift[4]) {
+    const int next = (triangle + 1) % 4;
+    const double a = lar_dot(one, one), b = lar_dot(one, two), c = lar_dot(two, two);
+    const double p = lar_dot(one, way), q = lar_dot(two, way), area = a * c - b * b;
+    if (!(area > 1e-6 * a * c)) return false; /* crushed to a line */
+    const double along = (c * p - b * q) / area, up = (a * q - b * p) / area;
+    for (int k = 0; k < 4; k++) shift[k] = 0.25 * up;
+    shift[next] += along;
+    shift[triangle] -= along + up;
+    return true;
+}
+
+bool lar_flush_past(const lar_contact_surface *s, int32_t node, int32_t face, const double x[3],
+                    const double corner[4][3], const lar_face_point *closest, lar_rim *rim) {
+    static const double HALF = 0.35; /* of the diagonal: what a node on the edge bears for */
+    double at[3], a[3], b[3], normal[3], past = 0;
+    if (!is_on_rim(s, node, face, closest)) return false;
+    sides_of(corner, closest->triangle, a, b);
+    lar_cross(a, b, normal);
+    const double length = lar_length(normal);
+    lar_face_mean(corner, closest->weight, at);
+    lar_minus(x, at, rim->away);
+    for (int i = 0; i < 3 && length > 0; i++) {
+        rim->way[i] = rim->away[i] - closest->height * normal[i] / length;
+        past += rim->way[i] * rim->way[i];
+    }
+    past = sqrt(past);
+    rim->lasts = HALF * s->face[face].size;
+    rim->part = fmin(past / rim->lasts, 1);
+    return past > LAR_FACE_TIE * s->face[face].size &&
+           shift_of(a, b, closest->triangle, rim->way, rim->shift);
+}
+
+/* e(1 - part) of it; see theory.md, flush bodies. */
+double lar_flush_left(const lar_rim *rim, const lar_face_point *closest, double energy,
+                      double on[4][3]) {
+    const double pull = 6 * (1 - rim->part) * energy / (rim->lasts * rim->lasts);
+    for (int a = 0; a < 4; a++)
+        for (int i = 0; i < 3; i++)
+            on[a][i] = pull * (rim->away[i] * rim->shift[a] -
+                               rim->way[i] * (closest->weight[a] + rim->shift[a]));
+    return 1 - rim->part * rim->part * (3 - 2 * rim->part);
 }

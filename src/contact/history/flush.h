@@ -15,6 +15,7 @@
 #define LAR_CONTACT_HISTORY_FLUSH_H
 
 #include "contact/contact_surface.h"
+#include "mechanics/face_contact.h"
 
 /* Who is nearer to a body than this part of a face has not parted from it. */
 #define LAR_FLUSH_NEAR 0.05
@@ -34,5 +35,26 @@ bool lar_flush_at_rest(const lar_contact_surface *surface, int32_t node, int32_t
 
 /* Whether a face is one that it does not see as long as it is flush. */
 bool lar_flush_hides(const lar_contact_surface *surface, int32_t node, int32_t face);
+
+/* Who slides off what it is flush with, past an edge of that where only hidden faces go on. There
+ * it stands on the plane of the last face, less and less: the closest point stays on the edge, and
+ * would hold it back like a nail. */
+typedef struct lar_rim {
+    double way[3];   /* past the edge, in that plane [m] */
+    double away[3];  /* from the closest point of the face [m] */
+    double shift[4]; /* of the corners' weights from that to the foot of the node on the plane */
+    double lasts;    /* how far past the edge there is something left [m] */
+    double part;     /* of that, from 0 to 1 */
+} lar_rim;
+
+/* False: the node at x, which `closest` of a face is seen from, is not past an edge. */
+bool lar_flush_past(const lar_contact_surface *surface, int32_t node, int32_t face,
+                    const double x[3], const double corner[4][3], const lar_face_point *closest,
+                    lar_rim *rim);
+
+/* What is left there of a force that stores `energy` [J]. Sets the slope's forces on the corners
+ * [N]; the node gets minus their sum. */
+double lar_flush_left(const lar_rim *rim, const lar_face_point *closest, double energy,
+                      double on[4][3]);
 
 #endif

@@ -19,10 +19,14 @@ static double fade_above(const lar_body_contact *contact, int32_t node, int32_t 
 }
 
 /* Whether a face that the node of group g, on a sharp edge, is behind is not in its way. */
-static bool passes_by(const lar_body_contact *contact, const lar_state *state, int32_t g,
+static bool passes_by(const lar_body_contact *contact, const lar_state *state, int32_t g, int32_t f,
                       lar_survey *s, const double corner[4][3], lar_face_point *point) {
     const bool away = lar_looks_away(contact, state, contact->list.group[g].node, corner, NULL);
-    const lar_joint joint = lar_joint_of(contact, state, g, s->x, corner, point);
+    double beside;
+    const lar_joint joint = s->joints
+                                ? lar_joint_of(contact, state, g, f, s->x, corner, point, &beside)
+                                : LAR_JOINT_NONE;
+    if (joint && !away) s->beside = fmin(s->beside, beside);
     /* Farther away not all faces are looked at. */
     if (joint == LAR_JOINT_AHEAD && !away && point->distance < s->within) s->beyond = true;
     /* What one side stops to push there the other side begins to: nothing is to be paid. */
@@ -48,7 +52,7 @@ static double survey_face(lar_body_contact *contact, const lar_state *state, int
             return INFINITY;
         }
         if (s->edge && point->height < -tie && distance <= s->reach &&
-            passes_by(contact, state, g, s, (const double(*)[3])corner, point)) {
+            passes_by(contact, state, g, f, s, (const double(*)[3])corner, point)) {
             s->gap = -INFINITY;
             return INFINITY;
         }
@@ -89,7 +93,7 @@ static void survey_group(lar_body_contact *contact, const lar_state *state, int3
     s->fade = lar_same_body(contact, group->node, face[0])
                   ? s->above
                   : fmax(s->above, LAR_FADE_BEHIND * s->reach);
-    s->min = s->gap = s->next = INFINITY;
+    s->min = s->gap = s->next = s->beside = INFINITY;
     s->count = 0;
     s->flush = lar_offset_is_flush(contact, state, g);
     s->held =
@@ -190,13 +194,26 @@ look_inside(lar_body_contact *contact, const lar_state *state, int32_t g, lar_su
     if (!s->inside) survey_again(contact, state, g, s);
 }
 
+/* Who has come along in one body past a joint to the next one is as deep there as the joint is long
+ * from its edge. Where it is deeper, or nothing is left, as where several bodies meet along a line,
+ * it has not come along. */
+static bool is_in_joint(const lar_body_contact *contact, int32_t g, const lar_survey *s) {
+    const int32_t face = contact->list.face[contact->list.group[g].first];
+    return s->beyond || s->min <= s->beside + LAR_JOINT_STEP * contact->surface->face[face].size;
+}
+
 int32_t lar_survey_closest(lar_body_contact *contact, const lar_state *state, int32_t g,
                            lar_survey *s, lar_face_point *point) {
     const lar_contact_group *group = &contact->list.group[g];
     s->inside = false;
+    s->joints = true;
     survey_group(contact, state, g, s);
     /* Who was farther than a face that is not seen now may be the closest one. */
     if (s->gap == -INFINITY && s->next < INFINITY) survey_again(contact, state, g, s);
+    if (s->beside < INFINITY && !is_in_joint(contact, g, s)) {
+        s->joints = false;
+        survey_again(contact, state, g, s);
+    }
     /* A little earlier, for rounding. */
     contact->due[g] = s->gap > 0 && !s->flush
                           ? lar_lesser(contact->travel + 0.999 * s->gap / LAR_APPROACH, s->next)
