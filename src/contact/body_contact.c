@@ -425,7 +425,7 @@ static bool in_contact(lar_body_contact *contact, const lar_state *state, int32_
     }
     lar_offset_out(contact, state, g, face < 0 ? s.gap : INFINITY);
     if (s.flush) {
-        lar_offset_stay_flush(contact, g, face, &point);
+        lar_offset_stay_flush(contact, state, g, face, &point);
     } else if (face >= 0) {
         double clear = lar_offset_meet(contact, state, g, face, &point);
         if (!(s.gap > -INFINITY)) return false;

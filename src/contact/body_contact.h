@@ -337,8 +337,8 @@ bool lar_offset_is_flush(const lar_body_contact *contact, const lar_state *state
 
 /* The node of group g, which is flush, touches nothing of that body. It has parted when it is
  * beside it, or too far above. `face`: the closest one that it sees, or -1. */
-void lar_offset_stay_flush(lar_body_contact *contact, int32_t g, int32_t face,
-                           const lar_face_point *closest);
+void lar_offset_stay_flush(lar_body_contact *contact, const lar_state *state, int32_t g,
+                           int32_t face, const lar_face_point *closest);
 
 /* The node of group g is not flush and touches nothing of that body: where it has been flush with
  * it and is straight before a face now, and near, it is so again. How far it may go before that has

@@ -87,17 +87,6 @@ void lar_offset_part(lar_body_contact *contact, int32_t node) {
         (lar_penetration_offset){contact->view.local[node], LAR_OFFSET_PARTED};
 }
 
-void lar_offset_stay_flush(lar_body_contact *contact, int32_t g, int32_t face,
-                           const lar_face_point *closest) {
-    static const double ROUNDING = 1e-6; /* who is nearer may be beside or above but for that */
-    const lar_contact_surface *s = contact->surface;
-    const int32_t node = contact->list.group[g].node;
-    if (node >= s->node_count) return;
-    double near =
-        face < 0 ? 0 : (closest->height < 0 ? ROUNDING : LAR_FLUSH_NEAR) * s->face[face].size;
-    if (face < 0 || !(closest->distance < near)) lar_offset_part(contact, node);
-}
-
 static bool is_straight(const lar_face_point *point) {
     static const double STRAIGHT = 0.9; /* cosine */
     return fabs(point->height) > STRAIGHT * point->distance;
@@ -335,6 +324,40 @@ static bool opposite(const double a[3], const double b[3]) {
 static double reach_of(const lar_body_contact *contact, int32_t node, int32_t face) {
     const lar_contact_surface *s = contact->surface;
     return lar_contact_reach(s, &s->node[node], &s->face[face]);
+}
+
+/* Whether the node of group g, which is flush, is near another body that it is flush with, or
+ * stands on it. What it remembers is for all together: at a line where four blocks meet, two part
+ * and each stays on what it stands on. */
+static bool stands_on_another(const lar_body_contact *contact, const lar_state *state, int32_t g) {
+    const lar_contact_surface *s = contact->surface;
+    const lar_contact_list *list = &contact->list;
+    const int32_t node = list->group[g].node;
+    int32_t h = g;
+    closest_face now;
+    while (h > 0 && list->group[h - 1].node == node) h--;
+    for (; h < list->group_count && list->group[h].node == node; h++) {
+        const int32_t first = list->face[list->group[h].first];
+        if (h == g || !lar_flush_at_rest(s, node, s->face[first].body)) continue;
+        closest_ago(contact, state, h, 0, &now);
+        const double near = LAR_FLUSH_NEAR * s->face[first].size;
+        if (now.point.distance < near ||
+            (is_behind(&now, reach_of(contact, node, first)) && is_straight(&now.point)))
+            return true;
+    }
+    return false;
+}
+
+void lar_offset_stay_flush(lar_body_contact *contact, const lar_state *state, int32_t g,
+                           int32_t face, const lar_face_point *closest) {
+    static const double ROUNDING = 1e-6; /* who is nearer may be beside or above but for that */
+    const lar_contact_surface *s = contact->surface;
+    const int32_t node = contact->list.group[g].node;
+    if (node >= s->node_count) return;
+    double near =
+        face < 0 ? 0 : (closest->height < 0 ? ROUNDING : LAR_FLUSH_NEAR) * s->face[face].size;
+    if ((face < 0 || !(closest->distance < near)) && !stands_on_another(contact, state, g))
+        lar_offset_part(contact, node);
 }
 
 /* Whether a node that is deep behind a face was neither so a step ago, nor has come through it. Who
