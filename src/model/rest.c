@@ -34,14 +34,39 @@ void lar_model_slow_to(lar_model *model, double period) {
     for (int axis = 0; axis < 3; axis++) model->gravity[axis] /= factor;
 }
 
+/* The shortest time in which a curve would go through all its values, as fast as it is somewhere
+ * before `end` [s]: of a ramp its length, of a wave a third of its period. Jumps take no time and
+ * are not asked. */
+static double fastest_of(const lar_curve *curve, double end) {
+    double low = INFINITY, high = -INFINITY, rate = 0;
+    if (curve->kind == LAR_CURVE_RAMP) return curve->over > 0 ? fmin(curve->over, end) : end;
+    for (int i = 0; i < curve->count && curve->point[i][0] <= end; i++) {
+        const double *to = curve->point[i], *from = i > 0 ? curve->point[i - 1] : to;
+        low = fmin(low, to[1]);
+        high = fmax(high, to[1]);
+        if (to[0] > from[0]) rate = fmax(rate, fabs(to[1] - from[1]) / (to[0] - from[0]));
+    }
+    return rate > 0 ? fmin((high - low) / rate, end) : end;
+}
+
+static bool rubs(const lar_model *model) {
+    bool any = false;
+    for (int i = 0; i < model->contact_count; i++) any = any || model->contact[i].friction > 0;
+    return any;
+}
+
 lar_rest_words lar_model_follow_static(lar_model *model, const char *what) {
-    static const double FEW = 2, MANY = 20, VISCOUS = 100, VISCOUS_DAMPING = 0.1;
+    static const double FEW = 2, MANY = 20, VISCOUS = 100, FOLLOWS = 20, VISCOUS_DAMPING = 0.1;
     const double end = model->duration;
-    double period = end / VISCOUS;
+    double period = end / VISCOUS, fastest = end;
     lar_rest_words words;
+    for (int i = 0; i < model->curve_count; i++)
+        fastest = fmin(fastest, fastest_of(&model->curve[i], end));
     model->by_material_time = end > 0 && lar_model_viscous(model);
     model->until_rest = !model->by_material_time;
     if (model->until_rest) period = fmin(fmax(lar_model_slow_period(model), end / MANY), end / FEW);
+    /* What remembers how it came there must not lag behind. */
+    if (model->by_material_time || rubs(model)) period = fmin(period, fastest / FOLLOWS);
     if (end > 0) lar_model_slow_to(model, period);
     model->damping = lar_model_rest_damping(model);
     model->damps_itself = model->until_rest;

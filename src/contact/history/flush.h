@@ -8,6 +8,8 @@
  *                              and turned, and stands on what is left. So it is with one that
  *                              begins straight before the block, or comes there again.
  *
+ * However sharp the edge is: where one body is cut at an angle of 60 degrees the other has 120.
+ *
  * Points of edges are flush as the nodes are of which they are made. What becomes of it in a run is
  * in body_contact.h, offsets.
  */
