@@ -304,12 +304,6 @@ static bool is_beside(const lar_face_point *closest) {
     return closest->height < 0 && -closest->height < STRAIGHT * closest->distance;
 }
 
-static bool is_past(const lar_body_contact *contact, int32_t node, const lar_survey *s,
-                    const known_face *known, const lar_face_point *closest, lar_rim *rim) {
-    return s->flush && lar_flush_past(contact->surface, node, known->face, s->x,
-                                      (const double(*)[3])known->x, closest, rim);
-}
-
 /* The point that pushes moves from an edge to below a node that is past it. */
 static bool shift(touching *t, int32_t face, const lar_rim *rim) {
     for (int32_t f = 0; f < t->count; f++) {
@@ -331,7 +325,8 @@ static double slide_off(const lar_rim *rim, const lar_face_point *closest, int32
 /* The force on the node of group g by a face which it is behind, or before it by less than the
  * contact distance. False: they do not touch, or no longer push. */
 static bool push(lar_body_contact *contact, const lar_state *state, int32_t g, int32_t face,
-                 const lar_face_point *closest, const lar_survey *s, touching *t) {
+                 const lar_face_point *closest, const lar_survey *s, const lar_rim *rim,
+                 touching *t) {
     const lar_contact_surface *surface = contact->surface;
     const lar_contact_face *f = &surface->face[face];
     int32_t node = contact->list.group[g].node;
@@ -345,8 +340,7 @@ static bool push(lar_body_contact *contact, const lar_state *state, int32_t g, i
     bool before = !(closest->height < 0), own = lar_same_body(contact, node, face);
     if ((before || !own) && lar_contact_active(&surface->node[node], f))
         blend(contact, g, closest, s, t);
-    lar_rim rim;
-    const bool past = is_past(contact, node, s, &known, closest, &rim) && shift(t, face, &rim);
+    const bool past = rim->part > 0 && shift(t, face, rim);
     point_of(contact, state, t, &known, &point);
     double depth = outward(x, &point, before ? -1 : 1, LAR_FACE_TIE * f->size,
                            (const double(*)[3])known.x, way);
@@ -368,7 +362,7 @@ static bool push(lar_body_contact *contact, const lar_state *state, int32_t g, i
     else if (s->hidden >= 0)
         force = come_past(contact, g, s, together * energy, force, t);
     else if (past)
-        force = slide_off(&rim, closest, face, together * energy, force, t);
+        force = slide_off(rim, closest, face, together * energy, force, t);
     t->depth = fmax(depth, 0);
     for (int i = 0; i < 3; i++) {
         t->force[i] = together * force * way[i];
@@ -391,20 +385,22 @@ static bool push(lar_body_contact *contact, const lar_state *state, int32_t g, i
     return true;
 }
 
-/* Who does not see the sides of a body, and is past its edge, may be beside it, and not in it. */
+/* Who does not see the sides of a body, and is past its edge (*rim; part 0: it is not), may be
+ * beside it, and not in it. */
 static bool touches(const lar_body_contact *contact, const lar_state *state, int32_t node,
-                    int32_t face, const lar_survey *s, const lar_face_point *point) {
+                    int32_t face, const lar_survey *s, const lar_face_point *point, lar_rim *rim) {
     const lar_contact_surface *surface = contact->surface;
-    known_face known = {.face = face};
-    lar_rim rim;
     double away = point->distance;
-    if (s->flush) {
-        lar_contact_corners(contact, state, face, known.x, known.v);
-        if (is_past(contact, node, s, &known, point, &rim)) {
-            if (!(rim.part < 1)) return false;
+    rim->part = 0;
+    if (s->flush && !lar_flush_is_straight(point)) {
+        double corner[4][3];
+        lar_contact_corners(contact, state, face, corner, NULL);
+        if (lar_flush_past(surface, node, face, s->x, (const double(*)[3])corner, point, rim)) {
+            if (!(rim->part < 1)) return false;
             away = fabs(point->height);
-        } else if (is_beside(point)) {
-            return false;
+        } else {
+            rim->part = 0;
+            if (is_beside(point)) return false;
         }
     }
     return point->height < 0 ||
@@ -416,9 +412,10 @@ static bool in_contact(lar_body_contact *contact, const lar_state *state, int32_
     const lar_contact_group *group = &contact->list.group[g];
     lar_face_point point;
     lar_survey s;
+    lar_rim rim;
     int32_t face = lar_survey_closest(contact, state, g, &s, &point);
-    if (face >= 0 && touches(contact, state, group->node, face, &s, &point))
-        return push(contact, state, g, face, &point, &s, t);
+    if (face >= 0 && touches(contact, state, group->node, face, &s, &point, &rim))
+        return push(contact, state, g, face, &point, &s, &rim, t);
     if (lar_group_is_own(contact->surface, &contact->list, group)) {
         lar_offset_leave(contact, state, group->node, face);
         return false;

@@ -248,7 +248,7 @@ static bool shift_of(const double one[3], const double two[3], int triangle, con
 bool lar_flush_past(const lar_contact_surface *s, int32_t node, int32_t face, const double x[3],
                     const double corner[4][3], const lar_face_point *closest, lar_rim *rim) {
     static const double HALF = 0.35; /* of the diagonal: what a node on the edge bears for */
-    double at[3], a[3], b[3], normal[3], past = 0;
+    double at[3], a[3], b[3], normal[3], past = 0, tie = LAR_FACE_TIE * s->face[face].size;
     if (!is_on_rim(s, node, face, closest)) return false;
     sides_of(corner, closest->triangle, a, b);
     lar_cross(a, b, normal);
@@ -262,8 +262,7 @@ bool lar_flush_past(const lar_contact_surface *s, int32_t node, int32_t face, co
     past = sqrt(past);
     rim->lasts = HALF * s->face[face].size;
     rim->part = fmin(past / rim->lasts, 1);
-    return past > LAR_FACE_TIE * s->face[face].size &&
-           shift_of(a, b, closest->triangle, rim->way, rim->shift);
+    return past > tie && shift_of(a, b, closest->triangle, rim->way, rim->shift);
 }
 
 /* e(1 - part) of it; see theory.md, flush bodies. */

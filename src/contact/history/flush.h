@@ -49,6 +49,13 @@ typedef struct lar_rim {
     double part;     /* of that, from 0 to 1 */
 } lar_rim;
 
+/* Most nodes are: nothing is to be asked of them. */
+static inline bool lar_flush_is_straight(const lar_face_point *closest) {
+    static const double STRAIGHT = 1 - 1e-14; /* square of a cosine */
+    const double height = closest->height, distance = closest->distance;
+    return height * height >= STRAIGHT * (distance * distance);
+}
+
 /* False: the node at x, which `closest` of a face is seen from, is not past an edge. */
 bool lar_flush_past(const lar_contact_surface *surface, int32_t node, int32_t face,
                     const double x[3], const double corner[4][3], const lar_face_point *closest,
