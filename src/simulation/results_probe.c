@@ -153,9 +153,10 @@ static lar_status measure(const lar_simulation *simulation, const lar_probe *pro
     lar_status status = LAR_OK;
     memset(value, 0, COLUMNS * sizeof *value);
     switch (probe->what) {
-    case LAR_PROBE_REACTION:
+    case LAR_PROBE_REACTION: /* a deck that has no mass has none that is stopped at its end */
         return lar_measure_reaction(&simulation->domain, &simulation->scratch->measure,
-                                    &simulation->state, &probe->nodes, false, value, error);
+                                    &simulation->state, &probe->nodes,
+                                    simulation->domain.model->by_material_time, value, error);
     case LAR_PROBE_CONTACT:
         status = add_forces(simulation, LAR_CAUSE_BODIES, 0, &probe->nodes, value, error);
         return status ? status

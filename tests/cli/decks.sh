@@ -118,6 +118,23 @@ expect 0 "$LARIAT" info static.inp --no-speed
 says '^materials  *SOFT: neo-hookean, 2 elements, 1000 kg/m^3, shear modulus 2000 Pa'
 says '^mesh .*of these 4 held'
 
+# A viscous deck that ends while nodes are moved: their reactions are what brought them there, a tenth
+# of them was missing; and a ramp in its last tenth is not followed by a body that swings as slowly as
+# the whole deck.
+{
+    mesh
+    tissue | sed 's/^\*DENSITY/*VISCOELASTIC, TIME=PRONY\n0.5, 0, 0.2\n&/'
+    printf '%s\n' '*AMPLITUDE, NAME=LATE' '0, 0, 0.9, 0, 1, 1' '*STEP, NLGEOM' '*VISCO' '0.01, 1' \
+        '*BOUNDARY, AMPLITUDE=LATE' 'TIP, 3, 3, 0.01' '*NODE PRINT, NSET=TOP' 'RF' \
+        '*NODE PRINT, NSET=TIP' 'RF' '*END STEP'
+} >late.inp
+expect 0 "$LARIAT" run late.inp --out late
+expect 0 "$LARIAT" run late.inp --out earlier --time 0.9998
+paste -d, late/probes.csv earlier/probes.csv | tail -n 1 | awk -F, '
+    function near(a, b, part) { return (a - b) ^ 2 < (part * b) ^ 2 }
+    { exit !(near($4, -$7, 0.01) && near($7, $14, 0.005) && near($4, $11, 0.005)) }' ||
+    fail "reactions at the end: $(cat late/probes.csv earlier/probes.csv)"
+
 # Linear elasticity becomes the law that is there, and that is said.
 {
     mesh
