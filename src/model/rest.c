@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 static const double PI = 3.14159265358979;
 
@@ -40,8 +41,9 @@ void lar_model_slow_to(lar_model *model, double period) {
 static double fastest_of(const lar_curve *curve, double end) {
     double low = INFINITY, high = -INFINITY, rate = 0;
     if (curve->kind == LAR_CURVE_RAMP) return curve->over > 0 ? fmin(curve->over, end) : end;
-    for (int i = 0; i < curve->count && curve->point[i][0] <= end; i++) {
+    for (int i = 0; i < curve->count; i++) {
         const double *to = curve->point[i], *from = i > 0 ? curve->point[i - 1] : to;
+        if (from[0] > end) break;
         low = fmin(low, to[1]);
         high = fmax(high, to[1]);
         if (to[0] > from[0]) rate = fmax(rate, fabs(to[1] - from[1]) / (to[0] - from[0]));
@@ -55,8 +57,19 @@ static bool rubs(const lar_model *model) {
     return any;
 }
 
+/* What is said where curves are faster than is followed. */
+static void add_limit(lar_rest_words *words, double fastest, double followed) {
+    const size_t said = strlen(words->text);
+    if (followed > fastest)
+        snprintf(words->text + said, sizeof words->text - said,
+                 "; what a curve does within %.3g s takes some %.3g s, or the deck would take too "
+                 "many steps",
+                 fastest, followed);
+}
+
 lar_rest_words lar_model_follow_static(lar_model *model, const char *what) {
     static const double FEW = 2, MANY = 20, VISCOUS = 100, FOLLOWS = 20, VISCOUS_DAMPING = 0.1;
+    static const double MOST = 20000; /* swings in all: steps have an end */
     const double end = model->duration;
     double period = end / VISCOUS, fastest = end;
     lar_rest_words words;
@@ -66,7 +79,11 @@ lar_rest_words lar_model_follow_static(lar_model *model, const char *what) {
     model->until_rest = !model->by_material_time;
     if (model->until_rest) period = fmin(fmax(lar_model_slow_period(model), end / MANY), end / FEW);
     /* What remembers how it came there must not lag behind. */
-    if (model->by_material_time || rubs(model)) period = fmin(period, fastest / FOLLOWS);
+    double followed = fmax(fastest, end * FOLLOWS / MOST);
+    if (model->by_material_time || rubs(model))
+        period = fmin(period, followed / FOLLOWS);
+    else
+        followed = fastest;
     if (end > 0) lar_model_slow_to(model, period);
     model->damping = lar_model_rest_damping(model);
     model->damps_itself = model->until_rest;
@@ -77,6 +94,7 @@ lar_rest_words lar_model_follow_static(lar_model *model, const char *what) {
                  "the %s is static: Lariat follows it in time, with a damping of at most %.3g 1/s, "
                  "until it is at rest",
                  what, model->damping);
+        add_limit(&words, fastest, followed);
         return words;
     }
     model->damping *= VISCOUS_DAMPING;
@@ -85,6 +103,7 @@ lar_rest_words lar_model_follow_static(lar_model *model, const char *what) {
              "the deck's end, %g s, with little mass and a damping of %.3g 1/s; only a slender "
              "body that bends may lag behind its loads",
              what, end, model->damping);
+    add_limit(&words, fastest, followed);
     return words;
 }
 

@@ -36,7 +36,7 @@ void lar_model_slow_to(lar_model *model, double period);
  * that damping lags behind its loads by 0.1/pi of that (2 zeta/omega); what swings at first is less
  * by exp(-2 pi 10) in the end. */
 typedef struct lar_rest_words {
-    char text[300];
+    char text[400];
 } lar_rest_words;
 lar_rest_words lar_model_follow_static(lar_model *model, const char *what);
 

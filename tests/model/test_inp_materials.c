@@ -256,6 +256,16 @@ static void test_viscosity_in_steps(void **state) {
                        "0, 0, 0.01, 1, 0.04, -1, 2, 0\n*STEP, NLGEOM\n"
                        "*VISCO\n0.1, 2\n*CLOAD, AMPLITUDE=w\n9, 1, 1\n" END);
     near(8 * sqrt(model->material[0].density / lar_material_shear(&model->material[0])), 0.001);
+    assert_int_equal(notices_with(model, "too many steps"), 0);
+    lar_model_destroy(model);
+    /* but not more than 20,000 in all */
+    model =
+        read_deck(MESH "*MATERIAL, NAME=a\n*ELASTIC\n3000, 0.25\n*VISCOELASTIC, TIME=PRONY\n"
+                       "0.5, 0.5, 1\n*SOLID SECTION, ELSET=BOTH, MATERIAL=a\n*AMPLITUDE, NAME=w\n"
+                       "0, 0, 0.00001, 1, 2, 1\n*STEP, NLGEOM\n"
+                       "*VISCO\n0.1, 2\n*CLOAD, AMPLITUDE=w\n9, 1, 1\n" END);
+    near(8 * sqrt(model->material[0].density / lar_material_shear(&model->material[0])), 0.0001);
+    assert_int_equal(notices_with(model, "what a curve does within 1e-05 s takes some 0.002 s"), 1);
     lar_model_destroy(model);
     /* without a viscous material it is a static step */
     model = read_deck(MESH SOFT "*STEP, NLGEOM\n*VISCO\n0.1, 2\n*BOUNDARY\n9, 1, 1, 0.1\n" END);
