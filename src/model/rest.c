@@ -60,7 +60,7 @@ static bool rubs(const lar_model *model) {
 /* What is said where curves are faster than is followed. */
 static void add_limit(lar_rest_words *words, double fastest, double followed) {
     const size_t said = strlen(words->text);
-    if (followed > fastest)
+    if (followed > 1.01 * fastest) /* not for rounding */
         snprintf(words->text + said, sizeof words->text - said,
                  "; what a curve does within %.3g s takes some %.3g s, or the deck would take too "
                  "many steps",
