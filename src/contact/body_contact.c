@@ -322,6 +322,15 @@ static double slide_off(const lar_rim *rim, const lar_face_point *closest, int32
     return lar_flush_left(rim, closest, energy, t->pay) * force;
 }
 
+/* Points deeper than that are not pushed any more (lar_offset_pushes), and store what they did
+ * there. Who has come past a border or a hidden face pays there for that: or it would come from
+ * nowhere where the point comes back up. */
+static bool is_spent(const lar_body_contact *contact, int32_t node, const lar_survey *s,
+                     double depth) {
+    return node >= contact->surface->node_count && (s->border >= 0 || s->hidden >= 0) &&
+           depth > s->within;
+}
+
 /* The force on the node of group g by a face which it is behind, or before it by less than the
  * contact distance. False: they do not touch, or no longer push. */
 static bool push(lar_body_contact *contact, const lar_state *state, int32_t g, int32_t face,
@@ -348,8 +357,10 @@ static bool push(lar_body_contact *contact, const lar_state *state, int32_t g, i
     if (isnan(depth)) return false;
     double together = push_together(t, LAR_FACE_TIE * f->size, &depth);
     for (int i = 0; i < 3; i++) rate += together * (point.velocity[i] - v[i]) * way[i];
+    const bool spent = is_spent(contact, node, s, depth);
+    if (spent) depth = s->within;
     double offset = own ? lar_offset_follow(contact, state, node, face, depth, rate) : 0;
-    if (!own && !lar_offset_pushes(contact, state, g, face, depth, rate)) return false;
+    if (!own && !lar_offset_pushes(contact, state, g, face, s, depth, rate)) return false;
     if (!lar_contact_active(&surface->node[node], f)) return false;
     double moved = moved_mass(&surface->node[node], &point);
     spring two[2];
@@ -357,6 +368,8 @@ static bool push(lar_body_contact *contact, const lar_state *state, int32_t g, i
     const meeting m = {
         x, &known, closest, full_of(contact, node, face), rate, f->fades && !own && !s->flush};
     double energy = 0, force = press(contact, &m, two, &energy, t);
+    if (spent) memset(t->fade, 0, sizeof t->fade);
+    if (spent) force = 0;
     if (s->border >= 0)
         force = come_in(contact, g, s, &m, two, together, energy, force, t);
     else if (s->hidden >= 0)

@@ -285,7 +285,7 @@ void lar_offset_leave(lar_body_contact *contact, const lar_state *state, int32_t
  * (negative: before it) and sinking at `rate`: not where that has come behind the body's faces from
  * the back, and is not yet so far before them that nothing would push it. */
 bool lar_offset_pushes(lar_body_contact *contact, const lar_state *state, int32_t g, int32_t face,
-                       double depth, double rate);
+                       const lar_survey *survey, double depth, double rate);
 
 /* Whether a face that a node or point on a sharp edge is behind looks away from its body: pushed
  * out there the node would be pulled from its own body, for the surface of that goes on beyond the

@@ -275,10 +275,16 @@ typedef struct closest_face {
     double normal[3];     /* of any length */
 } closest_face;
 
+static bool is_seen(const lar_survey *s, int32_t entry) {
+    for (int32_t k = 0; s && k < s->count; k++)
+        if (s->entry[k] == entry) return s->distance[k] < INFINITY;
+    return true;
+}
+
 /* The closest face to the node of group g, `past` ago [s]: 0, or when forces were computed the last
- * time. */
+ * time. Of those that a survey has seen, if there is one. */
 static void closest_ago(const lar_body_contact *contact, const lar_state *state, int32_t g,
-                        double past, closest_face *closest) {
+                        const lar_survey *s, double past, closest_face *closest) {
     const lar_contact_group *group = &contact->list.group[g];
     const int32_t *face = contact->list.face + group->first;
     double x[3], v[3], corner[4][3], speed[4][3], min = INFINITY;
@@ -289,6 +295,7 @@ static void closest_ago(const lar_body_contact *contact, const lar_state *state,
     for (int32_t i = 0; i < group->count; i++) {
         all[i].point.distance = INFINITY;
         if (flush && lar_flush_hides(contact->surface, group->node, face[i])) continue;
+        if (!is_seen(s, i)) continue;
         lar_contact_corners(contact, state, face[i], corner, speed);
         for (int a = 0; a < 4; a++) place_before(speed[a], past, corner[a]);
         lar_face_closest(x, (const double(*)[3])corner,
@@ -339,7 +346,7 @@ static bool stands_on_another(const lar_body_contact *contact, const lar_state *
     for (; h < list->group_count && list->group[h].node == node; h++) {
         const int32_t first = list->face[list->group[h].first];
         if (h == g || !lar_flush_at_rest(s, node, s->face[first].body)) continue;
-        closest_ago(contact, state, h, 0, &now);
+        closest_ago(contact, state, h, NULL, 0, &now);
         const double near = LAR_FLUSH_NEAR * s->face[first].size;
         if (now.point.distance < near ||
             (is_behind(&now, reach_of(contact, node, first)) && is_straight(&now.point)))
@@ -362,23 +369,23 @@ void lar_offset_stay_flush(lar_body_contact *contact, const lar_state *state, in
 
 /* Whether a node that is deep behind a face was neither so a step ago, nor has come through it. Who
  * was behind the opposite side has been pressed through the middle of a body: that pushes it out at
- * the back. */
+ * the back. What it was behind and does not see has not pushed it. */
 static bool comes_from_behind(lar_body_contact *contact, const lar_state *state, int32_t g,
-                              int32_t face, double depth, double rate) {
+                              int32_t face, const lar_survey *s, double depth, double rate) {
     const int32_t node = contact->list.group[g].node;
     if (!(depth > deep_of(contact, node, face)) || depth <= contact->time_step * rate ||
         !(state->past > 0))
         return false;
     closest_face before, now;
-    closest_ago(contact, state, g, state->past, &before);
+    closest_ago(contact, state, g, s, state->past, &before);
     if (!is_behind(&before, reach_of(contact, node, face))) return true;
-    closest_ago(contact, state, g, 0, &now);
+    closest_ago(contact, state, g, s, 0, &now);
     if (opposite(before.normal, now.normal)) count_through(contact, node);
     return false;
 }
 
 bool lar_offset_pushes(lar_body_contact *contact, const lar_state *state, int32_t g, int32_t face,
-                       double depth, double rate) {
+                       const lar_survey *survey, double depth, double rate) {
     const lar_contact_surface *s = contact->surface;
     const int32_t node = contact->list.group[g].node;
     const double behind = lar_offset_behind(s->face[face].body);
@@ -389,7 +396,7 @@ bool lar_offset_pushes(lar_body_contact *contact, const lar_state *state, int32_
         if (offset_of(contact, state, parent[k]) == behind) return false;
     /* Points remember nothing. */
     if (count > 1) return !(depth > deep_of(contact, node, face));
-    if (!comes_from_behind(contact, state, g, face, depth, rate)) return true;
+    if (!comes_from_behind(contact, state, g, face, survey, depth, rate)) return true;
     if (offset_of(contact, state, node) == 0) set_offset(contact, state, node, behind);
     return false;
 }
@@ -397,9 +404,9 @@ bool lar_offset_pushes(lar_body_contact *contact, const lar_state *state, int32_
 /* Who was behind a face a step ago and is now too deep for contact. */
 static void count_sunk(lar_body_contact *contact, const lar_state *state, int32_t g, double reach) {
     closest_face now, before;
-    closest_ago(contact, state, g, 0, &now);
+    closest_ago(contact, state, g, NULL, 0, &now);
     if (!(now.point.height < 0) || is_behind(&now, reach) || !(state->past > 0)) return;
-    closest_ago(contact, state, g, state->past, &before);
+    closest_ago(contact, state, g, NULL, state->past, &before);
     if (is_behind(&before, reach)) count_through(contact, contact->list.group[g].node);
 }
 
