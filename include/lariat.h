@@ -510,6 +510,13 @@ LAR_SIZED lar_status lar_meshing_of_surfaces(const lar_surface_arrays *surface, 
  * be NULL. The arrays live as long as the meshing. */
 LAR_SIZED void lar_meshing_arrays(const lar_meshing *meshing, lar_mesh_arrays *mesh,
                                   lar_surface_arrays *surface);
+
+/* The true boundary of region `index`, of lar_meshing_region, all around: also where it touches
+ * others. Its triangles, counter-clockwise seen from outside the region, into `triangle` (NULL: they
+ * are only counted); vertices are those of all regions, *boundary (may be NULL) has both. Returns
+ * how many triangles there are; -1: no such region. Vertices live as long as the meshing. */
+LAR_API int32_t lar_meshing_region_boundary(const lar_meshing *meshing, int32_t index,
+                                            int32_t (*triangle)[3], lar_surface_arrays *boundary);
 /* The starter scene as a text for lar_model_from_arrays with that mesh; lives as long as the
  * meshing. */
 LAR_API lar_status lar_meshing_scene(lar_meshing *meshing, const char **scene, lar_error *error);

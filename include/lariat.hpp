@@ -320,6 +320,17 @@ class Meshing : public detail::Handle<lar_meshing, lar_meshing_destroy> {
     lar_region_info region(std::int32_t index) const {
         return detail::ask<lar_region_info>(lar_meshing_region, get(), index);
     }
+    /* The triangles of a region's true boundary; *boundary, that may be null, has them too. */
+    std::vector<std::array<std::int32_t, 3>> region_boundary(
+        std::int32_t index, lar_surface_arrays *boundary = nullptr) const {
+        const auto count = lar_meshing_region_boundary(get(), index, nullptr, boundary);
+        std::vector<std::array<std::int32_t, 3>> triangles(
+            static_cast<std::size_t>(count > 0 ? count : 0));
+        if (count > 0)
+            lar_meshing_region_boundary(
+                get(), index, reinterpret_cast<std::int32_t(*)[3]>(triangles.data()), boundary);
+        return triangles;
+    }
     /* Both live as long as the meshing. */
     lar_mesh_arrays mesh() const {
         lar_mesh_arrays mesh;

@@ -120,10 +120,39 @@ static int find_shape(mesh_report *report) {
     lar_mesh_arrays mesh;
     lar_surface_arrays surface;
     lar_meshing_arrays(report->meshing, &mesh, &surface);
-    if (mesh_shape_of_surface(&surface, &report->surface) &&
-        mesh_shape_of_mesh(&mesh, &report->mesh))
+    if (mesh_shape_of_surface(&surface, 0, &report->surface) &&
+        mesh_shape_of_mesh(&mesh, NULL, &report->mesh))
         return CLI_DONE;
     return cli_complain(&cli_mesh, CLI_FAILED, "out of memory");
+}
+
+/* A wall's first hole only joins its two sides: then a hollow is not closed any more. Of one region
+ * among several that is all that is sure, for the surfaces of regions touch themselves. */
+static void doubt_hollows(const mesh_report *report) {
+    static const double LEAST =
+        27; /* elements: smaller ones may be filled, or be parts of others */
+    const double size = report->info.size;
+    lar_region_info r;
+    lar_mesh_arrays mesh;
+    lar_meshing_arrays(report->meshing, &mesh, NULL);
+    for (int32_t i = 0; !lar_meshing_region(report->meshing, i, &r, NULL); i++) {
+        const int32_t count = lar_meshing_region_boundary(report->meshing, i, NULL, NULL);
+        int32_t(*triangle)[3] = lar_calloc((size_t)count + 1, sizeof *triangle);
+        lar_surface_arrays surface;
+        mesh_shape wanted, got;
+        if (triangle) lar_meshing_region_boundary(report->meshing, i, triangle, &surface);
+        if (triangle && r.elements > 0 &&
+            mesh_shape_of_surface(&surface, LEAST * size * size * size, &wanted) &&
+            wanted.hollows > 0 && mesh_shape_of_mesh(&mesh, &r.tag, &got) &&
+            got.hollows < wanted.hollows)
+            cli_complain(&cli_mesh, CLI_DONE,
+                         "note: %s encloses %d hollow%s and its mesh %d: its wall has holes, for "
+                         "it is about as thin as an element of %s, or among other regions up to "
+                         "two thirds thicker; take elements of half the wall's thickness or less",
+                         r.name, (int)wanted.hollows, wanted.hollows > 1 ? "s" : "",
+                         (int)got.hollows, cli_length(size).text);
+        free(triangle);
+    }
 }
 
 /* Reads back what was written, as every other command will. */
@@ -210,6 +239,7 @@ static void doubt(const mesh_report *report, bool cubes) {
             "note: the body is %.4g m long; if the file is in millimetres, say --scale 0.001",
             size);
     doubt_shape(report);
+    doubt_hollows(report);
     if (quality->true_volume > 0 && lost < -LOST && report->info.pinholes > 0)
         cli_complain(&cli_mesh, CLI_DONE,
                      "note: the mesh holds %.0f %% more than the true surface, of which hollows of "

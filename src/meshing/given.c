@@ -63,6 +63,26 @@ void lar_meshing_arrays(const lar_meshing *m, lar_mesh_arrays *mesh, lar_surface
                                         m->outer.vertex, m->outer.corner};
 }
 
+int32_t lar_meshing_region_boundary(const lar_meshing *m, int32_t index, int32_t (*triangle)[3],
+                                    lar_surface_arrays *boundary) {
+    int32_t count = 0;
+    if (boundary) *boundary = (lar_surface_arrays){0};
+    if (!m || index < 0 || index >= m->info.regions) return -1;
+    const lar_triangles *all = &m->boundary.triangles;
+    for (int32_t t = 0; t < all->triangle_count; t++) {
+        const int front = lar_boundary_region(m->boundary.side[t][0]);
+        const bool turned = front == index + 1;
+        if (turned == (lar_boundary_region(m->boundary.side[t][1]) == index + 1)) continue;
+        for (int c = 0; triangle && c < 3; c++)
+            triangle[count][c] = all->corner[t][turned ? 2 - c : c];
+        count++;
+    }
+    if (boundary)
+        *boundary = (lar_surface_arrays){m->region[index].name, all->vertex_count, count,
+                                         all->vertex, triangle};
+    return count;
+}
+
 lar_status lar_meshing_scene(lar_meshing *meshing, const char **scene, lar_error *error) {
     if (!meshing || !scene)
         return lar_fail(error, LAR_ERROR_ARGUMENT,

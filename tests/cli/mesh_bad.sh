@@ -167,6 +167,25 @@ in_short_if_sanitized || {
     expect 0 "$LARIAT" mesh leaf_thinner.obj --scale 0.05 --size 0.0015 --out thinner
     complains 'off the true surface in the mean: parts of it are thinner than an element'
 }
+# A hollow ball, and a corner of something else: walls among several regions are no thicker than they
+# are, and the first hole in one only joins its sides. A speck where the image ends holds nothing.
+awk 'BEGIN {
+    print "NRRD0004\ntype: uchar\ndimension: 3\nspace: right-anterior-superior"
+    print "sizes: 24 24 24\nencoding: text\nspace origin: (0,0,0)"
+    print "space directions: (2,0,0) (0,2,0) (0,0,2)\n"
+    for (k = 0; k < 24; k++) for (j = 0; j < 24; j++) for (i = 0; i < 24; i++) {
+        r = sqrt((i - 11.5) ^ 2 + (j - 11.5) ^ 2 + (k - 11.5) ^ 2)
+        print (r > 6 && r < 9 ? 1 : i + j + k < 5 ? 2 : 0)
+    }
+}' >hollow.nrrd
+in_short_if_sanitized || {
+    expect 0 "$LARIAT" mesh hollow.nrrd --elements 150 --out walls
+    complains 'label_1 encloses 1 hollow and its mesh 0: its wall has holes'
+    expect 0 "$LARIAT" mesh hollow.nrrd --elements 150 --label 1 --out wall
+    [ ! -s "$SCRATCH/err" ] || fail "doubts about a wall that is closed"
+    sed 's/^2$/0/; 10,11s/^0$/1/' hollow.nrrd >speck.nrrd
+    expect 0 "$LARIAT" mesh speck.nrrd --elements 400 --out speck
+}
 leaf 0.002 >leaf_thinnest.obj
 refused 'smaller or thinner than that' leaf_thinnest.obj --scale 0.05 --size 0.0015
 { # the same twice, a little apart

@@ -148,6 +148,7 @@ static void meshing_calls(void **unused) {
     assert_int_equal(lar_meshing_create(image, 1, NULL, &meshing, NULL), LAR_ERROR_IO);
     assert_null(meshing);
     REFUSED(lar_meshing_region(NULL, 0, &(lar_region_info){0}, &error));
+    assert_int_equal(lar_meshing_region_boundary(NULL, 0, NULL, NULL), -1);
     REFUSED(lar_meshing_write(NULL, "organ", NULL, &error));
     lar_meshing_destroy(NULL);
     lar_model_destroy(model);

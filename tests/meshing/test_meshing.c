@@ -137,6 +137,29 @@ static void an_image_becomes_a_mesh(void **state) {
     lar_meshing_destroy(NULL);
 }
 
+/* Six times the volume within a region's true boundary, which is closed. */
+static double enclosed(const lar_meshing *meshing, int32_t index) {
+    lar_surface_arrays s;
+    int32_t count = lar_meshing_region_boundary(meshing, index, NULL, NULL);
+    assert_true(count > 0);
+    int32_t(*triangle)[3] = lar_calloc((size_t)count, sizeof *triangle);
+    double volume = 0, area[3] = {0};
+    assert_int_equal(lar_meshing_region_boundary(meshing, index, triangle, &s), count);
+    assert_int_equal(s.triangles, count);
+    for (int32_t t = 0; t < count; t++) {
+        const double *a = s.vertex[triangle[t][0]], *b = s.vertex[triangle[t][1]],
+                     *c = s.vertex[triangle[t][2]];
+        for (int i = 0; i < 3; i++) {
+            int j = (i + 1) % 3, k = (i + 2) % 3;
+            volume += a[i] * (b[j] * c[k] - b[k] * c[j]);
+            area[i] += (b[j] - a[j]) * (c[k] - a[k]) - (b[k] - a[k]) * (c[j] - a[j]);
+        }
+    }
+    for (int i = 0; i < 3; i++) assert_below(fabs(area[i]), 1e-12);
+    free(triangle);
+    return volume;
+}
+
 static void regions_may_be_chosen_and_fused(void **state) {
     (void)state;
     static const char *const second[] = {"LEFT RIB"};
@@ -154,6 +177,9 @@ static void regions_may_be_chosen_and_fused(void **state) {
     assert_int_equal(region.held, 1);
     assert_below(fabs(region.volume / (shape_balls.volume / 2) - 1), 0.02);
     int32_t held = info.fixed_nodes;
+    for (int32_t i = 0; i < 2; i++)
+        assert_below(fabs(enclosed(meshing, i) / (6 * shape_balls.volume / 2) - 1), 0.01);
+    assert_int_equal(lar_meshing_region_boundary(meshing, 2, NULL, NULL), -1);
     assert_int_equal(lar_meshing_region(meshing, 2, &region, &error), LAR_ERROR_ARGUMENT);
     assert_int_equal(lar_meshing_region(meshing, -1, &region, &error), LAR_ERROR_ARGUMENT);
     lar_meshing_destroy(meshing);

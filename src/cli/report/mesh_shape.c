@@ -10,15 +10,17 @@
 
 enum { UNUSED = -1 };
 
-/* Shells of a surface whose corners are joined in `parent`, less what Euler's sum has of them;
- * nodes that are not on it are UNUSED. */
-static int32_t holes_of(const int32_t *parent, int32_t nodes, int64_t faces_less_edges) {
+/* Holes are the shells of a surface whose corners are joined in `parent`, less what Euler's sum has
+ * of them; nodes that are not on it are UNUSED. Returns the shells. */
+static int32_t count_holes(const int32_t *parent, int32_t nodes, int64_t faces_less_edges,
+                           mesh_shape *shape) {
     int64_t euler = faces_less_edges, shells = 0;
     for (int32_t n = 0; n < nodes; n++) {
         euler += parent[n] != UNUSED;
         shells += parent[n] == n;
     }
-    return (int32_t)(shells - euler / 2);
+    shape->holes = (int32_t)(shells - euler / 2);
+    return (int32_t)shells;
 }
 
 static void join_used(int32_t *parent, int32_t a, int32_t b) {
@@ -27,7 +29,7 @@ static void join_used(int32_t *parent, int32_t a, int32_t b) {
     lar_union_join(parent, a, b);
 }
 
-bool mesh_shape_of_surface(const lar_surface_arrays *s, mesh_shape *shape) {
+bool mesh_shape_of_surface(const lar_surface_arrays *s, double least, mesh_shape *shape) {
     int32_t *parent = lar_calloc((size_t)s->vertices + 1, sizeof *parent);
     double *volume = lar_calloc((size_t)s->vertices + 1, sizeof *volume);
     const bool done = parent && volume;
@@ -40,10 +42,13 @@ bool mesh_shape_of_surface(const lar_surface_arrays *s, mesh_shape *shape) {
         const int32_t *corner = s->triangle[i];
         double across[3];
         lar_cross(s->vertex[corner[1]], s->vertex[corner[2]], across);
-        volume[lar_union_root(parent, corner[0])] += lar_dot(s->vertex[corner[0]], across);
+        volume[lar_union_root(parent, corner[0])] += lar_dot(s->vertex[corner[0]], across) / 6;
     }
-    for (int32_t n = 0; done && n < s->vertices; n++) shape->bodies += volume[n] > 0;
-    if (done) shape->holes = holes_of(parent, s->vertices, -(int64_t)s->triangles / 2);
+    for (int32_t n = 0; done && n < s->vertices; n++) {
+        shape->bodies += volume[n] > 0;
+        shape->hollows += volume[n] < 0 && volume[n] <= -least;
+    }
+    if (done) count_holes(parent, s->vertices, -(int64_t)s->triangles / 2, shape);
     free(parent);
     free(volume);
     return done;
@@ -69,27 +74,34 @@ static int by_face(const void *a, const void *b) {
     return (x->across > y->across) - (x->across < y->across);
 }
 
-/* The faces of all elements in order: equal ones stand together. NULL: no memory. */
-static face_key *sorted_faces(const lar_mesh_arrays *m) {
+static bool counts(const lar_mesh_arrays *m, int32_t element, const int32_t *tag) {
+    return !tag || m->tag[element] == *tag;
+}
+
+/* The faces of all elements that count in order: equal ones stand together. NULL: no memory. */
+static face_key *sorted_faces(const lar_mesh_arrays *m, const int32_t *tag, size_t *faces) {
     static const int corner[6][4] = {{0, 4, 7, 3}, {1, 2, 6, 5}, {0, 1, 5, 4},
                                      {3, 7, 6, 2}, {0, 3, 2, 1}, {4, 5, 6, 7}};
-    const size_t count = 6 * (size_t)m->elements;
-    face_key *face = lar_calloc(count + 1, sizeof *face);
-    for (size_t i = 0; face && i < count; i++) face[i] = key_of(m->element[i / 6], corner[i % 6]);
-    if (face) qsort(face, count, sizeof *face, by_face);
+    face_key *face = lar_calloc(6 * (size_t)m->elements + 1, sizeof *face);
+    *faces = 0;
+    for (int32_t e = 0; face && e < m->elements; e++)
+        for (int f = 0; f < 6 && counts(m, e, tag); f++)
+            face[(*faces)++] = key_of(m->element[e], corner[f]);
+    if (face) qsort(face, *faces, sizeof *face, by_face);
     return face;
 }
 
-bool mesh_shape_of_mesh(const lar_mesh_arrays *m, mesh_shape *shape) {
-    const size_t count = 6 * (size_t)m->elements;
+bool mesh_shape_of_mesh(const lar_mesh_arrays *m, const int32_t *tag, mesh_shape *shape) {
+    size_t count = 0;
     int32_t *parent = lar_calloc((size_t)m->nodes + 1, sizeof *parent);
-    face_key *face = sorted_faces(m);
+    face_key *face = sorted_faces(m, tag, &count);
     const bool done = parent && face;
     int64_t outer = 0;
     *shape = (mesh_shape){0};
-    if (done) lar_union_start(parent, m->nodes);
+    for (int32_t n = 0; done && n < m->nodes; n++) parent[n] = UNUSED;
     for (int32_t e = 0; done && e < m->elements; e++)
-        for (int a = 1; a < 8; a++) lar_union_join(parent, m->element[e][0], m->element[e][a]);
+        for (int a = 1; a < 8 && counts(m, e, tag); a++)
+            join_used(parent, m->element[e][0], m->element[e][a]);
     for (int32_t n = 0; done && n < m->nodes; n++) shape->bodies += parent[n] == n;
     for (int32_t n = 0; done && n < m->nodes; n++) parent[n] = UNUSED;
     for (size_t i = 0, next; done && i < count; i = next) {
@@ -99,7 +111,7 @@ bool mesh_shape_of_mesh(const lar_mesh_arrays *m, mesh_shape *shape) {
         join_used(parent, face[i].least, face[i].across);
         for (int a = 0; a < 2; a++) join_used(parent, face[i].least, face[i].beside[a]);
     }
-    if (done) shape->holes = holes_of(parent, m->nodes, -outer);
+    if (done) shape->hollows = count_holes(parent, m->nodes, -outer, shape) - shape->bodies;
     free(parent);
     free(face);
     return done;

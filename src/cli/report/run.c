@@ -2,11 +2,15 @@
 
 #include <inttypes.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "cli/parallel.h"
 #include "cli/report/mass_scaling.h"
+#include "cli/report/zigzag.h"
 #include "base/json/write.h"
+#include "base/memory.h"
+#include "base/vector.h"
 
 /* Wall time that the simulated time is compared with: the steps, and the waiting between them when
  * they were paced. Writing frames is no part of it unless it had to fit between two ticks. */
@@ -222,11 +226,53 @@ static void print_through(const run_report *report, const lar_contact_info *info
                 two_digits_of(0.25 * step * report->info.shortest_edge / info->way));
 }
 
+/* Of a body that is back at its shape, or flies, what is left is a share of nothing. */
+static bool is_nothing(const run_report *report, const lar_energy *energy) {
+    static const double NOTHING = 1e-3;
+    double all = fmax(turnover_of(energy), turnover_of(&report->began));
+    return energy->strain + energy->hourglass < NOTHING * all;
+}
+
+/* What the springs of contact store, at most: every one's force is there twice [J]. */
+static double stored_by_springs(const run_report *report, double deepest) {
+    const int32_t nodes = report->info.nodes;
+    double(*force)[3] = lar_calloc((size_t)nodes + 1, sizeof *force), all = 0;
+    if (force && !lar_simulation_nodal_forces(report->simulation, LAR_CAUSE_BODIES, 0, force, NULL))
+        for (int32_t n = 0; n < nodes; n++) all += lar_length(force[n]);
+    free(force);
+    return 0.25 * all * deepest;
+}
+
+/* What is let in is missing in the force: contact is as hard as a step bears (docs/theory.md,
+ * "Contact"), so a shorter one lets in less. */
+static void print_softness(const run_report *report, const lar_energy *energy, double deepest,
+                           FILE *out) {
+    static const double MUCH = 0.05,
+                        SPRINGS = 0.1; /* of the shortest edge, and of what is stored */
+    const double part = deepest / report->info.shortest_edge;
+    const double step = two_digits_of(0.5 * lar_simulation_time_step(report->simulation));
+    const double stored = energy->strain + energy->hourglass;
+    if (part > MUCH) {
+        fprintf(out,
+                "%-17s%.2g of the shortest edge: forces are less than those of bodies that only "
+                "touch; --time-step %.2g lets in a quarter of it, but at edges, where only "
+                "smaller elements help\n",
+                "", part, step);
+        return;
+    }
+    if (!(energy->strain > 0) || is_nothing(report, energy)) return;
+    const double springs = stored_by_springs(report, deepest) / stored;
+    if (springs > SPRINGS)
+        fprintf(out,
+                "%-17sits springs store up to %.2g of what the bodies do: where these are moved "
+                "onto each other, forces are less than those of bodies that only touch; "
+                "--time-step %.2g lets in a quarter of it\n",
+                "", springs, step);
+}
+
 /* Nothing where nothing came close, nor where a scene has tools alone, which have lines of their
- * own. What is let in is missing in the force: contact is as hard as a
- * step bears (docs/theory.md, "Contact"), so a shorter one lets in less. */
-static void print_contact(const run_report *report, FILE *out) {
-    static const double MUCH = 0.05; /* of the shortest edge */
+ * own. */
+static void print_contact(const run_report *report, const lar_energy *energy, FILE *out) {
     const lar_simulation *simulation = report->simulation;
     lar_contact_info info;
     lar_simulation_contact(simulation, &info);
@@ -240,13 +286,7 @@ static void print_contact(const run_report *report, FILE *out) {
             " searches, %.3g of %.3g pairs looked at in a step\n",
             "contact", (int)info.touching, 1e3 * info.deepest, info.searches,
             (double)info.tested / steps, (double)info.possible / steps);
-    double part = info.deepest / report->info.shortest_edge;
-    if (part > MUCH)
-        fprintf(out,
-                "%-17s%.2g of the shortest edge: forces are less than those of bodies that only "
-                "touch; --time-step %.2g lets in a quarter of it, but at edges, where only "
-                "smaller elements help\n",
-                "", part, two_digits_of(0.5 * lar_simulation_time_step(simulation)));
+    print_softness(report, energy, info.deepest, out);
     print_through(report, &info, out);
 }
 
@@ -324,14 +364,26 @@ static void print_open_account(const run_report *report, FILE *out) {
                 "account", now.open, 100 * now.share, two_digits_of(shorter * time_step));
 }
 
-/* Where hourglass modes bear much, the mesh answers and not the tissue. Of a body that is back at
- * its shape, or flies, what is left is a share of nothing. */
+/* Where they may have folded nothing else is to be said: they take few hourglass modes for that. */
+static bool print_zigzag(const run_report *report, const lar_energy *energy, FILE *out) {
+    if (strcmp(report->element, "hex8") != 0 || is_nothing(report, energy)) return false;
+    const zigzag found = zigzag_find(report->simulation, report->model);
+    if (found.elements > 0)
+        fprintf(out,
+                "%-17s%d of nearly incompressible tissue are under up to %.2g times its shear "
+                "modulus of pressure: they may fold in a zigzag, which bears too little, and more "
+                "of them as flat do so sooner; make them about as wide as thick, or give that "
+                "tissue a bulk modulus of 25 times its shear modulus\n",
+                "flat elements", (int)found.elements, found.most);
+    return found.elements > 0;
+}
+
+/* Where hourglass modes bear much, the mesh answers and not the tissue. */
 static void print_hourglass(const run_report *report, const lar_energy *energy, FILE *out) {
-    static const double MUCH = 0.1, NOTHING = 1e-3;
+    static const double MUCH = 0.1;
     /* Where muscles have shortened, strain energy is below zero or near it: a part of nothing. */
     if (energy->strain < 0 || !(hourglass_share(energy) > MUCH)) return;
-    double all = fmax(turnover_of(energy), turnover_of(&report->began));
-    if (energy->strain + energy->hourglass < NOTHING * all) return;
+    if (is_nothing(report, energy)) return;
     fprintf(out,
             "%-17s%.3g %% of strain and hourglass energy: the mesh is too coarse for how it is "
             "bent or crushed; give it two or more elements through the thickness, or twice as "
@@ -347,9 +399,9 @@ static void print_body(const run_report *report, FILE *out) {
     if (energy.contact != 0) fprintf(out, ", contact %.4g", energy.contact);
     if (energy.viscous != 0) fprintf(out, ", viscous %.4g", energy.viscous);
     fprintf(out, "; external %.4g\n", energy.external);
-    print_hourglass(report, &energy, out);
+    if (!print_zigzag(report, &energy, out)) print_hourglass(report, &energy, out);
     print_open_account(report, out);
-    print_contact(report, out);
+    print_contact(report, &energy, out);
     print_tools(report, &energy, out);
     print_parts(report->simulation, out);
     print_rest(report, out);

@@ -219,12 +219,13 @@ static lar_status mark_loose_pieces(choice *c, int side) {
 /* Marks what the rule holds; the side that is held, -1: none, in *side. */
 static lar_status hold(choice *c, const char *rule, int *side) {
     lar_support *support = &c->meshing->support;
-    bool cut = c->meshing->info.cuts > 0;
-    if (!rule) rule = cut ? "cut" : side_name[BACK];
+    /* What the image ends in may have been left out. */
+    int cut = !rule || strcmp(rule, "cut") == 0 ? mark_cuts(c) : -1;
+    if (!rule) rule = cut >= 0 ? "cut" : side_name[BACK];
     *side = side_of(rule);
     if (strcmp(rule, "cut") == 0) {
-        *side = cut ? mark_cuts(c) : -1;
-        if (*side < 0)
+        *side = cut;
+        if (cut < 0)
             return lar_fail(c->error, LAR_ERROR_ARGUMENT,
                             "fix cut: nothing of the mesh lies on a flat cut, because the image "
                             "does not end inside the body; hold it at a side: left, right, back, "

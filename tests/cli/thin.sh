@@ -1,0 +1,72 @@
+#!/bin/sh
+# What bears too little because it is thin: flat elements of nearly incompressible tissue that
+# pressure may fold, and layers that cannot escape where springs of contact press them.
+. "$(dirname "$0")/lib.sh"
+cd "$SCRATCH" || exit 1
+
+# A strip of NX x NY x NZ elements, LX x LY x LZ, from z = Z0 on, in millimetres, as elements of one
+# tag; nodes from FIRST on.
+strip() {
+    awk -v nx="$1" -v ny="$2" -v nz="$3" -v lx="$4" -v ly="$5" -v lz="$6" -v z0="$7" -v first="$8" \
+        -v set="$9" 'BEGIN {
+        print "*NODE"
+        for (k = 0; k <= nz; k++) for (j = 0; j <= ny; j++) for (i = 0; i <= nx; i++)
+            printf "%d, %.9g, %.9g, %.9g\n", first + i + (nx + 1) * (j + (ny + 1) * k),
+                1e-3 * lx * i / nx, 1e-3 * ly * j / ny, 1e-3 * (z0 + lz * k / nz)
+        print "*ELEMENT, TYPE=C3D8, ELSET=" set
+        for (k = 0; k < nz; k++) for (j = 0; j < ny; j++) for (i = 0; i < nx; i++) {
+            n = first + i + (nx + 1) * (j + (ny + 1) * k); up = (nx + 1) * (ny + 1)
+            printf "%d, %d, %d, %d, %d, %d, %d, %d, %d\n", n, n, n + 1, n + nx + 2, n + nx + 1,
+                n + up, n + up + 1, n + up + nx + 2, n + up + nx + 1
+        }
+    }'
+}
+
+# pad BULK NAME: bonded between plates, pressed by 5 %.
+pad() {
+    cat >"$2.yaml" <<END
+lariat: 1
+mesh: pad.inp
+duration: rest
+materials: [ { cells: all, law: neo-hookean, density: 1000, shear_modulus: 1e5, bulk_modulus: $1 } ]
+sets:
+  - { name: low, nodes: { box: [[-1, -1, -1], [1, 1, 1e-6]] } }
+  - { name: high, nodes: { box: [[-1, -1, 1.999e-3], [1, 1, 1]] } }
+fix: [ { nodes: all, axes: y }, { nodes: low, axes: xyz }, { nodes: high, axes: x } ]
+move: [ { nodes: high, axes: z, by: -1e-4, over: 0.02 } ]
+END
+}
+strip 8 1 4 20 2.5 2 0 1 pad >pad.inp
+strip 16 1 4 8 0.5 2 0 1 pad >pad_cubes.inp
+pad 1e7 flat
+pad 2e6 soft
+sed 's/pad.inp/pad_cubes.inp/' flat.yaml >cubes.yaml
+expect 0 "$LARIAT" run flat.yaml
+says '^flat elements  *[1-9][0-9]* of nearly incompressible tissue are under up to [1-9]'
+for name in soft cubes; do
+    expect 0 "$LARIAT" run $name.yaml
+    ! grep -q '^flat elements' "$SCRATCH/out" || fail "flat elements in $name.yaml"
+done
+
+# Two layers that only their thickness may change, from one another by nothing.
+{
+    strip 2 2 2 2 2 1 0 1 low
+    strip 2 2 2 2 2 1 1 101 high
+} >layers.inp
+cat >layers.yaml <<'END'
+lariat: 1
+mesh: layers.inp
+duration: rest
+materials: [ { cells: all, law: neo-hookean, density: 1000, youngs_modulus: 5e6, poisson_ratio: 0.495 } ]
+sets:
+  - { name: below, nodes: { box: [[-1, -1, -1], [1, 1, 1e-6]] } }
+  - { name: above, nodes: { box: [[-1, -1, 1.999e-3], [1, 1, 1]] } }
+  - { name: one, faces: { all: [ { set: low }, { surface: true } ] } }
+  - { name: two, faces: { all: [ { set: high }, { surface: true } ] } }
+fix: [ { nodes: all, axes: xy }, { nodes: below, axes: z } ]
+move: [ { nodes: above, axes: z, by: -4e-6, over: 0.005 } ]
+contact: [ { between: [one, two] } ]
+END
+expect 0 "$LARIAT" run layers.yaml
+says 'its springs store up to .* of what the bodies do'
+finish "what is thin"
