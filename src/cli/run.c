@@ -322,9 +322,11 @@ static int advance(run *r) {
 /* A run that was to end at rest and did not has no answer, only a last state. */
 static int complain_restless(const run *r) {
     double time = lar_simulation_time(r->simulation);
-    char left[64] = "its motion could not be judged yet", smaller[128];
+    char left[64] = "its motion could not be judged yet", smaller[REST_REMEDY_SIZE];
+    lar_contact_info contact;
     lar_energy now;
     lar_simulation_energy(r->simulation, &now);
+    lar_simulation_contact(r->simulation, &contact);
     if (r->rest.looked && r->rest.kinetic > 1e6 * fabs(r->rest.strain))
         snprintf(left, sizeof left, "it moves, and next to nothing strains it");
     else if (r->rest.looked)
@@ -334,7 +336,8 @@ static int complain_restless(const run *r) {
                         "is below %.0e; %s",
                         r->settings.scene, time, left, r->rest.share,
                         rest_remedy(&r->rest, now.kinetic, lar_simulation_damping(r->simulation),
-                                    lar_simulation_time_step(r->simulation), smaller));
+                                    lar_simulation_time_step(r->simulation), contact.touching > 0,
+                                    smaller));
 }
 
 /* Of the scene's duration; a scene without one is open. */

@@ -9,7 +9,7 @@
  * such a step, whose product is the kinetic energy, one is minus the other, and what looks saw, the
  * square of the former, is as much above zero. */
 const char *rest_remedy(const lar_rest *rest, double kinetic, double damping, double time_step,
-                        char text[REST_REMEDY_SIZE]) {
+                        bool touching, char text[REST_REMEDY_SIZE]) {
     static const double CREEPS = 10, TREMBLES = 0.5;
     if (rest->looked == 1 && -kinetic > TREMBLES * rest->mean_before) {
         snprintf(text, REST_REMEDY_SIZE,
@@ -27,7 +27,15 @@ const char *rest_remedy(const lar_rest *rest, double kinetic, double damping, do
     if (!(rest->left < 1))
         return "look whether something still falls or turns freely, or give more time with "
                "--until-rest --time";
-    if (rest->left * fabs(rest->strain) > CREEPS * rest->mean_before)
+    bool creeps = rest->left * fabs(rest->strain) > CREEPS * rest->mean_before;
+    if (creeps && touching) {
+        snprintf(text, REST_REMEDY_SIZE,
+                 "it creeps, or trembles where bodies touch: less damping lets it come to rest "
+                 "sooner, or --time-step %.2g, or give more time with --until-rest --time",
+                 0.5 * time_step);
+        return text;
+    }
+    if (creeps)
         return "it creeps: less damping lets it come to rest sooner, or give more time with "
                "--until-rest --time";
     return "it swings: more damping lets it come to rest sooner, or give more time with "

@@ -2,13 +2,16 @@
 #ifndef LAR_CLI_REPORT_REST_REMEDY_H
 #define LAR_CLI_REPORT_REST_REMEDY_H
 
+#include <stdbool.h>
+
 #include "lariat.h"
 
-enum { REST_REMEDY_SIZE = 128 };
+enum { REST_REMEDY_SIZE = 192 };
 
 /* Of what is known of a body that is not at rest: its `kinetic` energy now [J], as lar_energy has
- * it, its damping [1/s] and its step [s]. A constant, or what it writes into `text`. */
+ * it, its damping [1/s], its step [s] and whether bodies touch. A constant, or what it writes into
+ * `text`. */
 const char *rest_remedy(const lar_rest *rest, double kinetic, double damping, double time_step,
-                        char text[REST_REMEDY_SIZE]);
+                        bool touching, char text[REST_REMEDY_SIZE]);
 
 #endif
