@@ -369,14 +369,17 @@ void lar_offset_stay_flush(lar_body_contact *contact, const lar_state *state, in
 
 /* Whether a node that is deep behind a face was neither so a step ago, nor has come through it. Who
  * was behind the opposite side has been pressed through the middle of a body: that pushes it out at
- * the back. What it was behind and does not see has not pushed it. */
+ * the back. What it was behind and does not see has not pushed it, but who is hardly behind
+ * that is pushed as hardly. */
 static bool comes_from_behind(lar_body_contact *contact, const lar_state *state, int32_t g,
                               int32_t face, const lar_survey *s, double depth, double rate) {
+    static const double HARDLY = 0.15; /* there is 6 % of what pushes there (lar_edge_part) */
     const int32_t node = contact->list.group[g].node;
     if (!(depth > deep_of(contact, node, face)) || depth <= contact->time_step * rate ||
         !(state->past > 0))
         return false;
     closest_face before, now;
+    if (s->hidden >= 0 && s->inset < HARDLY * s->within) s = NULL;
     closest_ago(contact, state, g, s, state->past, &before);
     if (!is_behind(&before, reach_of(contact, node, face))) return true;
     closest_ago(contact, state, g, s, 0, &now);
