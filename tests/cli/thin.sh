@@ -43,6 +43,8 @@ pad 2e6 soft
 sed 's/pad.inp/pad_cubes.inp/' flat.yaml >cubes.yaml
 expect 0 "$LARIAT" run flat.yaml
 says '^flat elements  *[1-9][0-9]* of nearly incompressible tissue are under up to [1-9]'
+expect 0 "$LARIAT" run flat.yaml --json
+[ "$(value_of flat.elements)" -gt 16 ] || fail "flat elements in JSON"
 for name in soft cubes; do
     expect 0 "$LARIAT" run $name.yaml
     ! grep -q '^flat elements' "$SCRATCH/out" || fail "flat elements in $name.yaml"
@@ -69,4 +71,7 @@ contact: [ { between: [one, two] } ]
 END
 expect 0 "$LARIAT" run layers.yaml
 says 'its springs store up to .* of what the bodies do'
+expect 0 "$LARIAT" run layers.yaml --json
+awk -v springs="$(value_of contact.springs)" -v strain="$(value_of energy.strain)" \
+    'BEGIN { exit !(springs > 0.5 * strain) }' || fail "springs of contact in JSON"
 finish "what is thin"

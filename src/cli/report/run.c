@@ -96,18 +96,39 @@ static void write_account(lar_json *json, const run_report *report) {
     lar_json_close(json);
 }
 
-static void write_contact(lar_json *json, const lar_simulation *simulation) {
+/* What the springs of contact store, at most: every one's force is there twice [J]. */
+static double stored_by_springs(const run_report *report, double deepest) {
+    const int32_t nodes = report->info.nodes;
+    double(*force)[3] = lar_calloc((size_t)nodes + 1, sizeof *force), all = 0;
+    if (force && !lar_simulation_nodal_forces(report->simulation, LAR_CAUSE_BODIES, 0, force, NULL))
+        for (int32_t n = 0; n < nodes; n++) all += lar_length(force[n]);
+    free(force);
+    return 0.25 * all * deepest;
+}
+
+static void write_contact(lar_json *json, const run_report *report) {
     lar_contact_info info;
-    lar_simulation_contact(simulation, &info);
+    lar_simulation_contact(report->simulation, &info);
     lar_json_open(json, "contact", '{');
     lar_json_integer(json, "touching", info.touching);
     lar_json_number(json, "deepest", info.deepest);
+    lar_json_number(json, "springs", stored_by_springs(report, info.deepest));
     lar_json_integer(json, "through", (int64_t)info.through);
     lar_json_number(json, "way", info.way);
     lar_json_integer(json, "possible", (int64_t)info.possible);
     lar_json_integer(json, "boxed", (int64_t)info.boxed);
     lar_json_integer(json, "tested", (int64_t)info.tested);
     lar_json_integer(json, "searches", (int64_t)info.searches);
+    lar_json_close(json);
+}
+
+static void write_flat(lar_json *json, const run_report *report) {
+    zigzag found = {0};
+    if (strcmp(report->element, "hex8") == 0)
+        found = zigzag_find(report->simulation, report->model);
+    lar_json_open(json, "flat", '{');
+    lar_json_integer(json, "elements", found.elements);
+    lar_json_number(json, "pressure", found.most);
     lar_json_close(json);
 }
 
@@ -178,7 +199,8 @@ void run_report_json(const run_report *report, FILE *out) {
     lar_json_integer(&json, "deadline_misses", (int64_t)report->clock->misses);
     write_energy(&json, simulation);
     write_account(&json, report);
-    write_contact(&json, simulation);
+    write_contact(&json, report);
+    write_flat(&json, report);
     write_tools(&json, simulation);
     write_rest(&json, report);
     lar_json_integer(&json, "divided_steps", (int64_t)divided);
@@ -231,16 +253,6 @@ static bool is_nothing(const run_report *report, const lar_energy *energy) {
     static const double NOTHING = 1e-3;
     double all = fmax(turnover_of(energy), turnover_of(&report->began));
     return energy->strain + energy->hourglass < NOTHING * all;
-}
-
-/* What the springs of contact store, at most: every one's force is there twice [J]. */
-static double stored_by_springs(const run_report *report, double deepest) {
-    const int32_t nodes = report->info.nodes;
-    double(*force)[3] = lar_calloc((size_t)nodes + 1, sizeof *force), all = 0;
-    if (force && !lar_simulation_nodal_forces(report->simulation, LAR_CAUSE_BODIES, 0, force, NULL))
-        for (int32_t n = 0; n < nodes; n++) all += lar_length(force[n]);
-    free(force);
-    return 0.25 * all * deepest;
 }
 
 /* What is let in is missing in the force: contact is as hard as a step bears (docs/theory.md,
