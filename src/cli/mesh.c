@@ -129,8 +129,7 @@ static int find_shape(mesh_report *report) {
 /* A wall's first hole only joins its two sides: then a hollow is not closed any more. Of one region
  * among several that is all that is sure, for the surfaces of regions touch themselves. */
 static void doubt_hollows(const mesh_report *report) {
-    static const double LEAST =
-        27; /* elements: smaller ones may be filled, or be parts of others */
+    static const double LEAST = 27; /* elements: smaller ones are filled, or left to others */
     const double size = report->info.size;
     lar_region_info r;
     lar_mesh_arrays mesh;
