@@ -1034,6 +1034,10 @@ typedef struct lar_contact_info {
 
 LAR_SIZED void lar_simulation_contact(const lar_simulation *simulation, lar_contact_info *info);
 
+/* From how far on different bodies push each other, before they touch: the most of all that may
+ * [m]; 0 where none do, or those that may touch at rest (docs/formats.md, contact). */
+LAR_API double lar_simulation_contact_distance(const lar_simulation *simulation);
+
 /* ---- going back, saving, loading ---------------------------------------------------------- */
 
 /* The state that lar_simulation_create made; tools at rest, added ones where they were added (they

@@ -537,6 +537,7 @@ class Simulation : public detail::Handle<lar_simulation, lar_simulation_destroy>
         lar_simulation_contact(get(), &info);
         return info;
     }
+    double contact_distance() const { return lar_simulation_contact_distance(get()); }
 
     void reset() { detail::call(lar_simulation_reset, get()); }
     void save(const std::string &path) const {

@@ -408,6 +408,18 @@ void lar_simulation_contact(const lar_simulation *simulation, lar_contact_info *
     if (info) *info = simulation ? simulation->report.contact : (lar_contact_info){0};
 }
 
+double lar_simulation_contact_distance(const lar_simulation *simulation) {
+    const lar_contact_surface *s =
+        simulation ? simulation->interactions.body_contact.surface : NULL;
+    double most[2] = {0}; /* two bodies keep the smaller of theirs: the second largest of all */
+    for (int32_t b = 0; s && b < s->body_count; b++) {
+        const double own = s->body[b].standoff;
+        most[1] = fmax(most[1], fmin(most[0], own));
+        most[0] = fmax(most[0], own);
+    }
+    return most[1];
+}
+
 /* ---- divided steps ------------------------------------------------------------------------- */
 
 int32_t lar_simulation_step_parts(const lar_simulation *simulation) {

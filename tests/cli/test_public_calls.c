@@ -435,6 +435,7 @@ static void calls_without_a_status_accept_nothing(void **unused) {
     assert_true(lar_simulation_step_parts(NULL) <= 0);
     assert_true(lar_simulation_divided_steps(NULL, NULL) == 0);
     lar_simulation_contact(NULL, NULL);
+    assert_true(lar_simulation_contact_distance(NULL) == 0);
     assert_true(lar_model_output_interval(NULL) == 0);
     assert_true(lar_model_duration(NULL) == 0);
     lar_rest_begin(NULL, NULL);

@@ -74,4 +74,14 @@ says 'its springs store up to .* of what the bodies do'
 expect 0 "$LARIAT" run layers.yaml --json
 awk -v springs="$(value_of contact.springs)" -v strain="$(value_of energy.strain)" \
     'BEGIN { exit !(springs > 0.5 * strain) }' || fail "springs of contact in JSON"
+[ "$(value_of contact.distance)" = 0 ] || fail "a contact distance of bodies that touch"
+
+# Half a millimetre apart they push each other before they touch.
+{
+    strip 2 2 2 2 2 1 0 1 low
+    strip 2 2 2 2 2 1 1.5 101 high
+} >apart.inp
+sed 's/layers.inp/apart.inp/; s/1.999e-3/2.499e-3/' layers.yaml >apart.yaml
+expect 0 "$LARIAT" run apart.yaml
+says 'bodies push each other from 0.[0-9]* mm on, before they touch'
 finish "what is thin"

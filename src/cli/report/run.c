@@ -112,6 +112,7 @@ static void write_contact(lar_json *json, const run_report *report) {
     lar_json_open(json, "contact", '{');
     lar_json_integer(json, "touching", info.touching);
     lar_json_number(json, "deepest", info.deepest);
+    lar_json_number(json, "distance", lar_simulation_contact_distance(report->simulation));
     lar_json_number(json, "springs", stored_by_springs(report, info.deepest));
     lar_json_integer(json, "through", (int64_t)info.through);
     lar_json_number(json, "way", info.way);
@@ -298,6 +299,12 @@ static void print_contact(const run_report *report, const lar_energy *energy, FI
             " searches, %.3g of %.3g pairs looked at in a step\n",
             "contact", (int)info.touching, 1e3 * info.deepest, info.searches,
             (double)info.tested / steps, (double)info.possible / steps);
+    const double distance = lar_simulation_contact_distance(simulation);
+    if (distance > 0)
+        fprintf(out,
+                "%-17sbodies push each other from %.2g mm on, before they touch: gaps that matter "
+                "take thinner elements and smaller steps, or bodies that touch at rest\n",
+                "", 1e3 * distance);
     print_softness(report, energy, info.deepest, out);
     print_through(report, &info, out);
 }
