@@ -27,31 +27,38 @@ static double flatness(const double (*position)[3], const int32_t *node) {
     return least > 0 ? most / least : INFINITY;
 }
 
-/* Its pressure in shear moduli, of either sign; 0 where it is not flat, or may be compressed. */
-static double pressed(const lar_model *model, const double (*position)[3], int32_t element,
-                      const double stress[6]) {
-    static const double FLAT = 2, BULK = 30; /* sides, and shear moduli */
-    lar_material_info material = {0};
-    if (lar_model_material(model, lar_model_element_material(model, element), &material, NULL) ||
-        !(material.bulk_modulus > BULK * material.shear_modulus) ||
-        !(flatness(position, lar_model_element_nodes(model, element)) > FLAT))
-        return 0;
-    return fabs(stress[0] + stress[1] + stress[2]) / 3 / material.shear_modulus;
+/* The shear moduli of the model's materials, 0 of those that may be compressed; NULL: no memory. */
+static double *nearly_incompressible(const lar_model *model) {
+    static const double BULK = 30; /* shear moduli */
+    const int32_t count = lar_model_material_count(model);
+    double *shear = lar_calloc((size_t)count + 1, sizeof *shear);
+    for (int32_t m = 0; shear && m < count; m++) {
+        lar_material_info material;
+        if (!lar_model_material(model, m, &material, NULL) &&
+            material.bulk_modulus > BULK * material.shear_modulus)
+            shear[m] = material.shear_modulus;
+    }
+    return shear;
 }
 
 zigzag zigzag_find(const lar_simulation *simulation, const lar_model *model) {
-    static const double ENOUGH = 0.5; /* [shear moduli] */
+    static const double FLAT = 2, ENOUGH = 0.5; /* sides, and shear moduli */
     const int32_t elements = lar_model_element_count(model);
     const double(*position)[3] = lar_model_positions(model);
     double(*stress)[6] = lar_calloc((size_t)elements + 1, sizeof *stress);
+    double *shear = nearly_incompressible(model);
     zigzag found = {0};
-    if (stress && !lar_simulation_stresses(simulation, stress, NULL, NULL))
+    if (stress && shear && !lar_simulation_stresses(simulation, stress, NULL, NULL))
         for (int32_t e = 0; e < elements; e++) {
-            const double most = pressed(model, position, e, stress[e]);
-            if (!(most > ENOUGH)) continue;
+            const double modulus = shear[lar_model_element_material(model, e)];
+            const double pressure = fabs(stress[e][0] + stress[e][1] + stress[e][2]) / 3;
+            if (!(modulus > 0 && pressure > ENOUGH * modulus) ||
+                !(flatness(position, lar_model_element_nodes(model, e)) > FLAT))
+                continue;
             found.elements++;
-            found.most = fmax(found.most, most);
+            found.most = fmax(found.most, pressure / modulus);
         }
     free(stress);
+    free(shear);
     return found;
 }
