@@ -10,6 +10,7 @@
 #include "cli/commands.h"
 #include "cli/mesh_real_time.h"
 #include "cli/report/mesh.h"
+#include "cli/report/mesh_touch.h"
 #include "cli/stop.h"
 
 enum { INPUTS_MAX = 255 };
@@ -154,6 +155,31 @@ static void doubt_hollows(const mesh_report *report) {
     }
 }
 
+/* Where what is between two regions is thinner than elements they hang together through it. */
+static void doubt_layers(const mesh_report *report) {
+    enum { NAMED = 3 };
+    int32_t count;
+    mesh_touch *touch = mesh_touches(report->meshing, &count);
+    char text[512];
+    size_t used = 0;
+    for (int32_t i = 0; i < count && i < NAMED; i++) {
+        lar_region_info a, b;
+        lar_meshing_region(report->meshing, touch[i].region[0], &a, NULL);
+        lar_meshing_region(report->meshing, touch[i].region[1], &b, NULL);
+        int length =
+            snprintf(text + used, sizeof text - used,
+                     "%s%.60s and %.60s touch over %.3g mm^2 instead of %.3g", i ? ", " : "",
+                     a.name, b.name, 1e6 * touch[i].area, 1e6 * touch[i].wanted);
+        if (length < 0 || (used += (size_t)length) >= sizeof text) break;
+    }
+    if (count > 0)
+        cli_complain(&cli_mesh, CLI_DONE,
+                     "note: in the mesh %s%s: what is between them has holes, for it is thinner "
+                     "than elements of %s; take elements of half its thickness or less",
+                     text, count > NAMED ? ", and others" : "", cli_length(report->info.size).text);
+    free(touch);
+}
+
 /* Reads back what was written, as every other command will. */
 static int inspect(mesh_report *report) {
     lar_model *model = NULL;
@@ -239,6 +265,7 @@ static void doubt(const mesh_report *report, bool cubes) {
             size);
     doubt_shape(report);
     doubt_hollows(report);
+    doubt_layers(report);
     if (quality->true_volume > 0 && lost < -LOST && report->info.pinholes > 0)
         cli_complain(&cli_mesh, CLI_DONE,
                      "note: the mesh holds %.0f %% more than the true surface, of which hollows of "

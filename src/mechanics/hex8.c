@@ -139,19 +139,18 @@ static void hourglass_displacement(const lar_hex8 *element, const double U[7][3]
         }
 }
 
-/* G_m from the Piola-Kirchhoff stress and the hourglass displacements. */
-static void modal_forces(const lar_hex8 *element, const double P[3][3], const double q[4][3],
+/* G_m from the Piola-Kirchhoff stress and the hourglass forces c_m q_m. */
+static void modal_forces(const lar_hex8 *element, const double P[3][3], const double cq[4][3],
                          double G[7][3]) {
     double S[3][3];
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++) {
             S[i][j] = element->volume * P[i][j];
-            for (int m = 0; m < LAR_HEX8_HOURGLASS; m++)
-                S[i][j] -= element->stiffness[m] * q[m][i] * element->shape[m][j];
+            for (int m = 0; m < LAR_HEX8_HOURGLASS; m++) S[i][j] -= cq[m][i] * element->shape[m][j];
         }
     for (int m = 0; m < 7; m++)
         for (int i = 0; i < 3; i++) {
-            G[m][i] = m >= 3 ? element->stiffness[m - 3] * q[m - 3][i] : 0;
+            G[m][i] = m >= 3 ? cq[m - 3][i] : 0;
             if (m >= LAR_HEX8_GRADIENTS) continue;
             for (int j = 0; j < 3; j++) G[m][i] += S[i][j] * element->gradient[m][j];
         }
@@ -164,17 +163,30 @@ void lar_hex8_gradient(const lar_hex8 *element, const double u[8][3], double F[3
     for (int i = 0; i < 3; i++) F[i][i] += 1;
 }
 
+void lar_hex8_modes(const lar_hex8 *element, const double u[8][3], double F[3][3],
+                    double q[LAR_HEX8_HOURGLASS][3]) {
+    double U[7][3];
+    to_modes(u, U);
+    modal_gradient(element, U, F);
+    hourglass_displacement(element, U, (const double(*)[3])F, q);
+    for (int i = 0; i < 3; i++) F[i][i] += 1;
+}
+
+void lar_hex8_nodal(const lar_hex8 *element, const double P[3][3],
+                    const double hourglass[LAR_HEX8_HOURGLASS][3], double force[8][3]) {
+    double G[7][3];
+    modal_forces(element, P, hourglass, G);
+    from_modes(G, force);
+}
+
 double lar_hex8_force(const lar_hex8 *element, const lar_material *material, const double u[8][3],
                       double force[8][3]) {
-    double U[7][3], H[3][3], F[3][3], P[3][3], q[4][3], G[7][3];
-    to_modes(u, U);
-    modal_gradient(element, U, H);
-    hourglass_displacement(element, U, H, q);
-    memcpy(F, H, sizeof F);
-    for (int i = 0; i < 3; i++) F[i][i] += 1;
-    double J = lar_material_stress(material, element->fibre, F, P);
-    modal_forces(element, P, q, G);
-    from_modes(G, force);
+    double F[3][3], P[3][3], q[LAR_HEX8_HOURGLASS][3];
+    lar_hex8_modes(element, u, F, q);
+    double J = lar_material_stress(material, element->fibre, (const double(*)[3])F, P);
+    for (int m = 0; m < LAR_HEX8_HOURGLASS; m++)
+        for (int i = 0; i < 3; i++) q[m][i] *= element->stiffness[m];
+    lar_hex8_nodal(element, (const double(*)[3])P, (const double(*)[3])q, force);
     return J;
 }
 

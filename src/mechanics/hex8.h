@@ -68,6 +68,14 @@ typedef struct lar_hex8 {
  * the caller puts in. */
 void lar_hex8_prepare(const double corner[8][3], const lar_material *material, lar_hex8 *element);
 
+/* What displacements are made of: the mean gradient and the hourglass displacements q_m [m]. */
+void lar_hex8_modes(const lar_hex8 *element, const double u[8][3], double F[3][3],
+                    double q[LAR_HEX8_HOURGLASS][3]);
+/* And the forces on the nodes [N] of what works on these: a stress P [Pa] and the forces dW/dq_m
+ * [N]. */
+void lar_hex8_nodal(const lar_hex8 *element, const double P[3][3],
+                    const double hourglass[LAR_HEX8_HOURGLASS][3], double force[8][3]);
+
 /* Internal forces dW/du [8][3] in newtons for displacements u [8][3]; returns det F. Plain C, the
  * formulas above in order: the oracle of the kernels. */
 double lar_hex8_force(const lar_hex8 *element, const lar_material *material, const double u[8][3],

@@ -116,6 +116,14 @@ typedef struct lar_fibre_block {
                                 lar_fibre_limit */
 } __attribute__((aligned(64))) lar_fibre_block;
 
+/* What keeps flat elements from folding (fold/hex8_fold.h), beside the block as well. All 0 of
+ * others and without an element. */
+typedef struct lar_fold_block {
+    double axis[3][LAR_BLOCK], weight[LAR_HEX8_HOURGLASS][LAR_BLOCK];
+    double softness[LAR_HEX8_HOURGLASS][LAR_BLOCK]; /* weight over the stiffness of the head */
+    double bulk[LAR_BLOCK], from[LAR_BLOCK];        /* times volume and scale; as it is */
+} __attribute__((aligned(64))) lar_fold_block;
+
 /* Where parameter k of a lane stands; `more` is of that block, NULL for laws that fit. */
 static inline double *lar_block_parameter(lar_block_head *head, lar_block_more *more, int k,
                                           int lane) {
@@ -160,6 +168,7 @@ typedef struct lar_block_run {
     int fibrous;                       /* lar_fibre_kind; 0: no fibres */
     const lar_fibre_block *fibres;     /* [count] where there are any */
     const lar_fibre_block *second;     /* [count] of the other family where they are pairs */
+    const lar_fold_block *folds;       /* [count] where elements might fold; NULL: they do not */
 } lar_block_run;
 
 /* A step of the viscous elements of a run. */
@@ -259,8 +268,8 @@ typedef struct lar_hex8_monitor {
 typedef int64_t (*lar_hex8_recover)(const lar_block_run *run, const double *u, int64_t *force,
                                     const lar_hex8_limits *limits, lar_hex8_monitor *monitor);
 
-/* The same of a run that has fibres, or is viscous: else `step` is NULL. `active` NULL: all of the
- * active stress is there. */
+/* The same of a run that has fibres, or folds, or is viscous: else `step` is NULL. `active` NULL:
+ * all of the active stress is there. */
 typedef int64_t (*lar_hex8_recover_more)(const lar_block_run *run, const lar_viscous_step *step,
                                          const lar_active_step *active, const double *u,
                                          int64_t *force, const lar_hex8_limits *limits,

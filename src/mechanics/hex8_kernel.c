@@ -4,6 +4,7 @@
  * phases:
  *
  *     strain   gather nodes, transform, deformation gradient, hourglass forces    by shape, rows
+ *   ( fold     what keeps flat elements from folding (fold/hex8_fold_lanes.h)                   )
  *     stress   the material law                                                   by law
  *   ( fibres   what they add (hex8_fibre.h)                                       by fibre law )
  *   ( relax    what a viscous material remembers (viscous/hex8_viscous.h)         by viscosity )
@@ -21,6 +22,7 @@
 #include "mechanics/hex8_lean.h"
 #include "mechanics/node_update.h"
 #ifndef LAR_KERNEL_ELASTIC
+#include "mechanics/fold/hex8_fold_lanes.h"
 #include "mechanics/hex8_fibre.h"
 #include "mechanics/hex8_group.h"
 #include "mechanics/viscous/hex8_viscous.h"
@@ -330,25 +332,41 @@ static const strain_phase strain_table[LAR_SHAPE_COUNT][LAR_ROWS_COUNT] = {
 static const force_phase force_table[LAR_SHAPE_COUNT][LAR_ROWS_COUNT] = {
     BY_ROWS(force_generals, force_general_fours), BY_ROWS(force_boxes, force_box_fours)};
 
+#ifdef __OPTIMIZE_SIZE__
+/* Where it cannot be fast laws are called: those of the table, which are the same to the bit. */
+#define FOR_EACH_LAW           __attribute__((noinline)) static
+#define LAW_STRESS(identifier) lar_law_table[LAR_LAW_##identifier].stress
+#else
+#define FOR_EACH_LAW           LAR_INLINE
+#define LAW_STRESS(identifier) lar_##identifier##_stress
+#endif
+
 /* Returns a bit per element of the chunk that is beyond the limits. */
+FOR_EACH_LAW unsigned stress_parts(const char *blocks, const lar_block_more *more, size_t count,
+                                   size_t size, lane_record *record, const lar_hex8_limits *limits,
+                                   lane_law law, lane_stiffened stiffened, double share,
+                                   const double *limit, lane_strain *strain, unsigned *strained) {
+    unsigned beyond = 0, part = 0;
+    int shift = 0;
+    FOR_PARTS(blocks, count, size) {
+        beyond |= stress_lanes((const lar_block_head *)(const void *)block, lane, record,
+                               more ? more + shift / LAR_BLOCK : NULL, limits, law, stiffened,
+                               share, limit ? limit + shift : NULL, strain, &part)
+                  << shift;
+        if (limit) *strained |= part << shift;
+        strain++;
+        shift += LAR_LANES;
+    }
+    return beyond;
+}
+
 #define DEFINE_LAW(identifier)                                                                     \
     static unsigned stress_##identifier(                                                           \
         const char *blocks, const lar_block_more *more, size_t count, size_t size,                 \
         lane_record *record, const lar_hex8_limits *limits, double share, const double *limit,     \
         lane_strain *strain, unsigned *strained) {                                                 \
-        unsigned beyond = 0, part = 0;                                                             \
-        int shift = 0;                                                                             \
-        FOR_PARTS(blocks, count, size) {                                                           \
-            beyond |= stress_lanes((const lar_block_head *)(const void *)block, lane, record,      \
-                                   more ? more + shift / LAR_BLOCK : NULL, limits,                 \
-                                   lar_##identifier##_stress, lar_##identifier##_stiffened, share, \
-                                   limit ? limit + shift : NULL, strain, &part)                    \
-                      << shift;                                                                    \
-            if (limit) *strained |= part << shift;                                                 \
-            strain++;                                                                              \
-            shift += LAR_LANES;                                                                    \
-        }                                                                                          \
-        return beyond;                                                                             \
+        return stress_parts(blocks, more, count, size, record, limits, LAW_STRESS(identifier),     \
+                            lar_##identifier##_stiffened, share, limit, strain, strained);         \
     }
 LAR_LAWS(DEFINE_LAW)
 #define LAW_ROW(identifier) [LAR_LAW_##identifier] = stress_##identifier,
@@ -398,6 +416,7 @@ static void list_strained(lar_hex8_monitor *monitor, int32_t b, unsigned straine
 #ifdef LAR_KERNEL_ELASTIC
 typedef struct lar_viscous_step lar_viscous_step;
 typedef struct lar_active_step lar_active_step;
+typedef struct lar_fold_block lar_fold_block;
 typedef struct viscous_lane {
     int nothing;
 } viscous_lane;
@@ -408,6 +427,8 @@ enum { SOFTER = 1 };
 #define stretch(run, b, count, limits, limit, gradient, record, strain, of) 0U
 #define contract(run, active, b, count, limits, gradient, record)           ((void)(active), 0U)
 #define note_beyond(step, b, count, beyond)                                 ((void)0)
+#define fold(of, count, record, P)                                          0U
+#define unfold(parts, P, record)                                            ((void)(parts), (void)(P))
 #else
 #define softer_of(run) (run)->softer
 
@@ -460,12 +481,12 @@ __attribute__((noinline, cold)) static void note_beyond(const lar_viscous_step *
 }
 #endif
 
-/* `fibrous` is a constant 0 and `step` NULL for what is elastic alone, and then none of this is
- * there. */
-LAR_INLINE int64_t recover_form(const lar_block_run *run, int fibrous, const lar_viscous_step *step,
-                                const lar_active_step *active, const double *u, int64_t *force,
-                                const lar_hex8_limits *limits, lar_hex8_monitor *monitor) {
-    lar_lane gradient[CHUNK * PARTS][9];
+/* Constants 0 and NULL for what is elastic alone: `fibrous`, `step`, `all`. */
+LAR_INLINE int64_t recover_form(const lar_block_run *run, int fibrous, const lar_fold_block *all,
+                                const lar_viscous_step *step, const lar_active_step *active,
+                                const double *u, int64_t *force, const lar_hex8_limits *limits,
+                                lar_hex8_monitor *monitor) {
+    lar_lane gradient[CHUNK * PARTS][9], folded[CHUNK * PARTS][9];
     double share = step ? STRAINED_SHEAR * softer_of(run) : STRAINED_SHEAR;
     lane_record record[CHUNK * PARTS];
     lane_strain strains[CHUNK * PARTS];
@@ -487,6 +508,7 @@ LAR_INLINE int64_t recover_form(const lar_block_run *run, int fibrous, const lar
         unsigned strained = 0;
         const double *limit = monitor ? monitor->limit + b * LAR_BLOCK : NULL;
         const lar_block_more *more = run->more ? run->more + b : NULL;
+        unsigned folds = all ? fold(all + b, count, record, folded) : 0;
         for (size_t i = 0; (step || fibrous) && i < count * PARTS; i++)
             memcpy(gradient[i], record[i].F, sizeof gradient[i]);
         unsigned beyond = 0;
@@ -506,6 +528,7 @@ LAR_INLINE int64_t recover_form(const lar_block_run *run, int fibrous, const lar
                               strains, &strained);
         if (step) beyond |= relax(run, step, b, count, limits, gradient, &fade, record);
         if (fibrous) beyond |= contract(run, active, b, count, limits, gradient, record);
+        if (all) unfold(folds, folded, record);
         forces(blocks, count, run->rows, run->turn, asks, record,
                (lane_sums){force, run->axis_stride});
         unsigned flat = 0;
@@ -525,14 +548,14 @@ LAR_INLINE int64_t recover_form(const lar_block_run *run, int fibrous, const lar
 
 static int64_t recover(const lar_block_run *run, const double *u, int64_t *force,
                        const lar_hex8_limits *limits, lar_hex8_monitor *monitor) {
-    return recover_form(run, 0, NULL, NULL, u, force, limits, monitor);
+    return recover_form(run, 0, NULL, NULL, NULL, u, force, limits, monitor);
 }
 
 #ifndef LAR_KERNEL_ELASTIC
 static int64_t recover_more(const lar_block_run *run, const lar_viscous_step *step,
                             const lar_active_step *active, const double *u, int64_t *force,
                             const lar_hex8_limits *limits, lar_hex8_monitor *monitor) {
-    return recover_form(run, run->fibrous, step, active, u, force, limits, monitor);
+    return recover_form(run, run->fibrous, run->folds, step, active, u, force, limits, monitor);
 }
 #endif
 

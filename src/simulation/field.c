@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "simulation/simulation.h"
+#include "mechanics/fold/hex8_fold.h"
 #include "mechanics/hex8_full.h"
 
 struct lar_field_plan {
@@ -215,6 +216,9 @@ lar_status lar_simulation_stored_energy(const lar_simulation *simulation, const 
                                  : lar_hex8_full_energy((const double(*)[3])place, material,
                                                         (const double(*)[3])corner);
         *hourglass += factor * other; /* the plan has the hourglass stiffness of the model */
+        if (plan->element)
+            *hourglass += lar_hex8_fold_force((const double(*)[3])place, material,
+                                              (const double(*)[3])corner, NULL);
     }
     return LAR_OK;
 }

@@ -562,6 +562,7 @@ size_t lar_simulation_bytes(const lar_simulation *simulation) {
     size_t nodes = (size_t)layout->node_padded;
     size_t elements = (size_t)domain->model->mesh.element_count;
     size_t bytes = domain->block_bytes + domain->more_bytes + domain->relaxing_bytes +
+                   domain->fold_bytes +
                    elements * sizeof *layout->corner +
                    (size_t)layout->block_count * sizeof *layout->block +
                    (size_t)domain->model->mesh.node_count * sizeof *layout->local +

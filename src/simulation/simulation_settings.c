@@ -14,6 +14,7 @@
  * first step (contact/conditions.h). */
 #include <string.h>
 
+#include "step/folds.h"
 #include "step/guard.h"
 #include "step/viscous_history.h"
 #include "simulation/simulation.h"
@@ -156,7 +157,8 @@ static double element_account(const lar_simulation *simulation, const body_eleme
             lar_state_velocity(state, domain->layout.local[node[a]], v[a]);
         }
         account = lar_hex8_energy(element->hex8, material, (const double(*)[3])u, &hourglass) +
-                  lar_guard_energy(domain, state, element->e) + hourglass;
+                  lar_guard_energy(domain, state, element->e) +
+                  lar_folds_energy(domain, state, element->e) + hourglass;
         lar_hex8_force(element->hex8, material, (const double(*)[3])u, force);
         account += viscous_account(simulation, element, (const double(*)[3])u,
                                    (const double(*)[3])v, half);

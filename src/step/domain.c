@@ -219,7 +219,7 @@ static lar_status allocate_blocks(lar_domain *domain, lar_error *error) {
     domain->area_limit = lar_calloc_aligned(elements, sizeof *domain->area_limit);
     domain->base = lar_calloc(elements, sizeof *domain->base);
     domain->rest = lar_calloc_aligned(3 * domain->layout.axis_stride, sizeof *domain->rest);
-    if (!domain->blocks || (domain->more_bytes && !domain->more) || !lar_fibres_plan(domain) ||
+    if (!domain->blocks || (domain->more_bytes && !domain->more) || !lar_beside_plan(domain) ||
         !domain->base || !domain->corner_limit || !domain->area_limit || !domain->rest)
         return lar_fail_memory(error, domain->block_bytes, "the elements");
     for (lar_lid n = 0; n < domain->layout.node_padded; n++)
@@ -573,6 +573,7 @@ void lar_domain_destroy(lar_domain *domain) {
     free(domain->more);
     free(domain->fibres);
     free(domain->second);
+    free(domain->folds);
     lar_viscous_unplan(domain);
     lar_activation_unplan(domain);
     free(domain->material);

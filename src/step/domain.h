@@ -57,10 +57,10 @@ typedef struct lar_domain {
                                            are none */
     double fastest[LAR_FACTORS_MAX];    /* square of the highest frequency at rest among the
                                             elements of these materials [1/s^2]; a whole's */
-    double *corner_limit;   /* [8 for each block] lar_hex8_corner_limit, in squared force units */
-    double *area_limit;     /* [8 for each block] lar_hex8_area_limit, of compressible tissue below 0
-                               (mass/compressible.h); NULL: all are of neither kind */
-    double *rest;           /* [3][layout.axis_stride] where nodes are at rest [m] */
+    double *corner_limit; /* [8 for each block] lar_hex8_corner_limit, in squared force units */
+    double *area_limit;   /* [8 for each block] lar_hex8_area_limit, of compressible tissue below 0
+                             (mass/compressible.h); NULL: all are of neither kind */
+    double *rest;         /* [3][layout.axis_stride] where nodes are at rest [m] */
     lar_element_rate *rate; /* [elements of the model] */
     bool rate_lent;         /* `rate` belongs to the whole */
     size_t block_bytes;
@@ -70,7 +70,9 @@ typedef struct lar_domain {
     size_t relaxing_bytes;
     lar_fibre_block *fibres; /* [blocks] of models that have fibres somewhere, or NULL */
     size_t fibre_bytes;
-    lar_fibre_block *second;  /* [blocks] of models with pairs of fibres somewhere, or NULL */
+    lar_fibre_block *second; /* [blocks] of models with pairs of fibres somewhere, or NULL */
+    lar_fold_block *folds;   /* [blocks] of models some of whose elements might fold, or NULL */
+    size_t fold_bytes;
     size_t history_count;     /* values of a state's history, lanes without an element among them */
     size_t *run_history;      /* [run_count] where a viscous run's begin */
     int64_t *element_history; /* [elements of the model] where an element's begin, one in eight;

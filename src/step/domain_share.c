@@ -21,6 +21,7 @@ static void forget_own(lar_domain *domain) {
     domain->relaxing = NULL;
     domain->fibres = NULL;
     domain->second = NULL;
+    domain->folds = NULL;
     domain->corner_limit = NULL;
     domain->material = NULL;
 }
@@ -62,6 +63,7 @@ lar_status lar_domain_share(lar_domain *from, lar_domain *copy, lar_error *error
     copy->relaxing = copy_of(from->relaxing, from->relaxing_bytes, &failed);
     copy->fibres = copy_of(from->fibres, from->fibre_bytes, &failed);
     copy->second = copy_of(from->second, from->fibre_bytes, &failed);
+    copy->folds = copy_of(from->folds, from->fold_bytes, &failed);
     copy->corner_limit = copy_of(from->corner_limit, lanes * sizeof *from->corner_limit, &failed);
     copy->material = copy_of(from->material,
                              (size_t)from->model->material_count * sizeof *from->material, &failed);
@@ -89,6 +91,7 @@ lar_status lar_domain_share(lar_domain *from, lar_domain *copy, lar_error *error
         run->relaxing = moved(run->relaxing, from->relaxing, copy->relaxing);
         run->fibres = moved(run->fibres, from->fibres, copy->fibres);
         run->second = moved(run->second, from->second, copy->second);
+        run->folds = moved(run->folds, from->folds, copy->folds);
     }
     return LAR_OK;
 }
@@ -105,6 +108,7 @@ void lar_domain_leave(lar_domain *domain) {
     free(domain->relaxing);
     free(domain->fibres);
     free(domain->second);
+    free(domain->folds);
     free(domain->corner_limit);
     free(domain->material);
     lar_burden_destroy(domain->burden);

@@ -64,6 +64,9 @@ static uint64_t hash_blocks(uint64_t hash, const lar_domain *domain) {
     word = (const void *)domain->second;
     for (size_t i = 0; word && i < domain->fibre_bytes / sizeof *word; i++)
         hash = lar_hash_word(hash, word[i]);
+    word = (const void *)domain->folds;
+    for (size_t i = 0; word && i < domain->fold_bytes / sizeof *word; i++)
+        hash = lar_hash_word(hash, word[i]);
     word = (const void *)domain->relaxing;
     for (size_t i = 0; word && i < domain->relaxing_bytes / sizeof *word; i++)
         hash = lar_hash_word(hash, word[i]);

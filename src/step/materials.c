@@ -7,6 +7,7 @@
 #include "base/memory.h"
 #include "mechanics/hex8_guard.h"
 #include "step/activation.h"
+#include "step/folds.h"
 
 /* Beside one block. */
 typedef struct beside_blocks {
@@ -85,8 +86,10 @@ void lar_materials_fill(const lar_domain *domain, int32_t r, int32_t b, void *bl
     bool lean = domain->run[r].rest != NULL;
     double(*stiffness)[LAR_BLOCK] =
         lean ? ((lar_lean_block *)block)->stiffness : ((lar_block_head *)block)->stiffness;
+    double held[LAR_HEX8_HOURGLASS];
     for (int m = 0; m < LAR_HEX8_HOURGLASS; m++)
-        stiffness[m][lane] = base->stiffness[m] * hourglass * domain->scale;
+        held[m] = stiffness[m][lane] = base->stiffness[m] * hourglass * domain->scale;
+    if (domain->run[r].folds) lar_folds_fill(domain, r, b, lane, held);
     if (lean) ((lar_lean_block *)block)->material[lane] = material;
     for (int k = 0; k < lar_law_table[made->law].count; k++) {
         bool scales = lar_law_scales(made->law, k), shared = lean && k < LAR_BLOCK_PARAMETERS;
@@ -103,7 +106,7 @@ void lar_materials_fill(const lar_domain *domain, int32_t r, int32_t b, void *bl
 
 /* ---- fibres -------------------------------------------------------------------------------- */
 
-bool lar_fibres_plan(lar_domain *domain) {
+bool lar_beside_plan(lar_domain *domain) {
     size_t blocks = (size_t)domain->layout.block_count;
     bool pairs = false;
     for (int32_t r = 0; r < domain->run_count; r++) {
@@ -118,7 +121,7 @@ bool lar_fibres_plan(lar_domain *domain) {
         if (run->fibrous) run->fibres = domain->fibres + domain->run_first[r];
         if (run->fibrous > LAR_FIBRE_SINGLE) run->second = domain->second + domain->run_first[r];
     }
-    return true;
+    return lar_folds_plan(domain);
 }
 
 lar_status lar_fibres_check(const lar_domain *domain, lar_error *error) {

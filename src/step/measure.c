@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "step/activation.h"
+#include "step/folds.h"
 #include "step/guard.h"
 #include "step/viscous_history.h"
 #include "mechanics/hex8_full.h"
@@ -20,7 +21,9 @@ static double element_energy(const lar_domain *domain, const lar_state *state, l
     lar_hex8_prepare(corner, lar_domain_material(domain, e), &hex8);
     lar_model_fibres(domain->model, e, hex8.fibre);
     const lar_material now = lar_activation_material(domain, e, lar_state_time(domain, state));
-    return lar_hex8_energy(&hex8, &now, u, hourglass) + lar_guard_energy(domain, state, e);
+    double energy = lar_hex8_energy(&hex8, &now, u, hourglass) + lar_guard_energy(domain, state, e);
+    *hourglass += lar_folds_energy(domain, state, e);
+    return energy;
 }
 
 /* What the present change of an element's activation does until now. */

@@ -24,7 +24,7 @@ static void fault_element(lar_fault *fault, const lar_state *state, lar_gid e) {
 static int64_t recover_run(const lar_domain *domain, int32_t r, bool keeps,
                            lar_hex8_monitor *monitor, lar_state *state) {
     const lar_block_run *run = &domain->run[r];
-    if (!run->viscous && !run->fibrous)
+    if (!run->viscous && !run->fibrous && !run->folds)
         return domain->kernels->recover(run, state->u, state->force, &domain->limits, monitor);
     lar_viscous_step step = {.length = state->past, .keep = keeps};
     lar_active_step active;
@@ -76,11 +76,12 @@ static void fault_run(const lar_domain *domain, int32_t r, int64_t found, bool w
         one.more = domain->run[r].more ? domain->run[r].more + b : NULL;
         if (one.fibrous) one.fibres = domain->run[r].fibres + b;
         if (one.second) one.second = domain->run[r].second + b;
+        if (one.folds) one.folds = domain->run[r].folds + b;
         lar_active_step now =
             activates ? (lar_active_step){active.now + LAR_BLOCK * b, active.energy + LAR_BLOCK * b}
                       : (lar_active_step){0};
         found =
-            one.fibrous
+            one.fibrous || one.folds
                 ? domain->kernels->recover_more(&one, NULL, activates ? &now : NULL, state->u,
                                                 state->force, &domain->limits, monitor)
                 : domain->kernels->recover(&one, state->u, state->force, &domain->limits, monitor);

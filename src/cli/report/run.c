@@ -390,9 +390,9 @@ static bool print_zigzag(const run_report *report, const lar_energy *energy, FIL
     if (found.elements > 0)
         fprintf(out,
                 "%-17s%d of nearly incompressible tissue are under up to %.2g times its shear "
-                "modulus of pressure: they may fold in a zigzag, which bears too little, and more "
-                "of them as flat do so sooner; make them about as wide as thick, or give that "
-                "tissue a bulk modulus of 25 times its shear modulus\n",
+                "modulus of pressure and more than 5 times as wide as thick: they may fold in a "
+                "zigzag, which bears too little; make them less flat, by fewer through the "
+                "thickness or more along it\n",
                 "flat elements", (int)found.elements, found.most);
     return found.elements > 0;
 }

@@ -1,6 +1,7 @@
 /* Hourglass forces are as stiff along a flat element's thickness as along its width, where bending
  * asks for little (docs/theory.md, "Hourglass control"). Pressure is what folds it: in layers that
- * nothing lets escape, nodes in the middle go up and down in turns. */
+ * nothing lets escape, nodes in the middle go up and down in turns. What keeps elements from that
+ * (mechanics/fold) is enough for those up to five times as wide as thick. */
 #include "cli/report/zigzag.h"
 
 #include <math.h>
@@ -42,7 +43,7 @@ static double *nearly_incompressible(const lar_model *model) {
 }
 
 zigzag zigzag_find(const lar_simulation *simulation, const lar_model *model) {
-    static const double FLAT = 2, ENOUGH = 0.5; /* sides, and shear moduli */
+    static const double FLAT = 5.01, ENOUGH = 0.5; /* sides, and shear moduli */
     const int32_t elements = lar_model_element_count(model);
     const double(*position)[3] = lar_model_positions(model);
     double(*stress)[6] = lar_calloc((size_t)elements + 1, sizeof *stress);

@@ -6,6 +6,7 @@
 
 #include "base/clock.h"
 #include "contact/conditions.h"
+#include "mechanics/fold/hex8_fold.h"
 #include "study/implicit/tangent.h"
 
 /* Newmark's parameters: the trapezoidal rule, which neither damps nor gains (for linear bodies). */
@@ -165,11 +166,14 @@ static lar_status external(lar_implicit *m, const double *u, double time, double
 static bool add_internal(const lar_implicit *m, const double *u, double *out) {
     const lar_mesh *mesh = &m->model->mesh;
     for (lar_gid e = 0; e < mesh->element_count; e++) {
-        double corner[8][3], force[8][3];
+        double corner[8][3], force[8][3], place[8][3];
         gather(m, u, e, corner);
         double J = lar_hex8_force(&m->element[e], lar_model_material_of(m->model, e),
                                   (const double(*)[3])corner, force);
         if (!(J > 0)) return false;
+        lar_mesh_corners(mesh, e, place);
+        lar_hex8_fold_force((const double(*)[3])place, lar_model_material_of(m->model, e),
+                            (const double(*)[3])corner, force);
         for (int k = 0; k < 24; k++)
             out[3 * mesh->element[e][k / 3] + k % 3] += force[k / 3][k % 3];
     }

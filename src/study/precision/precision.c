@@ -35,6 +35,9 @@ static lar_status begin_run(const lar_model *model, lar_precision_case what, lar
         status = lar_single_adopt(&r->simulation->domain, way == LAR_PRECISION_SINGLE, &r->single,
                                   error);
     if (status) return status;
+    /* What keeps flat elements from folding is not there in single precision. */
+    for (int32_t i = 0; i < r->simulation->domain.run_count; i++)
+        r->simulation->domain.run[i].folds = NULL;
     if (what != LAR_CASE_MODEL) lar_precision_start(what, r->simulation);
     r->went = true;
     return LAR_OK;

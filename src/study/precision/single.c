@@ -89,6 +89,7 @@ static void fill_run(const lar_kernels *kernels, lar_block_run *run, char *to) {
     }
     run->blocks = to;
     run->rest = NULL;
+    run->folds = NULL; /* as in double precision for comparison (precision.c) */
     if (run->more)
         fill_more(run, (void *)(to + (size_t)((run->count + 1) / 2) * single_size(run->shape)));
 }
