@@ -185,6 +185,16 @@ in_short_if_sanitized || {
     [ ! -s "$SCRATCH/err" ] || fail "doubts about a wall that is closed"
     sed 's/^2$/0/; 10,11s/^0$/1/' hollow.nrrd >speck.nrrd
     expect 0 "$LARIAT" mesh speck.nrrd --elements 400 --out speck
+    # A cup: what is in it touches what is around it only where the cup has holes.
+    awk 'NR < 10 { print; next } {
+        n = NR - 10; i = n % 24; j = int(n / 24) % 24; k = int(n / 576)
+        r = sqrt((i - 11.5) ^ 2 + (j - 11.5) ^ 2 + (k - 11.5) ^ 2)
+        print (k > 13 ? 0 : r > 9 ? 2 : r > 7.5 ? 1 : 3)
+    }' hollow.nrrd >cup.nrrd
+    expect 0 "$LARIAT" mesh cup.nrrd --elements 300 --out cup
+    complains 'label_2 and label_3 touch over [0-9.]* mm^2 instead of 0'
+    expect 0 "$LARIAT" mesh cup.nrrd --elements 6000 --out fine
+    ! grep -q 'instead of' "$SCRATCH/err" || fail "regions that touch in a fine mesh"
 }
 leaf 0.002 >leaf_thinnest.obj
 refused 'smaller or thinner than that' leaf_thinnest.obj --scale 0.05 --size 0.0015

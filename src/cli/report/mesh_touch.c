@@ -164,7 +164,7 @@ static int by_excess(const void *a, const void *b) {
 /* `got` and `wanted`: as of add_shared. */
 static mesh_touch *list_touches(const double *got, const double *wanted, int32_t regions,
                                 double face, int32_t *count) {
-    static const double PART = 0.25, FACES = 8;
+    static const double PART = 1, FACES = 8;
     mesh_touch *list = lar_calloc((size_t)regions * (size_t)regions, sizeof *list);
     for (int32_t i = 0; list && i < regions * regions; i++) {
         if (!(got[i] > (1 + PART) * wanted[i] + FACES * face)) continue;

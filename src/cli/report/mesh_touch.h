@@ -10,7 +10,7 @@ typedef struct mesh_touch {
     double area, wanted; /* over how much they touch in the mesh, and should [m^2] */
 } mesh_touch;
 
-/* Those that touch over more than a quarter and eight elements' faces more than they should, worst
+/* Those that touch over more than twice what they should and eight elements' faces, worst
  * first; the caller frees. NULL: there are none, or no memory to find out. */
 mesh_touch *mesh_touches(const lar_meshing *meshing, int32_t *count);
 
