@@ -166,10 +166,11 @@ static void doubt_layers(const mesh_report *report) {
         lar_region_info a, b;
         lar_meshing_region(report->meshing, touch[i].region[0], &a, NULL);
         lar_meshing_region(report->meshing, touch[i].region[1], &b, NULL);
-        int length =
-            snprintf(text + used, sizeof text - used,
-                     "%s%.60s and %.60s touch over %.3g mm^2 instead of %.3g", i ? ", " : "",
-                     a.name, b.name, 1e6 * touch[i].area, 1e6 * touch[i].wanted);
+        const double got = 1e6 * touch[i].area, wanted = 1e6 * touch[i].wanted;
+        int length = snprintf(text + used, sizeof text - used,
+                              "%s%.60s and %.60s touch over %.*f mm^2 instead of %.*f",
+                              i ? ", " : "", a.name, b.name, got < 10 ? 2 : 0, got,
+                              wanted > 0 && wanted < 10 ? 2 : 0, wanted);
         if (length < 0 || (used += (size_t)length) >= sizeof text) break;
     }
     if (count > 0)
