@@ -1,6 +1,8 @@
 /* class Simulation: arrays, energies, hash; states saved and taken up again. */
 #include "module.h"
 
+#include <math.h>
+
 /* ---- arrays --------------------------------------------------------------------------------- */
 
 typedef void fill(const lar_simulation *simulation, double (*out)[3]);
@@ -125,10 +127,32 @@ static PyObject *contact(PyObject *me, PyObject *nothing) {
     if (!simulation) return NULL;
     lar_contact_info c;
     lar_simulation_contact(simulation, &c);
-    return Py_BuildValue("{s:i,s:d,s:K,s:d,s:K,s:K}", "touching", (int)c.touching, "deepest",
-                         c.deepest, "through", (unsigned long long)c.through, "way", c.way,
-                         "searches", (unsigned long long)c.searches, "tested",
-                         (unsigned long long)c.tested);
+    return Py_BuildValue("{s:i,s:d,s:d,s:K,s:d,s:K,s:K}", "touching", (int)c.touching, "deepest",
+                         c.deepest, "distance", lar_simulation_contact_distance(simulation),
+                         "through", (unsigned long long)c.through, "way", c.way, "searches",
+                         (unsigned long long)c.searches, "tested", (unsigned long long)c.tested);
+}
+
+/* Every one's force is there twice. */
+static PyObject *contact_springs(PyObject *me, PyObject *nothing) {
+    (void)nothing;
+    python_simulation *self = (python_simulation *)me;
+    lar_simulation *simulation = python_simulation_take(self, "contact_springs");
+    if (!simulation) return NULL;
+    const int32_t nodes = lar_model_node_count(self->model->model);
+    double(*force)[3] = calloc((size_t)nodes + 1, sizeof *force), all = 0;
+    lar_contact_info c;
+    lar_error error = {.status = LAR_ERROR_MEMORY};
+    lar_status status = force ? LAR_OK : LAR_ERROR_MEMORY;
+    lar_simulation_contact(simulation, &c);
+    if (!status && c.deepest > 0)
+        status = lar_simulation_nodal_forces(simulation, LAR_CAUSE_BODIES, 0, force, &error);
+    for (int32_t n = 0; !status && n < nodes; n++)
+        all +=
+            sqrt(force[n][0] * force[n][0] + force[n][1] * force[n][1] + force[n][2] * force[n][2]);
+    free(force);
+    python_simulation_give(self);
+    return status ? python_raise(&error) : PyFloat_FromDouble(0.25 * all * c.deepest);
 }
 
 /* ---- states --------------------------------------------------------------------------------- */
@@ -292,8 +316,13 @@ PyMethodDef python_state_methods[] = {
      "off: they are not finite then."},
     {"contact", contact, METH_NOARGS,
      "contact($self)\n--\n\ndict: touching (nodes in contact with bodies and planes), deepest [m], "
+     "distance (from how far on bodies push each other) [m], "
      "through (times that a node was pressed through a face: bodies lie in each other, or behind), "
      "way (the farthest that a node went in a step, or a part of one) [m], searches, tested."},
+    {"contact_springs", contact_springs, METH_NOARGS,
+     "contact_springs($self)\n--\n\nWhat the springs between bodies that touch store at most [J]. "
+     "Above a tenth of what the bodies store, energies()['strain'], they give way in place of the "
+     "bodies: a smaller time step makes them harder. As long as some steps."},
     {"reset", reset, METH_NOARGS,
      "reset($self)\n--\n\nBack to the state that it was made with, settings too. Added tools stay, "
      "where "

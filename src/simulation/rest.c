@@ -10,8 +10,10 @@
 static const double REST_SHARE = 1e-10;
 /* Of the motion that rounding makes between two looks: Q n of rest.h. */
 static const double ROUNDING = 1e4;
-/* The slow period is an estimate for compact bodies; a slender beam takes many of them. */
-static const double PERIODS_MAX = 1000;
+/* The slow period is an estimate for compact bodies; a slender beam takes many of them. What swings
+ * more slowly still, on springs, has an end when damping has taken e^-100 of its energy; not more
+ * than ten times as long is waited for that. */
+static const double PERIODS_MAX = 1000, PERIODS_DAMPED = 10000, FADED = 100;
 
 enum { LOOKS_PER_PERIOD = 16, MIN_LOOKS = LOOKS_PER_PERIOD / 2 /* of a window */ };
 
@@ -48,7 +50,12 @@ void lar_rest_begin(lar_rest *rest, const lar_simulation *simulation) {
     uint64_t since = step_at(simulation, rest->since);
     rest->since_step = since > now ? since : now;
     rest->every = steps_of(simulation, 1.0 / LOOKS_PER_PERIOD);
-    rest->limit = rest->since_step + steps_of(simulation, PERIODS_MAX);
+    const uint64_t most = steps_of(simulation, PERIODS_DAMPED);
+    const double damping = lar_simulation_damping(simulation);
+    const uint64_t faded = damping > 0 ? step_at(simulation, FADED / damping) : 0;
+    const uint64_t longer = faded < most ? faded : most;
+    rest->limit = steps_of(simulation, PERIODS_MAX);
+    rest->limit = rest->since_step + (rest->limit > longer ? rest->limit : longer);
     open_window(rest, rest->since_step);
 }
 
@@ -90,17 +97,21 @@ int lar_rest_look(lar_rest *rest, const lar_simulation *simulation) {
     if (!rest || !simulation) return 0;
     if (rest->reached || now < rest->next) return rest->reached;
     lar_rest_window *window = &rest->window;
-    lar_rest_energies(&simulation->domain, lar_simulation_state(simulation), &rest->kinetic,
-                      &rest->strain);
-    window->largest = fmax(window->largest, rest->kinetic);
-    window->sum += rest->kinetic;
+    const lar_state *state = lar_simulation_state(simulation);
+    const bool ends = now + rest->every > window->end;
+    double kinetic, strain; /* which takes as long as many steps: asked for when it is needed */
+    lar_rest_energies(&simulation->domain, state, &kinetic, ends ? &strain : NULL);
+    window->largest = fmax(window->largest, kinetic);
+    window->sum += kinetic;
     window->looks++;
     rest->next = now + rest->every;
-    if (rest->next <= window->end) return 0;
+    if (!ends) return 0;
+    rest->kinetic = kinetic;
+    rest->strain = strain;
     double mean = window->sum / window->looks;
     double left = window->largest;
     if (mean > 0.0) left += energy_ahead(rest, simulation, mean);
-    double memory = memory_of(&simulation->domain, lar_simulation_state(simulation));
+    double memory = memory_of(&simulation->domain, state);
     rest->left = share_of(rest, &simulation->domain, left + memory);
     rest->looked = memory > left ? 2 : 1;
     rest->mean_before = mean;
@@ -111,14 +122,15 @@ int lar_rest_look(lar_rest *rest, const lar_simulation *simulation) {
 
 void lar_rest_energies(const lar_domain *domain, const lar_state *state, double *kinetic,
                        double *strain) {
-    *kinetic = *strain = 0;
+    *kinetic = 0;
+    if (strain) *strain = 0;
     for (lar_gid g = 0; g < domain->model->mesh.node_count; g++) {
         int32_t node = domain->layout.local[g];
         double v[3];
         lar_state_velocity(state, node, v);
         *kinetic += 0.5 * domain->mass[node] * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
     }
-    for (lar_gid e = 0; e < domain->model->mesh.element_count; e++)
+    for (lar_gid e = 0; strain && e < domain->model->mesh.element_count; e++)
         *strain += lar_measure_element_energy(domain, state, e);
 }
 

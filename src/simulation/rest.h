@@ -48,7 +48,7 @@
 
 #include "simulation/simulation.h"
 
-/* Energies of the state as it stands, velocities half a step back [J]. */
+/* Energies of the state as it stands, velocities half a step back [J]; `strain` may be NULL. */
 void lar_rest_energies(const lar_domain *domain, const lar_state *state, double *kinetic,
                        double *strain);
 

@@ -311,8 +311,10 @@ static int32_t *indices_of(const uint8_t *mark, size_t size, int32_t *count) {
     int32_t *index = lar_calloc(used, sizeof *index);
     if (!index) return NULL;
     *count = 0;
-    for (size_t i = 0; i < size; i++)
-        if (mark[i]) index[(*count)++] = (int32_t)i;
+    for (const uint8_t *at = mark; (size_t)*count < used; at++) {
+        at = memchr(at, 1, size - (size_t)(at - mark)); /* of a few among many */
+        index[(*count)++] = (int32_t)(at - mark);
+    }
     return index;
 }
 
