@@ -145,6 +145,21 @@ class Bits(unittest.TestCase):
         scene.update(damping=5, contact=[{"self": True}, floor])
         self.ends_alike(lariat.Model.from_arrays(nodes, hexahedra, scene), (2, 11, 16))
 
+    def test_springs_between_bodies_store_something_where_one_lies_on_the_other(self):
+        lower, upper = block_arrays((2, 2, 2)), block_arrays((2, 2, 2))
+        nodes = lower[0] + [[x, y, z + 2.05 * EDGE] for x, y, z in upper[0]]
+        hexahedra = lower[1] + [[n + len(lower[0]) for n in h] for h in upper[1]]
+        scene = {**SCENE, "tools": [], "damping": 50, "contact": [{"self": True}]}
+        simulation = lariat.Simulation(lariat.Model.from_arrays(
+            nodes, hexahedra, scene, sets={"floor": lower[2]["floor"]}))
+        self.assertEqual(simulation.contact_springs(), 0)
+        self.assertGreater(simulation.contact()["distance"], 0)
+        while simulation.contact()["deepest"] == 0 and simulation.time < 5:
+            simulation.advance(50)
+        springs = simulation.contact_springs()
+        self.assertGreater(springs, 0)
+        self.assertLess(springs, simulation.energies()["strain"] + 1)
+
 
 class Rest(unittest.TestCase):
     def test_a_block_sags_to_the_same_rest_on_every_grid(self):
