@@ -278,8 +278,8 @@ static void print_softness(const run_report *report, const lar_energy *energy, d
     if (springs > SPRINGS)
         fprintf(out,
                 "%-17sits springs store up to %.2g of what the bodies do: where these are moved "
-                "onto each other, forces are less than those of bodies that only touch; "
-                "--time-step %.2g lets in a quarter of it\n",
+                "onto each other, forces are less than those of bodies that only touch, and what "
+                "lies on another one sinks in; --time-step %.2g lets in a quarter of it\n",
                 "", springs, step);
 }
 
