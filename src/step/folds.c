@@ -65,7 +65,7 @@ void lar_folds_fill(const lar_domain *domain, int32_t r, int32_t b, int lane,
     for (int i = 0; i < 3; i++) block->axis[i][lane] = fold.axis[i];
     for (int m = 0; m < LAR_HEX8_HOURGLASS; m++) {
         block->weight[m][lane] = fold.weight[m];
-        block->softness[m][lane] = fold.weight[m] / stiffness[m];
+        block->softness[m][lane] = stiffness[m] > 0 ? fold.weight[m] / stiffness[m] : 0;
     }
 }
 

@@ -1,6 +1,7 @@
 #include "mechanics/fold/hex8_fold.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "base/vector.h"
 #include "law/kinematics.h"
@@ -11,26 +12,42 @@ static const double FROM = 20;
 /* Of its volume is free, before anything happens. */
 static const double FREE = 1e-3;
 
-/* Squares of the mean edges along xi, eta, zeta, times 16. */
-static void edge_squares(const double corner[8][3], double square[3]) {
-    for (int axis = 0; axis < 3; axis++) {
-        double edge[3] = {0};
+/* Mean edges along xi, eta, zeta, times 4. */
+static void mean_edges(const double corner[8][3], double edge[3][3]) {
+    memset(edge, 0, 3 * sizeof edge[0]);
+    for (int axis = 0; axis < 3; axis++)
         for (int a = 0; a < 8; a++)
-            for (int i = 0; i < 3; i++) edge[i] += lar_node_sign[a][axis] * corner[a][i];
-        square[axis] = lar_dot(edge, edge);
-    }
+            for (int i = 0; i < 3; i++) edge[axis][i] += lar_node_sign[a][axis] * corner[a][i];
 }
 
-static int shortest_of(const double square[3]) {
-    int axis = square[1] < square[0] ? 1 : 0;
-    return square[2] < square[axis] ? 2 : axis;
+/* Of two that are as long the one that lies so in space, however corners are counted: what kernels
+ * and energies take must be the same. */
+static bool is_shorter(const double a[3], const double b[3]) {
+    static const double EQUAL = 1e-6;
+    const double square = lar_dot(a, a), other = lar_dot(b, b), noise = EQUAL * square;
+    const double of_a[5] = {a[0] * a[0], a[1] * a[1], a[0] * a[1], a[0] * a[2], a[1] * a[2]};
+    const double of_b[5] = {b[0] * b[0], b[1] * b[1], b[0] * b[1], b[0] * b[2], b[1] * b[2]};
+    if (fabs(square - other) > noise) return square < other;
+    for (int k = 0; k < 5; k++)
+        if (fabs(of_a[k] - of_b[k]) > noise) return of_a[k] > of_b[k];
+    return false;
+}
+
+static int shortest_of(const double edge[3][3]) {
+    int axis = is_shorter(edge[1], edge[0]) ? 1 : 0;
+    return is_shorter(edge[2], edge[axis]) ? 2 : axis;
 }
 
 bool lar_hex8_is_flat(const double corner[8][3]) {
-    static const double FLAT = 1.8; /* longest over shortest */
-    double square[3];
-    edge_squares(corner, square);
-    return fmax(square[0], fmax(square[1], square[2])) > FLAT * FLAT * square[shortest_of(square)];
+    static const double FLAT =
+        1.79993; /* longest over shortest; no number that meshes are made by */
+    double edge[3][3], least = INFINITY, most = 0;
+    mean_edges(corner, edge);
+    for (int axis = 0; axis < 3; axis++) {
+        least = fmin(least, lar_dot(edge[axis], edge[axis]));
+        most = fmax(most, lar_dot(edge[axis], edge[axis]));
+    }
+    return most > FLAT * FLAT * least;
 }
 
 bool lar_hex8_may_fold(const lar_material *material) {
@@ -39,9 +56,9 @@ bool lar_hex8_may_fold(const lar_material *material) {
 
 void lar_hex8_fold_prepare(const double corner[8][3], const double gradient[3][3],
                            const lar_material *material, lar_hex8_fold *fold) {
-    double square[3];
-    edge_squares(corner, square);
-    const int axis = shortest_of(square);
+    double edge[3][3];
+    mean_edges(corner, edge);
+    const int axis = shortest_of((const double(*)[3])edge);
     for (int i = 0; i < 3; i++) {
         fold->axis[i] = sqrt(LAR_HOURGLASS_FACTOR / 2) * gradient[axis][i];
         fold->weight[i] = i != axis; /* mode 3 + i is the product of the two others */
