@@ -1136,12 +1136,13 @@ typedef struct lar_rest_window {
 typedef struct lar_rest {
     uint64_t next;  /* the step at which to look next */
     uint64_t limit; /* the step at which to give up: 1000 times the period of a slow shear wave
-                       after `since` */
+                       after `since`, or when damping has taken all but e^-100 of the energy, which
+                       may be ten times as long */
     int reached;    /* 1: the body is at rest */
     int looked;     /* not 0: `left` is known; 2: most of it is what viscous terms still relax */
     double since;   /* no load or prescribed value changes after that time [s]; infinite where a wave or
                        a curve comes again and again: then there is no rest, and `limit` is 0 */
-    double kinetic, strain; /* when last looked, strain with the hourglass energy [J] */
+    double kinetic, strain; /* when a window last ended, strain with the hourglass energy [J] */
     double left;            /* largest kinetic energy lately, what damping will still take and what
                                viscous terms store that will have relaxed, as a share of the strain energy; where that is next to nothing, of one
                                at which this share is rounding */

@@ -125,6 +125,7 @@ PyMethodDef python_rest_methods[] = {
      "looked [J], since (no load changes after that time [s]).\n\n"
      "seconds   of simulated time at most; not reached then is no error\n"
      "callback  called with the simulation some times in a period of a slow wave; False ends it\n\n"
-     "Without seconds, ModelError after a thousand periods of a slow wave: a body without damping "
-     "swings\nfor good, and one whose viscous terms are slow relaxes for longer; give it seconds."},
+     "Without seconds, ModelError after a thousand periods of a slow wave, or up to ten thousand\n"
+     "where damping needs them: a body without damping swings for good, and one whose viscous "
+     "terms are slow relaxes for longer; give it seconds."},
     {NULL, NULL, 0, NULL}};

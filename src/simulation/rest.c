@@ -99,15 +99,18 @@ int lar_rest_look(lar_rest *rest, const lar_simulation *simulation) {
     lar_rest_window *window = &rest->window;
     const lar_state *state = lar_simulation_state(simulation);
     const bool ends = now + rest->every > window->end;
+    const bool asks = ends || (!rest->looked && window->looks == 0); /* and once at the beginning */
     double kinetic, strain; /* which takes as long as many steps: asked for when it is needed */
-    lar_rest_energies(&simulation->domain, state, &kinetic, ends ? &strain : NULL);
+    lar_rest_energies(&simulation->domain, state, &kinetic, asks ? &strain : NULL);
+    if (asks) {
+        rest->kinetic = kinetic;
+        rest->strain = strain;
+    }
     window->largest = fmax(window->largest, kinetic);
     window->sum += kinetic;
     window->looks++;
     rest->next = now + rest->every;
     if (!ends) return 0;
-    rest->kinetic = kinetic;
-    rest->strain = strain;
     double mean = window->sum / window->looks;
     double left = window->largest;
     if (mean > 0.0) left += energy_ahead(rest, simulation, mean);

@@ -5,11 +5,12 @@
  * middle of a layer then go up and down in turns: elements tilt against each other, and what they
  * lose in height costs no volume of the mean gradient, the only one that is counted.
  *
- *      pressed          folds                   So what the hourglass modes strain along it counts
- *     ___________      __/\____/\__             as volume that is gone, of elements under pressure:
+ *      pressed          folds              So what the hourglass modes strain along it counts as
+ *     ___________      __/\____/\__        volume that is gone, of elements under pressure:
  *     |__|__|__|__|    |_/__\_/__\|
- *     |__|__|__|__|    | \__/ \__/|                 W = V K'/4 (<t + Q>^2 - <t>^2),  <x> = max(x,
- * 0) t = 0.999 - J Q = 1/2 sum over m of (w_m q_m . F N)^2,      N = sqrt(k/2) B_i
+ *     |__|__|__|__|    | \__/ \__/|            W = V K'/4 (<t + Q>^2 - <t>^2),   t = 0.999 - J
+ *
+ *     Q = 1/2 sum over m of (w_m q_m . F N)^2,    N = sqrt(k/2) B_i,    <x> = max(x, 0)
  *
  * i: the element's shortest axis; m: the hourglass modes; w_m = 1 for the two that are a product of
  * i and another axis, 1/sqrt(3) for xi eta zeta, else 0; k as in hex8.h. Of a box, whose B_i is
