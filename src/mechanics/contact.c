@@ -5,19 +5,18 @@
 
 /* Where three kinds of springs of this law still leave a step of 0.8 of the stable one stable:
  * elements take 4 s^2 of the 4 that central differences allow, and a spring whose damper looks at
- * the last half step counts three times (docs/theory.md). Above 0.25 the largest immersion hardly
- * falls any more. Close to the stable limit there is no room at all, and the softest springs are
- * kept: what they take is hidden in the difference between the elements' bound and the fastest mode
- * of a body. */
-static const double SOFTEST = 0.04, STIFFEST = 0.25;
+ * the last half step counts three times (docs/theory.md). Close to the stable limit there is no
+ * room at all, and the softest springs are kept: what they take is hidden in the difference between
+ * the elements' bound and the fastest mode of a body. */
+static const double STIFFEST = 4.0 / 9, SOFTEST = 0.04;
 
 static double body_share(double time_step, double stable_step) {
     double s = time_step / stable_step;
-    return (4 - 4 * s * s) / 9;
+    return STIFFEST * (1 - s * s);
 }
 
 lar_contact_law lar_contact_law_for(double time_step, double stable_step) {
-    double beta = fmin(fmax(body_share(time_step, stable_step), SOFTEST), STIFFEST);
+    double beta = fmax(body_share(time_step, stable_step), SOFTEST);
     return (lar_contact_law){.stiffness = beta / (time_step * time_step), .lead = time_step};
 }
 
@@ -26,10 +25,13 @@ double lar_contact_wanted(double confined) {
     return ENOUGH / confined;
 }
 
-/* beta(s) / s^2 falls with s; STIFFEST holds where s is small. */
-double lar_contact_longest(double confined) {
-    double wanted = lar_contact_wanted(confined), square = (4.0 / 9) / (wanted + 4.0 / 9);
-    return sqrt(wanted * square > STIFFEST ? STIFFEST / wanted : square);
+/* Of a step. Tools that are harder stir tissue that lies still (engine/tool_contact), and what of
+ * bodies overlaps in a longer step is more, however hard the springs (engine/slices). */
+static const double ENOUGH_SHARE = 0.25;
+
+double lar_contact_longest(double wanted) {
+    double square = STIFFEST / (wanted + STIFFEST); /* beta(s) / s^2 falls with s */
+    return sqrt(fmin(square, ENOUGH_SHARE / wanted));
 }
 
 /* Of the 4 (1 - s^2) that elements leave, grasps take a sixth, and tools all the rest: beta
@@ -37,7 +39,7 @@ double lar_contact_longest(double confined) {
 lar_contact_law lar_contact_tool_law_for(double time_step, double stable_step) {
     static const double REST = 10.0 / 3, LEAD = 0.3, SOFTEST_TOOL = 0.12;
     double times = 2.25 * REST / (1 + 2 * LEAD); /* as stiff as bodies */
-    double share = fmin(body_share(time_step, stable_step), STIFFEST);
+    double share = fmin(body_share(time_step, stable_step), ENOUGH_SHARE);
     double beta = fmax(times * share, SOFTEST_TOOL);
     return (lar_contact_law){.stiffness = beta / (time_step * time_step), .lead = LEAD * time_step};
 }

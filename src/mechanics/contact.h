@@ -40,8 +40,12 @@ lar_contact_law lar_contact_tool_law_for(double time_step, double stable_step);
  * tissue as stiffer than it is when it is pressed. */
 double lar_contact_wanted(double confined);
 
-/* The longest step, in stable steps of those elements, at which they are. */
-double lar_contact_longest(double confined);
+/* Where only the state at rest counts: bodies' springs come out four times as stiff as a layer that
+ * gives way by its pressure wave's modulus, as one does that walls confine. */
+#define LAR_CONTACT_WANTED_AT_REST 2.5
+
+/* The longest step, in stable steps of those elements, at which springs are at least so stiff. */
+double lar_contact_longest(double wanted);
 
 /* The force [N], at least 0, on a point that moves so much mass [kg]. */
 static inline double lar_contact_force(const lar_contact_law *law, double mass, double depth,

@@ -162,7 +162,9 @@ static double share_for_contact(const lar_model *model) {
         const lar_material *material = &model->material[i];
         if (!bodies && !(model->tool_count > 0 && lar_material_compressible(material))) continue;
         double slower = sqrt(fastest / wave_square(material));
-        share = fmin(share, slower * lar_contact_longest(lar_material_confined(material)));
+        double wanted = lar_contact_wanted(lar_material_confined(material));
+        if (bodies && model->until_rest) wanted = fmax(wanted, LAR_CONTACT_WANTED_AT_REST);
+        share = fmin(share, slower * lar_contact_longest(wanted));
     }
     return share;
 }

@@ -1,6 +1,8 @@
 /* Forces on nodes by cause: a tool's sum up to what the tool feels, to the last bit; bodies' to
  * nothing; all together are mass times acceleration. Looking changes nothing, and finds the same on
  * every grid. */
+#include <float.h>
+
 #include "base/vector.h"
 #include "engine/body_contact_test.h"
 #include "engine/engine_test.h"
@@ -159,6 +161,8 @@ static double mass_of(const lar_simulation *simulation, int32_t n) {
     return simulation->domain.mass[simulation->domain.layout.local[n]];
 }
 
+static const double SIZE = 0.03; /* of both scenes: planes put nodes where places round [m] */
+
 /* One step. False: it was divided, and is not compared. */
 static bool moves_as_forces_say(lar_simulation *simulation, int32_t *busy) {
     const lar_model *model = simulation->domain.model;
@@ -181,7 +185,7 @@ static bool moves_as_forces_say(lar_simulation *simulation, int32_t *busy) {
             double impulse = mass_of(simulation, n) * (after[n][i] - before[n][i]);
             double speed = fmax(fmax(fabs(after[n][i]), fabs(before[n][i])), 1e-3);
             double error = fabs(impulse - dt * total[n][i]);
-            if (!(error <= 1e-11 * mass_of(simulation, n) * speed))
+            if (!(error <= mass_of(simulation, n) * (1e-11 * speed + 4 * DBL_EPSILON * SIZE / dt)))
                 fail_msg("step %llu, node %d, axis %d: %.17g N s instead of %.17g",
                          (unsigned long long)lar_simulation_steps(simulation), (int)n, i,
                          dt * total[n][i], impulse);

@@ -70,7 +70,8 @@ static void the_step_has_room_for_what_meets(void **unused) {
         assert_below(4 * s * s + (tools + holds) * DT * DT, 4 * (1 + 1e-12));
         /* Where half of a node's surroundings is a tool's and it lies on a body beside it. */
         assert_below(4 * s * s + (0.5 * tools + bodies + holds) * DT * DT, 4 * (1 + 1e-12));
-        assert_true(tool.stiffness > 4.6 * body.stiffness);
+        /* Harder tools stir tissue that lies still. */
+        assert_true(tool.stiffness * DT * DT > 4.6 * fmin(body.stiffness * DT * DT, 0.25));
     }
 }
 
