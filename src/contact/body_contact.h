@@ -246,6 +246,8 @@ typedef struct lar_survey {
     double within;  /* all faces are looked at that are nearer; 0: as `min` says [m] */
     double across;  /* so far an edge that goes on is led over a border; 0: it is not [m] */
     int32_t border; /* the face through which the node's edge comes, of those above; -1: none */
+    double lies;    /* how surely the edge lies on another, from 0, where one on which it does not
+                       lie is as near, to 1 */
     bool over;      /* the node comes to that, and is pushed as if it were before the face */
     int32_t hidden; /* the closest of those that it does not see, within that; -1: none */
     double inset;   /* how far the node is behind the one or the other [m] */
@@ -316,8 +318,9 @@ lar_joint lar_joint_of(const lar_body_contact *contact, const lar_state *state, 
 /* The edge of the node of group g may go into the other body through one face, the border, and lie
  * on another one, as that of a slab under a block that slides along it. Then only the other one is
  * in its way: of those that it goes through none is seen. The border takes part in what the other
- * one does, until the node is `across` behind it; a node within the contact distance before it is
- * `over` the other one. */
+ * one does, until the node is `across` behind it, and the less the nearer one is on which the edge
+ * does not lie, as around the end of an edge: to that the node goes over. A node within the contact
+ * distance before it is `over` the other one. */
 void lar_edge_enters(const lar_body_contact *contact, const lar_state *state, int32_t g,
                      lar_survey *s);
 

@@ -221,7 +221,8 @@ lar_joint lar_joint_of(const lar_body_contact *contact, const lar_state *state, 
 
 void lar_edge_enters(const lar_body_contact *contact, const lar_state *state, int32_t g,
                      lar_survey *s) {
-    double least = s->across - s->fade, longest = 0;
+    static const double TURNS = 0.5;
+    double least = s->across - s->fade, longest = 0, other = s->within;
     bool through[LAR_GROUP_FACES_MAX], lies = false;
     s->inset = s->across;
     for (int32_t k = 0; k < s->count; k++) {
@@ -232,6 +233,7 @@ void lar_edge_enters(const lar_body_contact *contact, const lar_state *state, in
             lar_looks_away(contact, state, contact->list.group[g].node,
                            (const double(*)[3])s->corner[k], &deep);
         through[k] = deep > 0;
+        if (near && !through[k] && !(behind && deep == 0)) other = fmin(other, s->distance[k]);
         if (!through[k] && s->distance[k] < least) {
             least = s->distance[k];
             lies = behind && deep == 0;
@@ -244,6 +246,8 @@ void lar_edge_enters(const lar_body_contact *contact, const lar_state *state, in
     }
     if (!lies || !(least < longest)) s->border = -1;
     if (s->border < 0) return;
+    const double lead = (other - least) / (TURNS * (s->within - least));
+    s->lies = lead < 1 ? lead * lead * (3 - 2 * lead) : 1;
     s->min = least;
     for (int32_t k = 0; k < s->count; k++)
         if (through[k]) s->distance[k] = INFINITY;
@@ -256,11 +260,12 @@ void lar_edge_enters(const lar_body_contact *contact, const lar_state *state, in
 double lar_edge_part(const lar_survey *s, double energy, double on[4][3]) {
     const int32_t k = s->border < 0 ? s->hidden : s->border;
     const double *weight = s->point[k].weight, part = s->inset / s->within;
+    const double lies = s->border < 0 ? 1 : s->lies;
     double at[3], pull = 6 * (1 - part) * energy / (s->within * s->within);
     lar_face_mean((const double(*)[3])s->corner[k], weight, at);
     for (int i = 0; i < 12; i++)
-        on[i / 3][i % 3] = weight[i / 3] * pull * (s->x[i % 3] - at[i % 3]);
-    return part * part * (3 - 2 * part);
+        on[i / 3][i % 3] = lies * weight[i / 3] * pull * (s->x[i % 3] - at[i % 3]);
+    return 1 - lies * (1 - part * part * (3 - 2 * part));
 }
 
 /* ---- other bodies ---------------------------------------------------------------------------- */
