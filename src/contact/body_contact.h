@@ -289,15 +289,21 @@ void lar_offset_leave(lar_body_contact *contact, const lar_state *state, int32_t
 bool lar_offset_pushes(lar_body_contact *contact, const lar_state *state, int32_t g, int32_t face,
                        const lar_survey *survey, double depth, double rate);
 
+/* Where a sharp edge goes at a face. */
+typedef struct lar_edge_way {
+    double deeper; /* how much deeper behind the face it goes on to the next node, where it goes
+                      through the face [m]; 0 where the face lies along it, with the node's body
+                      before it; otherwise -1 */
+    double sure;   /* of the first two, from 0 at the angle where it would be the third to 1 */
+} lar_edge_way;
+
 /* Whether a face that a node or point on a sharp edge is behind looks away from its body: pushed
  * out there the node would be pulled from its own body, for the surface of that goes on beyond the
  * face, with both bodies on one side of it. The face is only nearer than the one that is in the
  * way, as where a block slides over the end of what it lies on.
- * *through, if not NULL: how much deeper behind the face the edge goes on to the next node, where
- * it goes through the face [m]; 0 where the face lies along it, with the node's body before it;
- * otherwise -1. */
+ * *through, if not NULL: where the edge goes. */
 bool lar_looks_away(const lar_body_contact *contact, const lar_state *state, int32_t node,
-                    const double corner[4][3], double *through);
+                    const double corner[4][3], lar_edge_way *through);
 
 /* A face that the node of group g, on a sharp edge, is behind may stand against one of a third body
  * that looks the other way: a joint that is closed, with nothing between. Through that nobody comes

@@ -124,13 +124,19 @@ double lar_offset_meet(lar_body_contact *contact, const lar_state *state, int32_
 
 /* ---- sharp edges ----------------------------------------------------------------------------- */
 
+/* From 0 to 1, without a slope at either end. */
+static double ease(double t) {
+    return !(t > 0) ? 0 : t < 1 ? t * t * (3 - 2 * t) : 1;
+}
+
 bool lar_looks_away(const lar_body_contact *contact, const lar_state *state, int32_t node,
-                    const double corner[4][3], double *through) {
-    static const double AGAINST = 0.3, AWAY = -0.7; /* cosines */
+                    const double corner[4][3], lar_edge_way *through) {
+    static const double AGAINST = 0.3, AWAY = -0.7, SURE = 0.1; /* cosines */
     const lar_contact_surface *s = contact->surface;
     const lar_contact_node *at = &s->node[node];
     int32_t parent[LAR_CONTACT_PARENTS];
-    double weight[LAR_CONTACT_PARENTS], from[3], to[3], way[3], least = 1, most = -1, deeper = 0;
+    double weight[LAR_CONTACT_PARENTS], from[3], to[3], way[3], least = 1, most = -1;
+    lar_edge_way edge = {.sure = 1};
     lar_contact_parents(s, node, parent, weight);
     lar_contact_place_of_node(contact, state, parent[0], from, NULL);
     lar_face_normal(corner, way);
@@ -141,14 +147,18 @@ bool lar_looks_away(const lar_body_contact *contact, const lar_state *state, int
         if (k == at->along) {
             /* Of a point: whether the edge ends at its node behind the face. */
             const bool ends = node >= s->node_count && s->node[parent[!(cosine > 0)]].along == 3;
-            if (fabs(cosine) > AGAINST) deeper = fabs(cosine) > -AWAY && !ends ? fabs(deep) : -1;
+            edge.sure = ease((AGAINST - fabs(cosine)) / SURE);
+            if (!(fabs(cosine) > AGAINST)) continue;
+            edge.deeper = fabs(cosine) > -AWAY && !ends ? fabs(deep) : -1;
+            edge.sure = ease((fabs(cosine) + AWAY) / SURE);
             continue;
         }
         if (!through && cosine > AGAINST) return false;
         least = fmin(least, cosine);
         most = fmax(most, cosine);
     }
-    if (through) *through = least < -AGAINST && !(deeper > 0) ? -1 : deeper;
+    if (least < -AGAINST && !(edge.deeper > 0)) edge.deeper = -1;
+    if (through) *through = edge;
     return least < AWAY && !(most > AGAINST);
 }
 
@@ -222,35 +232,36 @@ lar_joint lar_joint_of(const lar_body_contact *contact, const lar_state *state, 
 void lar_edge_enters(const lar_body_contact *contact, const lar_state *state, int32_t g,
                      lar_survey *s) {
     static const double TURNS = 0.5;
+    lar_edge_way way[LAR_GROUP_FACES_MAX], on = {0};
     double least = s->across - s->fade, longest = 0, other = s->within;
-    bool through[LAR_GROUP_FACES_MAX], lies = false;
+    bool lies = false;
     s->inset = s->across;
     for (int32_t k = 0; k < s->count; k++) {
         const bool near = s->distance[k] < s->across;
         const bool behind = near && s->point[k].height < 0;
-        double deep = -1;
+        way[k] = (lar_edge_way){.deeper = -1};
         if (behind || (near && s->above > 0))
             lar_looks_away(contact, state, contact->list.group[g].node,
-                           (const double(*)[3])s->corner[k], &deep);
-        through[k] = deep > 0;
-        if (near && !through[k] && !(behind && deep == 0)) other = fmin(other, s->distance[k]);
-        if (!through[k] && s->distance[k] < least) {
+                           (const double(*)[3])s->corner[k], &way[k]);
+        const bool through = way[k].deeper > 0, along = behind && way[k].deeper == 0;
+        if (near && !through && !along) other = fmin(other, s->distance[k]);
+        if (!through && s->distance[k] < least) {
             least = s->distance[k];
-            lies = behind && deep == 0;
+            lies = along;
+            on = way[k];
         }
-        if (through[k] && s->distance[k] < s->inset) {
+        if (through && s->distance[k] < s->inset) {
             s->inset = s->distance[k];
             s->border = k;
-            longest = deep;
+            longest = way[k].deeper;
         }
     }
     if (!lies || !(least < longest)) s->border = -1;
     if (s->border < 0) return;
-    const double lead = (other - least) / (TURNS * (s->within - least));
-    s->lies = lead < 1 ? lead * lead * (3 - 2 * lead) : 1;
+    s->lies = ease((other - least) / (TURNS * (s->within - least))) * on.sure * way[s->border].sure;
     s->min = least;
     for (int32_t k = 0; k < s->count; k++)
-        if (through[k]) s->distance[k] = INFINITY;
+        if (way[k].deeper > 0) s->distance[k] = INFINITY;
     if (s->point[s->border].height < 0) return;
     s->border = -1; /* it is before that still */
     s->over = true;
@@ -265,7 +276,7 @@ double lar_edge_part(const lar_survey *s, double energy, double on[4][3]) {
     lar_face_mean((const double(*)[3])s->corner[k], weight, at);
     for (int i = 0; i < 12; i++)
         on[i / 3][i % 3] = lies * weight[i / 3] * pull * (s->x[i % 3] - at[i % 3]);
-    return 1 - lies * (1 - part * part * (3 - 2 * part));
+    return 1 - lies * (1 - ease(part));
 }
 
 /* ---- other bodies ---------------------------------------------------------------------------- */
