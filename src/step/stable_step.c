@@ -149,21 +149,24 @@ static double wave_square(const lar_material *material) {
 
 /* Where bodies touch, springs of a longer step would be softer than their tissue: it would go
  * through them. So are those of tools on compressible tissue, which besides has modes as fast as
- * what is left for springs: under a tool at rest it would tremble for ever. Elements are taken to
- * be of one size. */
+ * what is left for springs: under a tool at rest it would tremble for ever. Where only the state at
+ * rest counts springs are as hard beside all other tissue. Elements are taken to be of one size. */
 static double share_for_contact(const lar_model *model) {
     double share = 1, fastest = 0;
-    bool bodies = false;
+    bool bodies = false, at_rest;
     for (int i = 0; i < model->contact_count; i++)
         bodies = bodies || model->contact[i].kind != LAR_CONTACT_PLANE;
+    at_rest = model->until_rest && (bodies || model->tool_count > 0);
     for (int i = 0; i < model->material_count; i++)
         fastest = fmax(fastest, wave_square(&model->material[i]));
     for (int i = 0; i < model->material_count; i++) {
         const lar_material *material = &model->material[i];
-        if (!bodies && !(model->tool_count > 0 && lar_material_compressible(material))) continue;
+        const bool tools = model->tool_count > 0 && lar_material_compressible(material);
+        if (!bodies && !tools && !at_rest) continue;
         double slower = sqrt(fastest / wave_square(material));
         double wanted = lar_contact_wanted(lar_material_confined(material));
-        if (bodies && model->until_rest) wanted = fmax(wanted, LAR_CONTACT_WANTED_AT_REST);
+        if (at_rest) wanted *= 2;
+        if (at_rest && bodies) wanted = fmax(wanted, LAR_CONTACT_WANTED_AT_REST);
         share = fmin(share, slower * lar_contact_longest(wanted));
     }
     return share;

@@ -197,14 +197,15 @@ static lar_status report_load(const lar_domain *domain, const lar_fault *fault, 
 static lar_status report_gain(const lar_domain *domain, const lar_fault *fault, lar_error *error) {
     if (fault->tool != 0)
         return lar_fault_report_tool(domain, fault, "folds the surface over itself at", error);
-    return lar_fail(error, LAR_ERROR_UNSTABLE,
-                    "unstable at step %llu (%.6g s): contact has given %.3g J more than it took: "
-                    "the surface is crushed, folds over itself or slides over an edge, most at "
-                    "element %lld near (%.4g, %.4g, %.4g) m (volume ratio of its worst corner "
-                    "%.3g); use slower or smaller loads and motions, or a stiffer or finer mesh",
-                    (unsigned long long)fault->step, (double)fault->step * domain->time_step,
-                    fault->given, (long long)domain->model->mesh.element_id[fault->element],
-                    fault->place[0], fault->place[1], fault->place[2], fault->volume_ratio);
+    return lar_fail(
+        error, LAR_ERROR_UNSTABLE,
+        "unstable at step %llu (%.6g s): contact has given %.3g J more than it took: "
+        "the surface is crushed, folds over itself or slides over an edge, most at "
+        "element %lld near (%.4g, %.4g, %.4g) m (volume ratio of its worst corner "
+        "%.3g); use a smaller time_step, slower or smaller loads and motions, or a finer mesh",
+        (unsigned long long)fault->step, (double)fault->step * domain->time_step, fault->given,
+        (long long)domain->model->mesh.element_id[fault->element], fault->place[0], fault->place[1],
+        fault->place[2], fault->volume_ratio);
 }
 
 static lar_status report_pairs(const lar_domain *domain, const lar_fault *fault, lar_error *error) {
