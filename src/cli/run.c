@@ -171,8 +171,13 @@ static int forget_earlier(run *r) {
             return cli_complain(&cli_run, CLI_FAILED, "%s", error.message);
         if (path[i] == state && !is_checkpoint(state)) continue;
         if (r->settings.resume && stat(r->settings.resume, &from) == 0 &&
-            stat(path[i], &file) == 0 && file.st_dev == from.st_dev && file.st_ino == from.st_ino)
+            stat(path[i], &file) == 0 && file.st_dev == from.st_dev && file.st_ino == from.st_ino) {
+            cli_complain(&cli_run, CLI_DONE,
+                         "note: %s: frames and probes of the time before %g s are gone from it; "
+                         "another --out keeps both parts",
+                         r->settings.out, lar_simulation_time(r->simulation));
             continue;
+        }
         if (unlink(path[i]) != 0 && errno != ENOENT)
             return cli_complain(&cli_run, CLI_FAILED,
                                 "%s: is of an earlier run and cannot be removed: %s; check the "

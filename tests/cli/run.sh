@@ -81,6 +81,11 @@ expect 1 "$LARIAT" run "$scene" --resume "$scene"
 complains 'uterus.yaml: is not a checkpoint of Lariat'
 expect 1 "$LARIAT" run "$scene" --steps 10 --save "$scene"
 complains 'is there and is not a checkpoint'
+# In the folder of its first part the second one takes the place of that, and says so.
+expect 0 "$LARIAT" run "$scene" --steps 20 --out "$SCRATCH/results" \
+    --resume "$SCRATCH/results/$(basename "$scene" .yaml).checkpoint"
+complains 'frames and probes of the time before .* s are gone from it; another --out keeps both'
+
 expect 0 "$LARIAT" run "$scene" --steps 200 --json --out "$SCRATCH/results"
 
 # Frames, series and probes agree.

@@ -92,7 +92,8 @@ static lar_status attach(yaml_builder *builder, lar_yaml *node, yaml_mark_t mark
     if (!node) return lar_fail_memory(builder->error, sizeof *node, "the scene file");
     if (builder->tree->node_count > LAR_YAML_NODES)
         return refuse(builder, mark,
-                      "the file has more than 1000000 values; describe regions by selectors");
+                      "the file has more than 1000000 values; describe regions by selectors, and "
+                      "motions by curves of fewer points");
     if (builder->depth == 0) {
         builder->tree->root = node;
         return LAR_OK;
