@@ -96,6 +96,11 @@ static inline void lar_face_mean(const double x[4][3], const double weight[4], d
  * is flat, not of unit length. */
 void lar_face_normal(const double x[4][3], double normal[3]);
 
+/* From 0 to 1, without a slope at either end; 0 before, 1 behind. */
+static inline double lar_ease(double t) {
+    return !(t > 0) ? 0 : t < 1 ? t * t * (3 - 2 * t) : 1;
+}
+
 /* What part of a spring there is at a point of a face, by its weights, from `blunt` at its corners
  * to 1 in its middle, and change[]: the numbers of the corners and, last, of the middle that,
  * linear in the triangles, have the same slope there. Along a side it depends on that side's ends

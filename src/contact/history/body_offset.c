@@ -124,11 +124,6 @@ double lar_offset_meet(lar_body_contact *contact, const lar_state *state, int32_
 
 /* ---- sharp edges ----------------------------------------------------------------------------- */
 
-/* From 0 to 1, without a slope at either end. */
-static double ease(double t) {
-    return !(t > 0) ? 0 : t < 1 ? t * t * (3 - 2 * t) : 1;
-}
-
 bool lar_looks_away(const lar_body_contact *contact, const lar_state *state, int32_t node,
                     const double corner[4][3], lar_edge_way *through) {
     static const double AGAINST = 0.3, AWAY = -0.7, SURE = 0.1; /* cosines */
@@ -147,10 +142,10 @@ bool lar_looks_away(const lar_body_contact *contact, const lar_state *state, int
         if (k == at->along) {
             /* Of a point: whether the edge ends at its node behind the face. */
             const bool ends = node >= s->node_count && s->node[parent[!(cosine > 0)]].along == 3;
-            edge.sure = ease((AGAINST - fabs(cosine)) / SURE);
+            edge.sure = lar_ease((AGAINST - fabs(cosine)) / SURE);
             if (!(fabs(cosine) > AGAINST)) continue;
             edge.deeper = fabs(cosine) > -AWAY && !ends ? fabs(deep) : -1;
-            edge.sure = ease((fabs(cosine) + AWAY) / SURE);
+            edge.sure = lar_ease((fabs(cosine) + AWAY) / SURE);
             continue;
         }
         if (!through && cosine > AGAINST) return false;
@@ -258,7 +253,8 @@ void lar_edge_enters(const lar_body_contact *contact, const lar_state *state, in
     }
     if (!lies || !(least < longest)) s->border = -1;
     if (s->border < 0) return;
-    s->lies = ease((other - least) / (TURNS * (s->within - least))) * on.sure * way[s->border].sure;
+    s->lies =
+        lar_ease((other - least) / (TURNS * (s->within - least))) * on.sure * way[s->border].sure;
     s->min = least;
     for (int32_t k = 0; k < s->count; k++)
         if (way[k].deeper > 0) s->distance[k] = INFINITY;
@@ -276,7 +272,7 @@ double lar_edge_part(const lar_survey *s, double energy, double on[4][3]) {
     lar_face_mean((const double(*)[3])s->corner[k], weight, at);
     for (int i = 0; i < 12; i++)
         on[i / 3][i % 3] = lies * weight[i / 3] * pull * (s->x[i % 3] - at[i % 3]);
-    return 1 - lies * (1 - ease(part));
+    return 1 - lies * (1 - lar_ease(part));
 }
 
 /* ---- other bodies ---------------------------------------------------------------------------- */

@@ -273,5 +273,5 @@ double lar_flush_left(const lar_rim *rim, const lar_face_point *closest, double 
         for (int i = 0; i < 3; i++)
             on[a][i] = pull * (rim->away[i] * rim->shift[a] -
                                rim->way[i] * (closest->weight[a] + rim->shift[a]));
-    return 1 - rim->part * rim->part * (3 - 2 * rim->part);
+    return 1 - lar_ease(rim->part);
 }
