@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mechanics/contact.h"
+
 /* Room for at most so many entries; the lists are still empty. */
 LAR_SETUP static lar_status allocate(lar_conditions *c, size_t nodes, size_t constraints,
                                      size_t forces, size_t springs, size_t pressures,
@@ -25,15 +27,15 @@ LAR_SETUP static lar_status allocate(lar_conditions *c, size_t nodes, size_t con
  * count twice. (Whatever is moved is held by nothing else: lar_model_check.) */
 static void add_constraints(lar_conditions *c, const int32_t *local,
                             const lar_condition_share *share, const lar_node_list *nodes,
-                            unsigned axes, double by, int curve) {
+                            unsigned axes, lar_constraint like) {
     for (int32_t i = 0; i < nodes->count; i++) {
         int32_t node = nodes->node[i];
         if (share && share->holds[node] != share->thread) continue;
         unsigned fresh = axes & ~(unsigned)c->held[node];
-        for (int axis = 0; axis < 3; axis++)
-            if (fresh & (1u << axis))
-                c->constraint[c->constraint_count++] =
-                    (lar_constraint){.node = local[node], .axis = axis, .curve = curve, .by = by};
+        like.node = local[node];
+        like.point = node;
+        for (like.axis = 0; like.axis < 3; like.axis++)
+            if (fresh & (1u << like.axis)) c->constraint[c->constraint_count++] = like;
         c->held[node] |= (uint8_t)fresh;
     }
 }
@@ -42,11 +44,15 @@ static void add_constraints(lar_conditions *c, const int32_t *local,
 static void list_constraints(lar_conditions *c, const lar_model *model, const int32_t *local,
                              const lar_condition_share *share) {
     for (int i = 0; i < model->fix_count; i++)
-        add_constraints(c, local, share, &model->fix[i].nodes, model->fix[i].axes, 0, -1);
+        add_constraints(c, local, share, &model->fix[i].nodes, model->fix[i].axes,
+                        (lar_constraint){.curve = -1, .rigid = -1});
     c->fixed_count = c->constraint_count;
-    for (int i = 0; i < model->move_count; i++)
-        add_constraints(c, local, share, &model->move[i].nodes, model->move[i].axes,
-                        model->move[i].by, model->move[i].curve);
+    for (int i = 0; i < model->move_count; i++) {
+        const lar_move *move = &model->move[i];
+        const int32_t rigid = move->screw_count > 0 ? i : -1;
+        add_constraints(c, local, share, &move->nodes, move->axes,
+                        (lar_constraint){.curve = move->curve, .rigid = rigid, .by = move->by});
+    }
 }
 
 static void add_pressure(lar_conditions *c, const lar_mesh *mesh, const int32_t *local,
@@ -187,7 +193,8 @@ static void list_supports(lar_conditions *made, const lar_conditions *c, const l
     for (int32_t n = 0; n < nodes; n++) {
         made->held[n] = 0;
         add_constraints(made, c->local, share, &(lar_node_list){1, &n},
-                        mark[n] & (mark[n] / LAR_SUPPORT_SET), 0, LAR_CURVE_HERE);
+                        mark[n] & (mark[n] / LAR_SUPPORT_SET),
+                        (lar_constraint){.curve = LAR_CURVE_HERE, .rigid = -1});
     }
 }
 
@@ -387,9 +394,87 @@ void lar_conditions_observe(const lar_condition_context *context, lar_condition_
     }
 }
 
-double lar_constraint_value(const lar_model *model, const lar_constraint *constraint, double time) {
+/* ---- motion --------------------------------------------------------------------------------- */
+
+/* A rigid motion: u = turn X + shift, `turn` being the rotation less the identity. */
+typedef struct rigid {
+    double turn[3][3], shift[3];
+} rigid;
+
+/* One screw: Rodrigues' formula, with an angle of any size. */
+static rigid screw_at(const lar_screw *screw, double factor) {
+    double sine, cosine, k[3][3], square[3][3];
+    lar_sine_cosine(0.5 * remainder(factor * screw->angle, 2 * LAR_PI), &sine, &cosine);
+    const double s = 2 * sine * cosine, versine = 2 * sine * sine, *a = screw->axis;
+    rigid out = {0};
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++) {
+            square[i][j] = a[i] * a[j] - (i == j);
+            k[i][j] = i == j ? 0 : ((i + 1) % 3 == j ? -1 : 1) * a[3 - i - j];
+        }
+    for (int i = 0; i < 3; i++) {
+        out.shift[i] = factor * screw->slide * a[i];
+        for (int j = 0; j < 3; j++) {
+            out.turn[i][j] = s * k[i][j] + versine * square[i][j];
+            out.shift[i] -= out.turn[i][j] * screw->point[j];
+        }
+    }
+    return out;
+}
+
+/* First one, then the next. */
+static rigid behind(const rigid *first, const rigid *next) {
+    rigid out = *first;
+    for (int i = 0; i < 3; i++) {
+        out.shift[i] += next->shift[i];
+        for (int k = 0; k < 3; k++) {
+            out.shift[i] += next->turn[i][k] * first->shift[k];
+            out.turn[i][k] += next->turn[i][k];
+            for (int j = 0; j < 3; j++) out.turn[i][j] += next->turn[i][k] * first->turn[k][j];
+        }
+    }
+    return out;
+}
+
+/* What all constraints of an entry have in common at one time: they stand one behind the other. */
+typedef struct course {
+    double time;
+    int32_t curve, rigid; /* whose it is; -1: nobody's yet */
+    double factor;
+    struct rigid motion;
+} course;
+
+static void find_course(const lar_model *model, const lar_constraint *constraint, course *now) {
+    now->curve = constraint->curve;
+    now->rigid = constraint->rigid;
+    if (now->rigid < 0) {
+        now->factor = lar_curve_value(&model->curve[now->curve], now->time);
+        return;
+    }
+    const lar_move *move = &model->move[now->rigid];
+    now->motion = (rigid){0};
+    for (int k = 0; k < move->screw_count; k++) {
+        const lar_screw *screw = &move->screw[k];
+        double factor = lar_curve_value(&model->curve[screw->curve], now->time);
+        rigid next = screw_at(screw, factor);
+        now->motion = behind(&now->motion, &next);
+    }
+}
+
+static double value_in(const lar_model *model, const lar_constraint *constraint, course *now) {
     if (constraint->curve < 0) return constraint->by;
-    return constraint->by * lar_curve_value(&model->curve[constraint->curve], time);
+    if (now->curve != constraint->curve || now->rigid != constraint->rigid)
+        find_course(model, constraint, now);
+    if (now->rigid < 0) return constraint->by * now->factor;
+    const double *at = model->mesh.position[constraint->point];
+    const double *turn = now->motion.turn[constraint->axis];
+    return now->motion.shift[constraint->axis] +
+           (turn[0] * at[0] + turn[1] * at[1] + turn[2] * at[2]);
+}
+
+double lar_constraint_value(const lar_model *model, const lar_constraint *constraint, double time) {
+    course now = {.time = time, .curve = -1, .rigid = -1};
+    return value_in(model, constraint, &now);
 }
 
 /* The kernel moved what stands still as if it were free, and counted that as damped motion. */
@@ -409,6 +494,8 @@ double lar_conditions_impose(const lar_condition_context *context, double time,
     double damping = lar_damping_of(model, context->settings), gravity[3], work = 0;
     double dt = context->time_step, step = context->mean_step;
     double share = damping * step / context->whole_step;
+    course was = {.time = time, .curve = -1, .rigid = -1};
+    course next = {.time = time + dt, .curve = -1, .rigid = -1};
     lar_gravity_at(model, context->settings, time, gravity);
     state->damped -= share * hold(notes, context->weight, state);
     for (int32_t i = notes->fixed_count; i < notes->constraint_count; i++) {
@@ -418,8 +505,8 @@ double lar_conditions_impose(const lar_condition_context *context, double time,
         double *u = &state->u[value], *v = &state->v[value];
         double mass = context->mass[constraint->node], weight = context->weight[constraint->node];
         double before = noted->before, free = before + *v;
-        double old = lar_constraint_value(model, constraint, time);
-        *u = lar_constraint_value(model, constraint, time + dt);
+        double old = value_in(model, constraint, &was);
+        *u = value_in(model, constraint, &next);
         *v = (*u - old) / dt;
         state->fastest = fmax(state->fastest, fabs(*v));
         state->damped += share * weight * ((before + *v) * (before + *v) - free * free);

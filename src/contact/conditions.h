@@ -28,6 +28,8 @@
 typedef struct lar_constraint {
     int32_t node, axis; /* local */
     int32_t curve;      /* -1: held at 0; LAR_CURVE_HERE */
+    int32_t rigid;      /* of the model's entries of move: the one with screws; -1: none */
+    int32_t point;      /* its node of the model */
     double by;          /* of LAR_CURVE_HERE: where it is, as of the step under way [m] */
 } lar_constraint;
 

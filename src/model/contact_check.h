@@ -14,7 +14,6 @@
 #include "model/model.h"
 
 enum { LAR_PROBLEM_SIZE = 400 };
-#define LAR_PI 3.14159265358979323846
 
 /* Each returns true when something is wrong, and has then written the sentence. model->surface is
  * there. Faces are listed in ascending order, each once. */

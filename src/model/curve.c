@@ -25,6 +25,37 @@ static int point_before(const lar_curve *curve, double time) {
     return low;
 }
 
+/* Slope between point i and the next; of a jump it does not count. */
+static double chord(const lar_curve *curve, int i, double *width) {
+    const double *from = curve->point[i], *to = curve->point[i + 1];
+    *width = to[0] - from[0];
+    return (to[1] - from[1]) / *width;
+}
+
+/* Slope in point i: the weighted harmonic mean of the chords beside it, 0 where they have different
+ * signs, so that nothing is larger than its points (Fritsch and Butland 1984, eq. 5). 0 at the
+ * ends, where the value is held, and beside a jump. */
+static double slope_at(const lar_curve *curve, int i) {
+    int last = curve->count - 1, before = i - 1, after = i;
+    if (curve->repeats && (i == 0 || i == last)) {
+        before = last - 1;
+        after = 0;
+    }
+    if (before < 0 || after >= last) return 0;
+    double h, k, first = chord(curve, before, &h), second = chord(curve, after, &k);
+    if (!(h > 0) || !(k > 0) || !(first * second > 0)) return 0;
+    double a = h + 2 * k, b = 2 * h + k;
+    return (a + b) / (a / first + b / second);
+}
+
+/* The cubic of Hermite between point i and the next. */
+static double spline_value(const lar_curve *curve, int i, double time) {
+    const double *from = curve->point[i], *to = curve->point[i + 1];
+    double h = to[0] - from[0], s = (time - from[0]) / h, t = 1 - s;
+    double bend = t * slope_at(curve, i) - s * slope_at(curve, i + 1);
+    return from[1] + (to[1] - from[1]) * smoothstep(s) + h * s * t * bend;
+}
+
 static double table_value(const lar_curve *curve, double time) {
     int last = curve->count - 1;
     if (last < 0) return 1.0;
@@ -42,6 +73,8 @@ static double table_value(const lar_curve *curve, double time) {
         return from[1];
     case LAR_CURVE_SMOOTH:
         return from[1] + (to[1] - from[1]) * smoothstep((time - from[0]) / (to[0] - from[0]));
+    case LAR_CURVE_SPLINE:
+        return spline_value(curve, i, time);
     case LAR_CURVE_LINEAR:
         break;
     }

@@ -18,7 +18,8 @@ typedef enum lar_curve_shape {
     LAR_CURVE_LINEAR, /* straight between points */
     LAR_CURVE_STEP,   /* the value of the NEXT point (FEBio "STEP") */
     LAR_CURVE_SMOOTH, /* smoothstep between points (FEBio "SMOOTH" with two points) */
-    LAR_CURVE_HOLD    /* the value of the point before, held until the next ("step" in scenes) */
+    LAR_CURVE_HOLD,   /* the value of the point before, held until the next ("step" in scenes) */
+    LAR_CURVE_SPLINE  /* through the points without a kink, and nowhere beyond their values */
 } lar_curve_shape;
 
 typedef struct lar_curve {

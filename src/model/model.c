@@ -30,7 +30,10 @@ void lar_model_destroy(lar_model *model) {
     for (int i = 0; i < model->material_count; i++) free(model->material[i].name);
     for (int i = 0; i < model->curve_count; i++) free(model->curve[i].point);
     for (int i = 0; i < model->fix_count; i++) free(model->fix[i].nodes.node);
-    for (int i = 0; i < model->move_count; i++) free(model->move[i].nodes.node);
+    for (int i = 0; i < model->move_count; i++) {
+        free(model->move[i].nodes.node);
+        free(model->move[i].screw);
+    }
     for (int i = 0; i < model->spring_count; i++) {
         free(model->spring[i].nodes.node);
         free(model->spring[i].stiffness);
@@ -306,6 +309,18 @@ static bool curve_exists(const lar_model *model, int curve) {
     return curve >= 0 && curve < model->curve_count;
 }
 
+static bool screws_hold(const lar_model *model, const lar_move *move) {
+    bool hold = move->screw_count >= 0 && move->screw_count <= LAR_SCREWS_MAX;
+    if (hold && move->screw_count > 0) hold = move->axes == LAR_AXIS_ALL;
+    for (int k = 0; hold && k < move->screw_count; k++) {
+        const lar_screw *s = &move->screw[k];
+        double square = s->axis[0] * s->axis[0] + s->axis[1] * s->axis[1] + s->axis[2] * s->axis[2];
+        hold = isfinite(s->angle) && isfinite(s->slide) && finite3(s->point) &&
+               fabs(square - 1) < 1e-9 && curve_exists(model, s->curve);
+    }
+    return hold;
+}
+
 static lar_status check_supports(const lar_model *model, lar_error *error) {
     const int64_t nodes = model->mesh.node_count;
     lar_status status = LAR_OK;
@@ -319,7 +334,7 @@ static lar_status check_supports(const lar_model *model, lar_error *error) {
         const lar_move *move = &model->move[i];
         status = check_entry(model, "move", i,
                              move->axes >= 1 && move->axes <= LAR_AXIS_ALL && isfinite(move->by) &&
-                                 curve_exists(model, move->curve),
+                                 curve_exists(model, move->curve) && screws_hold(model, move),
                              error);
         if (!status)
             status =

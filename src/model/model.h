@@ -25,12 +25,27 @@ typedef struct lar_fix {
     unsigned axes;
 } lar_fix;
 
-/* Axes of nodes moved by `by` (metres) times a curve. */
+/* A turn about an axis, right-handed, and a slide along it, both times a curve: what moves a rigid
+ * body from one place to another (Chasles). */
+typedef struct lar_screw {
+    double point[3], axis[3]; /* [m], of unit length */
+    double angle, slide;      /* [rad], [m] */
+    int curve;                /* index into lar_model.curve */
+} lar_screw;
+
+#define LAR_PI 3.14159265358979323846
+
+enum { LAR_SCREWS_MAX = 6 }; /* of one entry: as many as a rigid body has ways to move */
+
+/* Axes of nodes moved by `by` (metres) times a curve; or, with screws, nodes moved along all axes
+ * as one rigid body, by one screw after the other. */
 typedef struct lar_move {
     lar_node_list nodes;
     unsigned axes;
     double by;
     int curve; /* index into lar_model.curve */
+    int screw_count;
+    lar_screw *screw; /* owned */
 } lar_move;
 
 /* Springs between nodes and where these are at rest: what holds tissue that itself gives way. */

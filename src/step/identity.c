@@ -157,6 +157,12 @@ static uint64_t hash_motion(uint64_t hash, const lar_model *model) {
     return hash;
 }
 
+static uint64_t hash_screw(uint64_t hash, const lar_screw *screw) {
+    hash = hash_doubles(hash_doubles(hash, screw->point, 3), screw->axis, 3);
+    hash = lar_hash_double(lar_hash_double(hash, screw->angle), screw->slide);
+    return lar_hash_word(hash, (uint32_t)screw->curve);
+}
+
 static uint64_t hash_model_conditions(const lar_model *model) {
     uint64_t hash = hash_motion(3, model);
     for (int i = 0; i < model->fix_count; i++)
@@ -165,6 +171,7 @@ static uint64_t hash_model_conditions(const lar_model *model) {
         const lar_move *m = &model->move[i];
         hash = lar_hash_word(hash_nodes(hash, &m->nodes), m->axes);
         hash = lar_hash_word(lar_hash_double(hash, m->by), (uint32_t)m->curve);
+        for (int k = 0; k < m->screw_count; k++) hash = hash_screw(hash, &m->screw[k]);
     }
     for (int i = 0; i < model->load_count; i++) {
         const lar_nodal_load *l = &model->load[i];

@@ -1,4 +1,4 @@
-/* Curves: ramps and the four shapes of tables, at points, between them and outside. */
+/* Curves: ramps and the shapes of tables, at points, between them and outside. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -35,8 +35,8 @@ static void test_ramp(void **state) {
 static void test_table_is_held_outside(void **state) {
     (void)state;
     const lar_curve_shape shapes[] = {LAR_CURVE_LINEAR, LAR_CURVE_STEP, LAR_CURVE_SMOOTH,
-                                      LAR_CURVE_HOLD};
-    for (int i = 0; i < 4; i++) {
+                                      LAR_CURVE_HOLD, LAR_CURVE_SPLINE};
+    for (int i = 0; i < 5; i++) {
         lar_curve curve = table(shapes[i]);
         expect(&curve, 0.0, 2.0);
         expect(&curve, 1.0, 2.0);
@@ -123,12 +123,37 @@ static void test_hold_from(void **state) {
         }
 }
 
+/* Without a kink, never beyond its points, straight where they are, round and round where it
+ * repeats. */
+static void test_splines(void **state) {
+    (void)state;
+    static double key[6][2] = {{0, 0}, {1, 1}, {2, 2}, {3, 3}, {3.5, 0.5}, {5, 0}};
+    lar_curve curve = {
+        .kind = LAR_CURVE_TABLE, .shape = LAR_CURVE_SPLINE, .count = 6, .point = key};
+    for (int i = 0; i < 6; i++) expect(&curve, key[i][0], key[i][1]);
+    expect(&curve, 1.25, 1.25);
+    expect(&curve, 1.5, 1.5);
+    for (int repeats = 0; repeats < 2; repeats++) {
+        curve.repeats = repeats;
+        const double h = 1e-4, far = repeats ? 11 : 6;
+        double before = lar_curve_value(&curve, h) - lar_curve_value(&curve, 0);
+        for (double t = h; t < far; t += h) {
+            double value = lar_curve_value(&curve, t),
+                   step = lar_curve_value(&curve, t + h) - value;
+            assert_true(value >= -1e-15 && value <= 3.0 + 1e-15);
+            assert_true(step - before < 100 * h * h && before - step < 100 * h * h);
+            before = step;
+        }
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_ramp),
         cmocka_unit_test(test_table_is_held_outside),
         cmocka_unit_test(test_a_table_repeats),
         cmocka_unit_test(test_shapes),
+        cmocka_unit_test(test_splines),
         cmocka_unit_test(test_odd_tables),
         cmocka_unit_test(test_hold_from),
         cmocka_unit_test(test_values_have_fixed_bits),

@@ -228,6 +228,11 @@ static void test_ranges(void **state) {
     model->move[0].curve = 1;
     refused_and_destroyed(model, "move entry 1");
     model = good_model();
+    model->move[0].screw_count = 1;
+    model->move[0].screw = lar_calloc(1, sizeof *model->move[0].screw);
+    model->move[0].screw[0].axis[1] = 1.5;
+    refused_and_destroyed(model, "move entry 1");
+    model = good_model();
     model->fix[0].axes = 8;
     refused_and_destroyed(model, "fix entry 1");
     model = good_model();

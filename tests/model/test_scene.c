@@ -265,6 +265,31 @@ static void test_viscosity(void **state) {
     lar_model_destroy(model);
 }
 
+static void test_rigid_motion(void **state) {
+    (void)state;
+    lar_model *model = scene(
+        HEAD MATERIAL
+        "move: [{nodes: lid, rigid: {axis: [0, 0, 2], point: [1, 2, 3], degrees: 90, over: 0.2}},\n"
+        "       {nodes: bottom, rigid: [{axis: [1, 0, 0], by: 0.01, over: 1}, {axis: [0, 1, 0], "
+        "point: [0, 0, 0], degrees: -30, by: 0.5, curve: {points: [[0, 0], [1, 1]], shape: "
+        "spline}}]}]\n");
+    assert_int_equal(model->move_count, 2);
+    const lar_move *lid = &model->move[0], *bottom = &model->move[1];
+    assert_int_equal(lid->screw_count, 1);
+    assert_int_equal(lid->axes, LAR_AXIS_ALL);
+    same(lid->screw[0].axis[2], 1);
+    same(lid->screw[0].point[1], 2);
+    same(lid->screw[0].angle, LAR_PI / 2);
+    same(lid->screw[0].slide, 0);
+    same(model->curve[lid->screw[0].curve].over, 0.2);
+    assert_int_equal(bottom->screw_count, 2);
+    same(bottom->screw[0].slide, 0.01);
+    same(bottom->screw[0].angle, 0);
+    same(bottom->screw[1].slide, 0.5);
+    assert_int_equal(model->curve[bottom->screw[1].curve].shape, LAR_CURVE_SPLINE);
+    lar_model_destroy(model);
+}
+
 static void test_motion_and_loads(void **state) {
     (void)state;
     lar_model *model = scene(
@@ -545,6 +570,7 @@ int main(void) {
         cmocka_unit_test(test_stiffening_laws),
         cmocka_unit_test(test_viscosity),
         cmocka_unit_test(test_motion_and_loads),
+        cmocka_unit_test(test_rigid_motion),
         cmocka_unit_test(test_surface),
         cmocka_unit_test(test_output),
         cmocka_unit_test(test_several_meshes),

@@ -15,15 +15,16 @@ static lar_status add_curve(const lar_scene *scene, lar_curve **curve, int *inde
 }
 
 static lar_status read_shape(const lar_scene *scene, const lar_yaml *node, lar_curve_shape *shape) {
-    static const char *const names[] = {"linear", "step", "smooth"};
-    static const lar_curve_shape shapes[] = {LAR_CURVE_LINEAR, LAR_CURVE_HOLD, LAR_CURVE_SMOOTH};
-    for (int i = 0; i < 3; i++)
+    static const char *const names[] = {"linear", "step", "smooth", "spline"};
+    static const lar_curve_shape shapes[] = {LAR_CURVE_LINEAR, LAR_CURVE_HOLD, LAR_CURVE_SMOOTH,
+                                             LAR_CURVE_SPLINE};
+    for (int i = 0; i < 4; i++)
         if (lar_scene_is_word(node, names[i])) {
             *shape = shapes[i];
             return LAR_OK;
         }
     return lar_scene_unknown(scene, node, LAR_ERROR_FORMAT, "the shape", "the shapes are", names,
-                             3);
+                             4);
 }
 
 static lar_status read_points(const lar_scene *scene, const lar_yaml *node, lar_curve *curve) {
@@ -95,7 +96,7 @@ static lar_status check_no_jump(const lar_scene *scene, const lar_yaml *node,
                   "physical, begin with the point [0, 0]";
         if (curve->shape == LAR_CURVE_HOLD && curve->count > 1)
             why = "the curve of a motion cannot have the shape step: a sudden displacement is not "
-                  "physical, write shape: linear or shape: smooth";
+                  "physical, write shape: linear, smooth or spline";
         if (curve->repeats && curve->point[curve->count - 1][1] != 0.0)
             why = "the curve of a motion that repeats must end with 0, as it begins: a sudden "
                   "displacement is not physical";
@@ -186,10 +187,76 @@ static lar_status read_fix_entry(lar_scene *scene, const lar_yaml *entry) {
     return status ? status : claim_axes(scene, entry, &fix->nodes, fix->axes, false);
 }
 
+static lar_status read_screw(lar_scene *scene, const lar_yaml *node, lar_screw *screw) {
+    static const char *const keys[] = {"axis", "point", "degrees", "by", "over", "curve", NULL};
+    const char *const what = "a rigid motion";
+    const lar_yaml *axis = NULL, *point = lar_yaml_get(node, "point");
+    const lar_yaml *degrees = lar_yaml_get(node, "degrees"), *by = lar_yaml_get(node, "by");
+    lar_status status = lar_scene_keys(scene, node, what, keys);
+    if (!status) status = lar_scene_need(scene, node, what, "axis", "axis: [0, 0, 1]", &axis);
+    if (status) return status;
+    if (!degrees && !by)
+        return lar_scene_fail(scene, node, LAR_ERROR_FORMAT,
+                              "a rigid motion needs degrees, how far it turns about its axis, or "
+                              "by, how far it slides along it, for example degrees: 30");
+    if (degrees && !point)
+        return lar_scene_fail(scene, node, LAR_ERROR_FORMAT,
+                              "a rigid motion that turns needs a point that its axis goes through, "
+                              "for example point: [0, 0, 0.1]");
+    status = lar_scene_direction(scene, axis, screw->axis);
+    if (!status && point) status = lar_scene_vector(scene, point, LAR_IN_POSITION, screw->point);
+    if (!status && degrees)
+        status = lar_scene_number(scene, degrees, LAR_IN_DEGREES, &screw->angle);
+    screw->angle *= LAR_PI / 180;
+    if (!status && by) status = lar_scene_number(scene, by, LAR_IN_METRES, &screw->slide);
+    return status ? status : lar_scene_read_course(scene, node, true, &screw->curve);
+}
+
+/* Of one motion, or a list of several, one after the other. */
+static lar_status read_screws(lar_scene *scene, const lar_yaml *node, lar_screw **screw,
+                              int *count) {
+    const lar_yaml *one = node->kind == LAR_YAML_LIST ? node->first : node;
+    const int64_t wanted = node->kind == LAR_YAML_LIST ? node->count : 1;
+    if (wanted < 1 || wanted > LAR_SCREWS_MAX)
+        return lar_scene_fail(scene, node, LAR_ERROR_FORMAT,
+                              "rigid: a list of 1 to %d motions, one after the other, each for "
+                              "example {axis: [0, 0, 1], point: [0, 0, 0], degrees: 30, over: 0.5}",
+                              LAR_SCREWS_MAX);
+    lar_screw *list = lar_calloc((size_t)wanted, sizeof *list);
+    if (!list) return lar_scene_no_memory(scene, (size_t)wanted * sizeof *list);
+    lar_status status = LAR_OK;
+    *screw = list;
+    for (; !status && *count < wanted; one = one->next, ++*count)
+        status = read_screw(scene, one, &list[*count]);
+    return status;
+}
+
+static lar_status read_rigid_entry(lar_scene *scene, const lar_yaml *entry, const lar_yaml *rigid) {
+    static const char *const keys[] = {"nodes", "rigid", NULL};
+    const char *const what = "a move entry with rigid";
+    const lar_yaml *nodes = NULL;
+    lar_screw *screw = NULL;
+    int count = 0;
+    lar_status status = lar_scene_keys(scene, entry, what, keys);
+    if (!status) status = lar_scene_need(scene, entry, what, "nodes", "nodes: bone", &nodes);
+    if (!status) status = read_screws(scene, rigid, &screw, &count);
+    lar_move *move = status ? NULL : LAR_MODEL_APPEND(scene->model, move);
+    if (!status && !move) status = lar_scene_no_memory(scene, sizeof *move);
+    if (status) {
+        free(screw);
+        return status;
+    }
+    *move = (lar_move){
+        .axes = LAR_AXIS_ALL, .curve = screw[0].curve, .screw_count = count, .screw = screw};
+    status = lar_scene_select_nodes(scene, nodes, &move->nodes);
+    return status ? status : claim_axes(scene, entry, &move->nodes, LAR_AXIS_ALL, true);
+}
+
 static lar_status read_move_entry(lar_scene *scene, const lar_yaml *entry) {
-    static const char *const keys[] = {"nodes", "axes", "by", "over", "curve", NULL};
+    static const char *const keys[] = {"nodes", "axes", "by", "over", "curve", "rigid", NULL};
     const char *const what = "a move entry";
-    const lar_yaml *nodes = NULL, *axes = NULL, *by = NULL;
+    const lar_yaml *nodes = NULL, *axes = NULL, *by = NULL, *rigid = lar_yaml_get(entry, "rigid");
+    if (rigid) return read_rigid_entry(scene, entry, rigid);
     lar_status status = lar_scene_keys(scene, entry, what, keys);
     if (!status) status = lar_scene_need(scene, entry, what, "nodes", "nodes: top", &nodes);
     if (!status) status = lar_scene_need(scene, entry, what, "axes", "axes: x", &axes);

@@ -285,7 +285,7 @@ static lar_status add_move(inp_deck *deck, int axis, const inp_prescribed *value
         free(list);
         return inp_no_memory(deck, "the supports");
     }
-    *move = (lar_move){{0, list}, 1u << axis, value->by, value->curve};
+    *move = (lar_move){{0, list}, 1u << axis, value->by, value->curve, 0, NULL};
     return LAR_OK;
 }
 
