@@ -1101,6 +1101,14 @@ LAR_API lar_status lar_results_open(const char *folder, const lar_simulation *si
  * many times the room; lar_results_open writes it only where the scene's output says so. */
 LAR_API lar_status lar_results_open_surface(const char *folder, const lar_simulation *simulation,
                                             lar_results **results, lar_error *error);
+/* The same, with or without the embedded surface, for a simulation that goes on from a state
+ * (lar_simulation_load): frames and lines of the folder up to its time stay, provided that one is of
+ * that time, and what is later goes. Else nothing stays, as with lar_results_open.
+ * LAR_ERROR_IO where probes.csv has other columns than the model's probes. */
+LAR_API lar_status lar_results_resume(const char *folder, const lar_simulation *simulation,
+                                      int surface, lar_results **results, lar_error *error);
+/* How many frames the series has, with those that stayed: 0 for NULL. */
+LAR_API int lar_results_frames(const lar_results *results);
 /* Adds the present state as a frame, of any simulation of that model (else LAR_ERROR_ARGUMENT).
  * LAR_ERROR_UNSTABLE when it is not finite: nothing is added. */
 LAR_API lar_status lar_results_add(lar_results *results, const lar_simulation *simulation,

@@ -588,6 +588,8 @@ inline void Simulation::load_from(const Saved &saved) {
 }
 
 class Results : public detail::Handle<lar_results, detail::close> {
+    Results() = default;
+
   public:
     /* `surface`: the embedded surface too (lar_results_open_surface). */
     Results(const std::string &folder, const Simulation &simulation, bool surface = false) {
@@ -595,9 +597,18 @@ class Results : public detail::Handle<lar_results, detail::close> {
             detail::ask<lar_results *>(surface ? lar_results_open_surface : lar_results_open,
                                        folder.c_str(), simulation.get()));
     }
+    /* Behind what the folder has of the run that this simulation goes on from. */
+    static Results resume(const std::string &folder, const Simulation &simulation,
+                          bool surface = false) {
+        Results results;
+        results.owned_.reset(detail::ask<lar_results *>(lar_results_resume, folder.c_str(),
+                                                        simulation.get(), surface));
+        return results;
+    }
     void add(const Simulation &simulation) {
         detail::call(lar_results_add, get(), simulation.get());
     }
+    int frames() const { return lar_results_frames(get()); }
     /* The destructor does this too, and cannot say what went wrong. */
     void close() { detail::call(lar_results_close, owned_.release()); }
 };

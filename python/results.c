@@ -11,11 +11,12 @@ typedef struct python_results {
 static PyTypeObject *python_results_type;
 
 static PyObject *results_new(PyTypeObject *type, PyObject *args, PyObject *keywords) {
-    static char *names[] = {"simulation", "folder", "surface", NULL};
+    static char *names[] = {"simulation", "folder", "surface", "resume", NULL};
     PyObject *simulation, *folder;
-    int surface = 0;
-    if (!PyArg_ParseTupleAndKeywords(args, keywords, "O!O|$p:Results", names,
-                                     python_simulation_type, &simulation, &folder, &surface))
+    int surface = 0, resume = 0;
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, "O!O|$pp:Results", names,
+                                     python_simulation_type, &simulation, &folder, &surface,
+                                     &resume))
         return NULL;
     PyObject *path = python_path(folder, "folder");
     python_simulation *taken = (python_simulation *)simulation;
@@ -28,8 +29,9 @@ static PyObject *results_new(PyTypeObject *type, PyObject *args, PyObject *keywo
     lar_results *results = NULL;
     lar_error error;
     lar_status status;
-    PYTHON_UNLOCKED(status = surface ? lar_results_open_surface(bytes, from, &results, &error)
-                                     : lar_results_open(bytes, from, &results, &error));
+    PYTHON_UNLOCKED(status = resume    ? lar_results_resume(bytes, from, surface, &results, &error)
+                             : surface ? lar_results_open_surface(bytes, from, &results, &error)
+                                       : lar_results_open(bytes, from, &results, &error));
     python_simulation_give(taken);
     Py_DECREF(path);
     if (status) return python_raise(&error);
@@ -127,13 +129,17 @@ static PyMethodDef results_methods[] = {
 
 static PyType_Slot results_slots[] = {
     {Py_tp_doc,
-     "Results(simulation, folder, *, surface=False)\n--\n\nResults on disk, as `lariat run --out` "
+     "Results(simulation, folder, *, surface=False, resume=False)\n--\n\nResults on disk, as "
+     "`lariat run --out` "
      "writes them: frames (.vtu) with a series (.pvd) for ParaView, and probes.csv, with the "
      "fields "
      "and probes that the scene's `output` asks for. The folder is made when it is missing; it can "
-     "be opened after every frame. Frames are listed as they are added: after a reset, or without a "
+     "be opened after every frame. Frames are listed as they are added: after a reset, or without "
+     "a "
      "step between, times go back or repeat, which is no series in time.\n\n"
-     "surface  the embedded surface, if any, in every frame (.vtp)\n\n"
+     "surface  the embedded surface, if any, in every frame (.vtp)\n"
+     "resume   of a simulation that goes on from a saved state: frames and lines of the folder up "
+     "to its time stay, provided that one is of that time\n\n"
      "    with lariat.Results(sim, \"out\") as results:\n"
      "        sim.advance(seconds=1, callback=lambda sim: results.add(), every=100)"},
     {Py_tp_new, results_new},

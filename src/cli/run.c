@@ -112,8 +112,8 @@ static int add_frame(run *r) {
 static uint64_t next_frame(const run *r) {
     uint64_t now = lar_simulation_steps(r->simulation);
     if (r->interval <= 0) return r->last_step;
-    double step =
-        round((double)r->next_frame * r->interval / lar_simulation_time_step(r->simulation));
+    double at = (double)r->next_frame * r->interval;
+    double step = round(at / lar_simulation_time_step(r->simulation));
     if (step >= (double)r->last_step) return r->last_step;
     return (uint64_t)step > now ? (uint64_t)step : now + 1;
 }
@@ -171,13 +171,8 @@ static int forget_earlier(run *r) {
             return cli_complain(&cli_run, CLI_FAILED, "%s", error.message);
         if (path[i] == state && !is_checkpoint(state)) continue;
         if (r->settings.resume && stat(r->settings.resume, &from) == 0 &&
-            stat(path[i], &file) == 0 && file.st_dev == from.st_dev && file.st_ino == from.st_ino) {
-            cli_complain(&cli_run, CLI_DONE,
-                         "note: %s: frames and probes of the time before %g s are gone from it; "
-                         "another --out keeps both parts",
-                         r->settings.out, lar_simulation_time(r->simulation));
+            stat(path[i], &file) == 0 && file.st_dev == from.st_dev && file.st_ino == from.st_ino)
             continue;
-        }
         if (unlink(path[i]) != 0 && errno != ENOENT)
             return cli_complain(&cli_run, CLI_FAILED,
                                 "%s: is of an earlier run and cannot be removed: %s; check the "
@@ -458,10 +453,23 @@ static int damp(run *r) {
     if (lar_rest_damp(r->simulation, &damping, &error)) return fail_by(r, &error);
     if (damping > 0)
         cli_complain(&cli_run, CLI_DONE,
-                     "note: %s names no damping; it is %.3g 1/s, with which the slowest motion "
-                     "dies out",
+                     "note: %s names no damping; it is %.3g 1/s, as its slowest motion needs",
                      r->settings.scene, damping);
     return CLI_DONE;
+}
+
+static int open_results(run *r) {
+    const run_settings *s = &r->settings;
+    lar_error error;
+    if (s->resume    ? lar_results_resume(s->out, r->simulation, s->surface, &r->results, &error)
+        : s->surface ? lar_results_open_surface(s->out, r->simulation, &r->results, &error)
+                     : lar_results_open(s->out, r->simulation, &r->results, &error))
+        return cli_complain(&cli_run, CLI_FAILED, "%s", error.message);
+    r->frames = lar_results_frames(r->results);
+    if (r->frames == 0) return CLI_DONE;
+    r->framed = lar_simulation_steps(r->simulation);
+    return cli_complain(&cli_run, CLI_DONE, "note: %s: goes on behind its frames up to %g s",
+                        s->out, lar_simulation_time(r->simulation));
 }
 
 static int compute(run *r) {
@@ -474,10 +482,7 @@ static int compute(run *r) {
     int status = damp(r);
     if (!status) status = choose_length(r);
     cli_catch_stop(); /* from here on there are results to end with */
-    if (!status && r->settings.out &&
-        (r->settings.surface ? lar_results_open_surface : lar_results_open)(
-            r->settings.out, r->simulation, &r->results, &error))
-        status = cli_complain(&cli_run, CLI_FAILED, "%s", error.message);
+    if (!status && r->settings.out) status = open_results(r);
     if (!status && r->settings.out) status = forget_earlier(r);
     if (!status) status = advance(r);
     if (lar_results_close(r->results, &error) && !status)

@@ -101,29 +101,47 @@ static lar_status prepare_arrays(lar_results *results, const lar_model *model, l
                     : lar_fail_memory(error, 48 * nodes + 200 * elements, "the fields of a frame");
 }
 
-static lar_status open_folder(lar_results *results, const char *folder, const lar_model *model,
-                              bool surface, lar_error *error) {
-    char *name = series_name(model);
-    if (!name) return lar_fail_memory(error, strlen(folder), "the paths of results");
-    lar_status status = check_name(name, error);
+/* What the folder has of an earlier run goes, or, where `going_on` is that one, what is later than
+ * the state that it goes on from. Then *until is how far its lines stay. */
+static lar_status clear_folder(lar_results *results, const char *folder, const char *name,
+                               const lar_simulation *going_on, const char *probes, double *until,
+                               lar_error *error) {
+    const lar_model *model = results->model;
+    double step = going_on ? lar_simulation_time_step(going_on) : 0;
+    double time = going_on ? lar_simulation_time(going_on) : 0;
+    bool stays = going_on && lar_series_take_up(&results->series, time, step);
+    lar_status status = stays ? lar_probe_file_fits(probes, model, error) : LAR_OK;
+    if (stays) *until = time + 0.5 * step;
+    if (!status) status = lar_series_forget_earlier(&results->series, model, error);
+    return status ? status
+                  : lar_surface_results_forget_earlier(&results->surface, folder, name,
+                                                       stays ? going_on : NULL, model, error);
+}
+
+static lar_status open_folder(lar_results *results, const char *folder,
+                              const lar_simulation *going_on, bool surface, lar_error *error) {
+    const lar_model *model = results->model;
+    char *name = series_name(model), *probes = lar_folder_join(folder, "probes.csv");
+    double until = -1;
+    lar_status status =
+        name && probes ? LAR_OK : lar_fail_memory(error, strlen(folder), "the paths of results");
+    if (!status) status = check_name(name, error);
     if (!status) status = lar_series_open(&results->series, folder, name, ".vtu", error);
     if (!status && (surface || model->output.surface))
         status = lar_surface_results_open(&results->surface, folder, name, model, error);
     if (!status) status = lar_folder_make(folder, error);
     if (!status) status = lar_folder_lock(folder, &results->lock, error);
-    if (!status) status = lar_series_forget_earlier(&results->series, model, error);
-    if (!status) status = lar_surface_results_forget_earlier(folder, name, model, error);
+    if (!status) status = clear_folder(results, folder, name, going_on, probes, &until, error);
     free(name);
     if (!status) status = prepare_arrays(results, model, error);
-    char *probes = status ? NULL : lar_folder_join(folder, "probes.csv");
-    if (probes) status = lar_results_spare(probes, model, error);
-    if (!status) return lar_probe_file_open(&results->probes, probes, model, error);
+    if (!status) status = lar_results_spare(probes, model, error);
+    if (!status) return lar_probe_file_open(&results->probes, probes, model, until, error);
     free(probes);
     return status;
 }
 
-static lar_status open_results(const char *folder, const lar_simulation *simulation, bool surface,
-                               lar_results **results, lar_error *error) {
+static lar_status open_results(const char *folder, const lar_simulation *simulation, bool going_on,
+                               bool surface, lar_results **results, lar_error *error) {
     if (!folder || !*folder || !simulation || !results)
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "lar_results_open needs a folder, a simulation and a place for the "
@@ -133,7 +151,7 @@ static lar_status open_results(const char *folder, const lar_simulation *simulat
     made->model = simulation->domain.model;
     made->probes.descriptor = made->lock = -1;
     made->process = getpid();
-    lar_status status = open_folder(made, folder, simulation->domain.model, surface, error);
+    lar_status status = open_folder(made, folder, going_on ? simulation : NULL, surface, error);
     if (status)
         lar_results_close(made, NULL);
     else
@@ -143,12 +161,21 @@ static lar_status open_results(const char *folder, const lar_simulation *simulat
 
 lar_status lar_results_open(const char *folder, const lar_simulation *simulation,
                             lar_results **results, lar_error *error) {
-    return open_results(folder, simulation, false, results, error);
+    return open_results(folder, simulation, false, false, results, error);
 }
 
 lar_status lar_results_open_surface(const char *folder, const lar_simulation *simulation,
                                     lar_results **results, lar_error *error) {
-    return open_results(folder, simulation, true, results, error);
+    return open_results(folder, simulation, false, true, results, error);
+}
+
+lar_status lar_results_resume(const char *folder, const lar_simulation *simulation, int surface,
+                              lar_results **results, lar_error *error) {
+    return open_results(folder, simulation, true, surface, results, error);
+}
+
+int lar_results_frames(const lar_results *results) {
+    return results ? results->series.count : 0;
 }
 
 /* The last of all: nobody else writes there before. */

@@ -209,41 +209,100 @@ static lar_status append(lar_probe_file *file, const char *text, size_t size, la
     return LAR_OK;
 }
 
-/* The header (without a simulation) or a line of values. */
+/* The header (without a simulation) or a line of values; *text is the C library's own. */
+static lar_status print_line(const lar_model *model, const lar_simulation *simulation, char **text,
+                             size_t *size, lar_error *error) {
+    FILE *line = open_memstream(text, size);
+    if (!line) return lar_fail_memory(error, BUFSIZ, "a line of probes.csv");
+    lar_status status = LAR_OK;
+    locale_t before = uselocale(lar_text_locale());
+    if (simulation)
+        status = print_values(line, simulation, error);
+    else
+        print_header(line, model);
+    uselocale(before);
+    bool complete = !ferror(line);
+    /* glibc 2.36 says nothing when it has no memory for the text at the end. */
+    if ((fclose(line) != 0 || !complete || !*text || *size == 0) && !status)
+        status = lar_fail_memory(error, *size, "a line of probes.csv");
+    return status;
+}
+
 static lar_status add_line(lar_probe_file *file, const lar_model *model,
                            const lar_simulation *simulation, lar_error *error) {
     char *text = NULL;
     size_t size = 0;
-    FILE *line = open_memstream(&text, &size);
-    lar_status status = line ? LAR_OK : lar_fail_memory(error, BUFSIZ, "a line of probes.csv");
-    if (line) {
-        locale_t before = uselocale(lar_text_locale());
-        if (simulation)
-            status = print_values(line, simulation, error);
-        else
-            print_header(line, model);
-        uselocale(before);
-        bool complete = !ferror(line);
-        /* glibc 2.36 says nothing when it has no memory for the text at the end. */
-        if ((fclose(line) != 0 || !complete || !text || size == 0) && !status)
-            status = lar_fail_memory(error, size, "a line of probes.csv");
-    }
+    lar_status status = print_line(model, simulation, &text, &size, error);
     if (!status) status = append(file, text, size, error);
-    (free)(text); /* the C library's own */
+    (free)(text);
+    return status;
+}
+
+/* ---- going on --------------------------------------------------------------------------- */
+
+lar_status lar_probe_file_fits(const char *path, const lar_model *model, lar_error *error) {
+    lar_bytes bytes = {0};
+    char *text = NULL;
+    size_t size = 0;
+    if (lar_bytes_read(path, &bytes, NULL)) return LAR_OK; /* or nobody can write there either */
+    lar_status status = print_line(model, NULL, &text, &size, error);
+    if (!status && (bytes.size < size || memcmp(bytes.data, text, size) != 0))
+        status = lar_fail(error, LAR_ERROR_IO,
+                          "%s: has other columns than the probes of this scene, and cannot go on; "
+                          "give the scene the same probes again, or choose another folder",
+                          path);
+    lar_bytes_free(&bytes);
+    (free)(text);
+    return status;
+}
+
+/* How many bytes of the file stay: its header, `kept`, and whole lines up to that time. */
+static size_t kept_of(const char *path, size_t kept, double until) {
+    lar_bytes bytes;
+    lar_span line, time, rest;
+    if (lar_bytes_read(path, &bytes, NULL)) return 0;
+    const char *begin = (const char *)bytes.data;
+    lar_text text = {begin + (kept < bytes.size ? kept : bytes.size), begin + bytes.size, 1};
+    if (kept > bytes.size) kept = 0;
+    while (kept > 0 && lar_text_line(&text, &line)) {
+        double at;
+        lar_span_split(line, ',', &time, &rest);
+        if (text.at[-1] != '\n' || !lar_span_double(time, &at) || !(at <= until)) break;
+        kept = (size_t)(text.at - begin);
+    }
+    lar_bytes_free(&bytes);
+    return kept;
+}
+
+static lar_status find_kept(const char *path, const lar_model *model, double until, size_t *kept,
+                            lar_error *error) {
+    char *header = NULL;
+    lar_status status = until >= 0 ? print_line(model, NULL, &header, kept, error) : LAR_OK;
+    (free)(header);
+    if (!status && *kept > 0) *kept = kept_of(path, *kept, until);
     return status;
 }
 
 /* ---- the file --------------------------------------------------------------------------- */
 
 lar_status lar_probe_file_open(lar_probe_file *file, char *path, const lar_model *model,
-                               lar_error *error) {
+                               double until, lar_error *error) {
     *file = (lar_probe_file){.path = path, .descriptor = -1};
     if (!path) return lar_fail_memory(error, 1, "the path of probes.csv");
+    size_t kept = 0;
+    lar_status status = find_kept(path, model, until, &kept, error);
+    if (status) return status;
     /* A pipe without a reader is an error, nothing to wait for; one with a reader may be slow. */
-    file->descriptor = open(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NONBLOCK, 0666);
+    const int fresh = kept > 0 ? 0 : O_TRUNC;
+    file->descriptor = open(path, O_WRONLY | O_CREAT | fresh | O_CLOEXEC | O_NONBLOCK, 0666);
     if (file->descriptor >= 0) fcntl(file->descriptor, F_SETFL, O_WRONLY);
     if (file->descriptor < 0) return fail_to(file, "opened for writing", errno, error);
-    return add_line(file, model, NULL, error);
+    if (kept == 0) return add_line(file, model, NULL, error);
+    file->size = (long long)kept;
+    if (ftruncate(file->descriptor, file->size) != 0 ||
+        lseek(file->descriptor, file->size, SEEK_SET) < 0)
+        return fail_to(file, "written", errno, error);
+    return LAR_OK;
 }
 
 lar_status lar_probe_file_add(lar_probe_file *file, const lar_simulation *simulation,

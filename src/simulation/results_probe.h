@@ -16,10 +16,13 @@ typedef struct lar_probe_file {
     long long size; /* bytes of whole lines */
 } lar_probe_file;
 
-/* Makes the file new, with its header. Takes ownership of `path`, also on failure; the caller
- * closes in any case. */
+/* Whether a file that is there begins with the line that this model's would: else LAR_ERROR_IO. */
+lar_status lar_probe_file_fits(const char *path, const lar_model *model, lar_error *error);
+
+/* Makes the file new, with its header; or, where there are lines of it, goes on behind those up to
+ * `until` (-1: none). Takes ownership of `path`, also on failure; the caller closes in any case. */
 lar_status lar_probe_file_open(lar_probe_file *file, char *path, const lar_model *model,
-                               lar_error *error);
+                               double until, lar_error *error);
 
 /* Adds the line of the present state. */
 lar_status lar_probe_file_add(lar_probe_file *file, const lar_simulation *simulation,

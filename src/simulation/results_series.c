@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "base/file/folder.h"
+#include "base/text.h"
 #include "model/format/mesh_io.h"
 
 static char *path_with(const lar_series *series, const char *ending) {
@@ -52,7 +53,8 @@ char *lar_series_next(const lar_series *series) {
     return frame_path(series, series->count);
 }
 
-lar_status lar_series_add(lar_series *series, double time, lar_error *error) {
+/* The next frame is there. */
+static lar_status append(lar_series *series, double time, lar_error *error) {
     char ending[32];
     frame_ending(series, series->count, ending);
     size_t size = strlen(series->name) + sizeof ending;
@@ -63,6 +65,12 @@ lar_status lar_series_add(lar_series *series, double time, lar_error *error) {
     snprintf(file, size, "%s%s", series->name, ending);
     series->file[series->count] = file;
     series->time[series->count++] = time;
+    return LAR_OK;
+}
+
+lar_status lar_series_add(lar_series *series, double time, lar_error *error) {
+    lar_status status = append(series, time, error);
+    if (status) return status;
     if (series->count - series->listed <= series->count / 1000) return LAR_OK;
     return lar_series_complete(series, error);
 }
@@ -75,6 +83,40 @@ lar_status lar_series_complete(lar_series *series, lar_error *error) {
 }
 
 /* ---- earlier runs --------------------------------------------------------------------------- */
+
+/* Of a line of the list that names the next frame; false: it does not, or that is not there. */
+static bool read_listed(const lar_series *series, lar_span line, double *time) {
+    static const char BEGIN[] = "<DataSet timestep=\"";
+    lar_span number, rest;
+    char ending[32 + 4];
+    frame_ending(series, series->count, ending);
+    strcat(ending, "\"/>");
+    const size_t begin = sizeof BEGIN - 1, end = strlen(ending);
+    if (line.length < begin + end || memcmp(line.at, BEGIN, begin) != 0 ||
+        memcmp(line.at + line.length - end, ending, end) != 0)
+        return false;
+    lar_span_split((lar_span){line.at + begin, line.length - begin}, '"', &number, &rest);
+    char *path = frame_path(series, series->count);
+    bool there = path && access(path, F_OK) == 0;
+    free(path);
+    return there && lar_span_double(number, time);
+}
+
+bool lar_series_take_up(lar_series *series, double time, double step) {
+    lar_bytes bytes;
+    lar_span line;
+    double at, last = -1;
+    if (lar_bytes_read(series->list, &bytes, NULL)) return false;
+    lar_text text = lar_text_from(&bytes);
+    while (lar_text_line(&text, &line))
+        if (read_listed(series, line, &at) && at > last && at < time + 0.5 * step &&
+            !append(series, at, NULL))
+            last = at;
+    lar_bytes_free(&bytes);
+    if (last > time - 0.5 * step) return true;
+    while (series->count > 0) free(series->file[--series->count]);
+    return false;
+}
 
 static lar_status remove_file(const char *path, lar_error *error) {
     lar_status status = lar_file_replaceable(path, error);
@@ -99,13 +141,14 @@ static lar_status forget_frame(const lar_series *series, int frame, const lar_mo
     return status;
 }
 
-lar_status lar_series_forget_earlier(const lar_series *series, const lar_model *model,
-                                     lar_error *error) {
+lar_status lar_series_forget_earlier(lar_series *series, const lar_model *model, lar_error *error) {
     lar_status status = LAR_OK;
     for (int removes = 0; removes < 2; removes++) {
-        if (removes) status = remove_file(series->list, error);
+        if (removes)
+            status = series->count > 0 ? lar_series_complete(series, error)
+                                       : remove_file(series->list, error);
         bool there = true;
-        for (int frame = 0; there && !status; frame++)
+        for (int frame = series->count; there && !status; frame++)
             status = forget_frame(series, frame, model, removes, &there, error);
         if (status) return status;
     }

@@ -24,10 +24,15 @@ lar_status lar_series_open(lar_series *series, const char *folder, const char *n
                            const char *extension, lar_error *error);
 void lar_series_clear(lar_series *series); /* idempotent; a zeroed one is fine */
 
-/* Removes list and frames of an earlier run with this name, 000000 and so on: they would look like
- * those of a run that ends early. Nothing goes when the model was read from one of them. */
-lar_status lar_series_forget_earlier(const lar_series *series, const lar_model *model,
-                                     lar_error *error);
+/* Of a run that goes on from `time`: takes up the frames of its first part that the list has, up to
+ * then, provided that one is of that time, to within half a step: whose state goes on. False: there
+ * are none, or no memory for them, and the series stays empty. */
+bool lar_series_take_up(lar_series *series, double time, double step);
+
+/* Removes list and frames of an earlier run with this name, 000000 and so on, but for those that
+ * were taken up: they would look like those of a run that ends early. Nothing goes when the model
+ * was read from one of them. */
+lar_status lar_series_forget_earlier(lar_series *series, const lar_model *model, lar_error *error);
 
 /* Where the next frame goes; NULL without memory. The caller frees it. */
 char *lar_series_next(const lar_series *series);

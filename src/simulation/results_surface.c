@@ -8,12 +8,18 @@ static const char *name_beside(const char *taken) {
     return strcmp(taken, "surface") == 0 ? "fine_surface" : "surface";
 }
 
-lar_status lar_surface_results_forget_earlier(const char *folder, const char *taken,
+lar_status lar_surface_results_forget_earlier(lar_surface_results *results, const char *folder,
+                                              const char *taken, const lar_simulation *going_on,
                                               const lar_model *model, lar_error *error) {
-    lar_series series;
-    lar_status status = lar_series_open(&series, folder, name_beside(taken), ".vtp", error);
-    if (!status) status = lar_series_forget_earlier(&series, model, error);
-    lar_series_clear(&series);
+    lar_series other = {0}, *series = results->series.list ? &results->series : &other;
+    lar_status status = LAR_OK;
+    if (series == &other)
+        status = lar_series_open(series, folder, name_beside(taken), ".vtp", error);
+    if (!status && going_on)
+        lar_series_take_up(series, lar_simulation_time(going_on),
+                           lar_simulation_time_step(going_on));
+    if (!status) status = lar_series_forget_earlier(series, model, error);
+    lar_series_clear(&other);
     return status;
 }
 

@@ -11,8 +11,10 @@ typedef struct lar_surface_results {
     lar_triangles placed; /* its vertices are its own, the rest is the model's */
 } lar_surface_results;
 
-/* Whether or not there will be one again: see lar_series_forget_earlier. */
-lar_status lar_surface_results_forget_earlier(const char *folder, const char *taken,
+/* Whether or not there will be one again: see lar_series_forget_earlier; with a simulation that
+ * goes on, but for lar_series_take_up. */
+lar_status lar_surface_results_forget_earlier(lar_surface_results *results, const char *folder,
+                                              const char *taken, const lar_simulation *going_on,
                                               const lar_model *model, lar_error *error);
 
 /* Without an embedded surface all of these do nothing. `taken`: the name of the frames of the mesh,

@@ -94,6 +94,8 @@ frames() {
 many=$(frames uterus)
 expect 0 "$LARIAT" run "$organ/uterus.yaml" --resume "$later/uterus.checkpoint" --steps 1 \
     --out "$later"
+[ "$(frames uterus)" -eq "$((many + 1))" ] || fail "a run that goes on has $(frames uterus) frames"
+expect 0 "$LARIAT" run "$organ/uterus.yaml" --steps 1 --out "$later"
 [ "$(frames uterus)" -lt "$many" ] || fail "frames of a longer run"
 [ "$(frames beam)" -gt 0 ] || fail "another scene's frames are gone"
 sed 's/force: \[[^]]*\]/force: [40, 100, 120]/' "$organ/uterus.yaml" >"$organ/broken"

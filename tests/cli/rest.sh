@@ -76,7 +76,7 @@ expect 4 "$LARIAT" run "$SCRATCH/damped.yaml" --until-rest --steps 40 --json
 # Who gave no damping gets one.
 scene bare "$hold"
 expect 0 "$LARIAT" run "$SCRATCH/bare.yaml" --until-rest
-complains 'bare.yaml names no damping; it is [0-9.]* 1/s, with which the slowest motion dies out'
+complains 'bare.yaml names no damping; it is [0-9.]* 1/s, as its slowest motion needs'
 says '^rest  *yes'
 scene undamped "damping: 0" "$hold"
 expect 4 "$LARIAT" run "$SCRATCH/undamped.yaml" --until-rest

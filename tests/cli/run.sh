@@ -81,10 +81,32 @@ expect 1 "$LARIAT" run "$scene" --resume "$scene"
 complains 'uterus.yaml: is not a checkpoint of Lariat'
 expect 1 "$LARIAT" run "$scene" --steps 10 --save "$scene"
 complains 'is there and is not a checkpoint'
-# In the folder of its first part the second one takes the place of that, and says so.
-expect 0 "$LARIAT" run "$scene" --steps 20 --out "$SCRATCH/results" \
-    --resume "$SCRATCH/results/$(basename "$scene" .yaml).checkpoint"
-complains 'frames and probes of the time before .* s are gone from it; another --out keeps both'
+# In the folder of its first part the second one goes on behind that, and from an earlier moment once
+# more; together they are what one run writes. Frames of another moment are of another run.
+sed 's/every: .*/every: 0.0005/' "$scene" >"$demo/parts.yaml"
+parts() {
+    expect 0 "$LARIAT" run "$demo/parts.yaml" "$@"
+}
+parts --steps 100 --out "$SCRATCH/whole"
+parts --steps 50 --out "$SCRATCH/parts" --save "$SCRATCH/early.checkpoint"
+parts --steps 40 --out "$SCRATCH/parts" --resume "$SCRATCH/parts/parts.checkpoint"
+complains "note: .*parts: goes on behind its frames up to 0.00"
+parts --steps 50 --out "$SCRATCH/parts" --resume "$SCRATCH/early.checkpoint"
+awk -F, 'NR == FNR { seen[$0] = 1; next } !($0 in seen)' "$SCRATCH/parts/probes.csv" \
+    "$SCRATCH/whole/probes.csv" | grep . && fail "lines of the whole run that are missing in parts"
+listed() {
+    sed -n 's/.*timestep="\([^"]*\)".*/\1/p' "$SCRATCH/parts/$1.pvd"
+}
+[ "$(listed parts | sort -gu)" = "$(listed parts)" ] || fail "times of the frames: $(listed parts)"
+[ "$(listed parts | wc -l)" = "$(find "$SCRATCH/parts" -name 'parts_*.vtu' | wc -l)" ] || fail "frames"
+[ "$(listed parts | wc -l)" = "$(($(wc -l <"$SCRATCH/parts/probes.csv") - 1))" ] || fail "probes"
+sed 's/name: cervix/name: os/' "$demo/parts.yaml" >"$demo/other.yaml"
+mv "$demo/other.yaml" "$demo/parts.yaml"
+expect 1 "$LARIAT" run "$demo/parts.yaml" --steps 1 --out "$SCRATCH/parts" --resume "$SCRATCH/parts/parts.checkpoint"
+complains 'probes.csv: has other columns than the probes of this scene'
+[ "$(listed parts | wc -l)" = "$(find "$SCRATCH/parts" -name 'parts_*.vtu' | wc -l)" ] || fail "frames went"
+expect 0 "$LARIAT" run "$demo/parts.yaml" --steps 1 --out "$SCRATCH/whole" --resume "$SCRATCH/early.checkpoint"
+grep -q 'goes on behind' "$SCRATCH/err" && fail "goes on behind another run"
 
 expect 0 "$LARIAT" run "$scene" --steps 200 --json --out "$SCRATCH/results"
 

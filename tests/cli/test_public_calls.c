@@ -194,6 +194,8 @@ static void simulation_calls(void **unused) {
     lar_simulation_destroy(simulation);
     simulation = NULL;
     REFUSED(lar_results_open(NULL, simulation, &results, &error));
+    REFUSED(lar_results_resume(NULL, simulation, 1, &results, &error));
+    assert_int_equal(lar_results_frames(NULL), 0);
     REFUSED(lar_results_add(NULL, NULL, &error));
     assert_int_equal(lar_results_close(NULL, &error), LAR_OK);
     lar_simulation_destroy(NULL);

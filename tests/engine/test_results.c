@@ -409,8 +409,8 @@ static void a_line_is_whole_or_not_there(void **state) {
     fixture *f = *state;
     lar_probe_file file;
     assert_int_equal(lar_folder_make(FOLDER, &f->error), LAR_OK);
-    assert_int_equal(lar_probe_file_open(&file, lar_strdup(FOLDER "/probes.csv"), f->model, NULL),
-                     LAR_OK);
+    assert_int_equal(
+        lar_probe_file_open(&file, lar_strdup(FOLDER "/probes.csv"), f->model, -1, NULL), LAR_OK);
     lar_bytes header = read_all(FOLDER "/probes.csv");
     struct rlimit before, tight;
     assert_int_equal(getrlimit(RLIMIT_FSIZE, &before), 0);
