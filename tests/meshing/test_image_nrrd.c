@@ -156,6 +156,14 @@ static void more_that_is_fine(void **state) {
                       "Spacings: 1.5 2 2.5\r\ncontent: a:=b\r\nmeasurement frame: (1,0,0) "
                       "(0,1,0) (0,0,1)\r\n\r",
                       PLAIN_WORLD);
+    /* without a space axes may say where they begin, at a face or in a middle */
+    static const double face[3][4] = {
+        {1.5e-3, 0, 0, 10.75e-3}, {0, 2e-3, 0, 0}, {0, 0, 2.5e-3, -3.75e-3}};
+    static const double middle[3][4] = {
+        {1.5e-3, 0, 0, 10e-3}, {0, 2e-3, 0, -1e-3}, {0, 0, 2.5e-3, -3.75e-3}};
+    expect_nrrd_world(PLAIN "axis mins: 10 nan -5\n", face);
+    expect_nrrd_world(PLAIN "axis mins: 10 -1 -5\ncenters: node node cell\n", middle);
+    expect_nrrd_world(PLAIN "axis mins: 10 0 -5\nspace origin: (0,0,0)\n", PLAIN_WORLD);
     /* one layer of segments, or one point of time */
     expect_nrrd_world("type: uchar\ndimension: 4\nsizes: 1 3 2 2\nencoding: raw\nspace: RAS\n"
                       "space directions: none (1.5,0,0) (0,2,0) (0,0,2.5)\n",
@@ -235,6 +243,7 @@ static void bad_headers(void **state) {
         const char *fields, *words;
     } BAD[] = {
         {"type: uchar\n" SIZES "spacings: 1 1 1\n", "lacks the field \"encoding\""},
+        {PLAIN "axis mins: 1 2\n", "axis mins \"1 2\" has no number for each axis"},
         {SIZES "spacings: 1 1 1\nencoding: raw\n", "lacks the field \"type\""},
         {"type: uchar\nsizes: 3 2 2\n", "lacks the field \"dimension\""},
         {"type: uchar\ndimension: 3\n", "lacks the field \"sizes\""},

@@ -107,6 +107,27 @@ static lar_status read_spacings(const lar_nrrd_header *header, int axes, double 
     return LAR_OK;
 }
 
+/* Without a space, where the axes begin: at the first voxel's middle where samples are called
+ * nodes, else at its face. An axis that says "nan" begins with its first voxel's middle at 0. */
+static lar_status read_minima(const lar_nrrd_header *header, int axes, const double direction[][3],
+                              const bool *is_space, double origin[3], lar_error *error) {
+    lar_text text = text_of(&header->field[LAR_NRRD_AXIS_MINS]);
+    lar_text centers = text_of(&header->field[LAR_NRRD_CENTERS]);
+    for (int a = 0, c = 0; text.at && a < axes; a++) {
+        double min;
+        lar_span center = {0};
+        bool node =
+            centers.at && lar_text_word(&centers, &center) && lar_span_equal_nocase(center, "node");
+        if (!lar_text_double(&text, &min) || isinf(min))
+            return lar_nrrd_bad(header, LAR_NRRD_AXIS_MINS,
+                                "has no number for each axis; correct it", error);
+        if (!is_space[a] || c == 3) continue;
+        if (!isnan(min)) origin[c] = min + (node ? 0 : 0.5 * direction[a][c]);
+        c++;
+    }
+    return LAR_OK;
+}
+
 /* All units named must be the same; none: millimetres, what nearly all files mean. */
 static lar_status read_unit(const lar_nrrd_header *header, lar_nrrd_field field, double *metres,
                             lar_error *error) {
@@ -240,6 +261,8 @@ lar_status lar_nrrd_geometry(const lar_nrrd_header *header, int64_t size[3], lar
                           "are; write the image again with them",
                           header->path);
     if (!status && !directed) status = read_spacings(header, axes, direction, is_space, error);
+    if (!status && !directed && !header->field[LAR_NRRD_SPACE_ORIGIN].text.at)
+        status = read_minima(header, axes, (const double(*)[3])direction, is_space, origin, error);
     if (!status)
         status =
             read_unit(header, directed ? LAR_NRRD_SPACE_UNITS : LAR_NRRD_UNITS, &metres, error);
