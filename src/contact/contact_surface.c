@@ -233,7 +233,16 @@ static void count_possible(lar_contact_surface *s) {
 /* ---- springs -------------------------------------------------------------------------------- */
 
 /* The springs at a node take what its own elements leave of the step, those at the body's worst
- * element the least (docs/theory.md, contact). And how stiff the body wants them. */
+ * element the least (docs/theory.md, contact). On sharp edges they take no more than a part of it:
+ * where bodies lie edge on edge both press, points between nodes do too, and all together is 1.8
+ * times what it is within a face. Only short steps leave more (engine/body_contact_rest). */
+static double stiffness_at(const lar_contact_node *node, double time_step, double stable) {
+    static const double ON_EDGES = 0.3; /* m/dt^2 */
+    double stiffness = lar_contact_law_for(time_step, stable).stiffness;
+    return node->blunt < 1 ? fmin(stiffness, ON_EDGES / (time_step * time_step)) : stiffness;
+}
+
+/* Fits masses to these, and finds how stiff each body wants its springs. */
 static lar_status fit_masses(const lar_model *model, double time_step, double stable_step,
                              lar_contact_surface *s, lar_error *error) {
     /* A quarter makes it of the frequency's square and the stable step's; but light nodes between
@@ -272,7 +281,7 @@ static lar_status fit_masses(const lar_model *model, double time_step, double st
         double *softest = &s->body[s->node[n].body].firm;
         *softest = fmin(*softest, firm[s->node[n].node]);
         double stable = stable_step * max / fastest[s->node[n].node];
-        s->node[n].mass *= lar_contact_law_for(time_step, stable).stiffness / body;
+        s->node[n].mass *= stiffness_at(&s->node[n], time_step, stable) / body;
     }
     lar_contact_edges_fit(s);
     free(squares);

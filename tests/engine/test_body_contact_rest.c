@@ -146,6 +146,47 @@ static void a_body_beside_the_middle_slides_and_does_not_tremble(void **unused) 
 
 /* A rod between two slabs of one layer, which are pressed onto each other around it: springs of
  * tools and of bodies side by side, where elements need all of their part of the step. */
+/* A brick is pressed onto one like it, face on face and edge on edge, by a fifth of its height. */
+static void press_face_on_face(int cells, double bulk, double share_of_stable) {
+    const brick b = {{cells, cells, cells}, 0.02 / cells, 0, LAR_LAW_neo_hookean, 2e3, bulk, 1000};
+    lar_model *model = empty_model(&b);
+    add_brick(model, &b, (double[]){0, 0, 0});
+    int32_t split = model->mesh.element_count;
+    int32_t first = add_brick(model, &b, (double[]){0, 0, 0.02});
+    fix_nodes(model, brick_side(&b, 2, 0), LAR_AXIS_ALL);
+    lar_node_list top = brick_side(&b, 2, -1), same = brick_side(&b, 2, -1);
+    for (int32_t i = 0; i < top.count; i++) same.node[i] = top.node[i] += first;
+    fix_nodes(model, same, LAR_AXIS_X | LAR_AXIS_Y);
+    move_nodes(model, top, LAR_AXIS_Z, -0.004, add_ramp(model, 0.2));
+    touch_between(model, split);
+    model->damping = 100;
+    lar_simulation *probe = start(model);
+    double stable = probe->domain.stable_step;
+    lar_simulation_destroy(probe);
+    lar_options options = lar_options_default();
+    options.time_step = share_of_stable * stable;
+    lar_simulation *s = start_with(model, options);
+    advance(s, (uint64_t)(1.0 / options.time_step));
+    lar_energy e;
+    lar_simulation_energy(s, &e);
+    double left = trembling(s, 0, (double[]){0, 0, 0}) / e.strain;
+    print_message("%d cells, K = %g G, %g of the stable step: kinetic %.2g\n", cells, bulk / 2e3,
+                  share_of_stable, left);
+    assert_below(left, 1e-7);
+    finish(s, model);
+}
+
+/* However short steps are, and so hard the springs. */
+static void bodies_rest_face_on_face(void **unused) {
+    (void)unused;
+    static const double share[] = {0.1, 0.2, 0.32, 0.5};
+    for (int cells = 1; cells <= 3; cells++)
+        for (int i = 0; i < 4; i++) {
+            press_face_on_face(cells, 2e3, share[i]);
+            press_face_on_face(cells, 2e4, share[i]);
+        }
+}
+
 static void press_around_a_rod(double share_of_stable) {
     static const double radius = 0.006, down = 0.0145;
     brick slab = {{6, 6, 1}, 0.01, 0, LAR_LAW_neo_hookean, 4e3, 2e4, 1000};
@@ -274,6 +315,7 @@ int main(void) {
         cmocka_unit_test(a_body_comes_to_rest_on_another),
         cmocka_unit_test(a_body_comes_to_rest_amid_another),
         cmocka_unit_test(a_body_beside_the_middle_slides_and_does_not_tremble),
+        cmocka_unit_test(bodies_rest_face_on_face),
         cmocka_unit_test(bodies_come_to_rest_around_a_tool),
         cmocka_unit_test(cuffs_stay_around_limbs),
     };

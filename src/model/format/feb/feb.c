@@ -104,8 +104,6 @@ static const char *refusal(const xmlNode *section) {
     static const struct {
         const char *name, *what;
     } refused[] = {
-        {"Contact", "contact, which Lariat does not read from decks; remove the section, or take "
-                    "the mesh into a scene"},
         {"Rigid", "rigid bodies, which Lariat does not do; remove the section"},
         {"Constraints", "constraints, which Lariat does not read; remove the section"},
         {"Discrete", "springs and other discrete elements, which Lariat does not do; remove the "
@@ -129,11 +127,12 @@ static lar_status check_section(lar_feb *feb, const xmlNode *section) {
                             (const char *)(content ? content : section)->name,
                             type ? " of type '" : "", type ? type : "", type ? "'" : "", what);
     }
-    const bool known = lar_feb_is_any(section, "Boundary Loads Initial MeshData");
+    const bool known = lar_feb_is_any(section, "Boundary Loads Initial Contact MeshData");
     if (what || is_harmless(feb, section) || (known && !content)) return LAR_OK;
     if (lar_feb_is(section, "Boundary")) return lar_feb_read_boundary(feb, section);
     if (lar_feb_is(section, "Loads")) return lar_feb_read_loads(feb, section);
     if (lar_feb_is(section, "Initial")) return lar_feb_read_initial(feb, section);
+    if (lar_feb_is(section, "Contact")) return lar_feb_read_contact(feb, section);
     if (lar_feb_is(section, "MeshData")) {
         while (content && lar_feb_is_direction(feb, content)) content = lar_feb_next(content);
         if (!content) return LAR_OK; /* read with the materials */

@@ -242,4 +242,8 @@ lar_status lar_feb_read_initial(lar_feb *feb, const xmlNode *section);
 
 lar_status lar_feb_read_loads(lar_feb *feb, const xmlNode *section);
 
+/* ---- contact.c ------------------------------------------------------------------------------- */
+
+lar_status lar_feb_read_contact(lar_feb *feb, const xmlNode *section);
+
 #endif

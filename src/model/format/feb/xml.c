@@ -209,7 +209,7 @@ lar_status lar_feb_refuse_files(lar_feb *feb, const xmlNode *parent) {
 /* Of what there is much of the reader needs the id, and misses it. A curve is looked for where one
  * can be followed, and refused at parameters. */
 lar_status lar_feb_notice_attributes(const lar_feb *feb, const xmlNode *parent) {
-    static const char known[] = "id name type node_set surface elem_set mat bc extend";
+    static const char known[] = "id name type node_set surface elem_set mat bc extend surface_pair";
     static const char with_curve[] = "value scale force traction pressure x y z T0 dtmax";
     static const char loads[] = "nodal_load surface_load body_load";
     static const char not_looked_at[] = "Module Globals MeshData Output";
