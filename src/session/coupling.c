@@ -70,6 +70,14 @@ void lar_coupling_set_speed(lar_coupling *c, double speed) {
     c->drag = c->pull / c->speed;
 }
 
+void lar_coupling_greet(lar_coupling *c) {
+    c->energy = fmax(c->energy, c->credit);
+    c->paid = fmax(c->paid, c->credit);
+    c->turn_paid = fmax(c->turn_paid, c->credit);
+    c->held_back[0] = c->held_back[1] = 0;
+    c->steps = c->turns = (lar_coupling_ways){.last = {0}};
+}
+
 void lar_coupling_reset(lar_coupling *c, const lar_tool_pose *pose) {
     c->hand = c->end = c->tool = *pose;
     c->begun = false;

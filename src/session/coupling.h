@@ -105,6 +105,9 @@ void lar_coupling_set_speed(lar_coupling *coupling, double speed);
  * cm; but what nobody paid for is held back at once. Without it LAR_COUPLING_RATE. */
 void lar_coupling_set_rate(lar_coupling *coupling, double rate);
 
+/* Another hand takes over: it owes nothing of what the one before has got. */
+void lar_coupling_greet(lar_coupling *coupling);
+
 /* The tool has been put somewhere: it rests at `pose`, and goes to its hand from there. */
 void lar_coupling_reset(lar_coupling *coupling, const lar_tool_pose *pose);
 

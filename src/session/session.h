@@ -54,6 +54,7 @@ typedef struct lar_session_tool {
     lar_triple_buffer hand; /* lar_tool_pose, from tool_move */
     lar_tool_info info;     /* constant, but for spares: then the engine's, others ask the view */
     lar_device *device;     /* NULL: it listens to tool_move */
+    uint64_t owners;        /* of the device, as of the last look */
     bool led;   /* somebody has moved it since the start, or since the simulation was last
                    put somewhere else */
     bool waits; /* a hand that let go when the run went back: until it has opened */
@@ -164,7 +165,7 @@ lar_status lar_session_move_tools(lar_session *session, lar_error *error);
 void lar_session_feel_tools(lar_session *session);
 /* The run has broken off: tools feel nothing. What devices were told fades as in a pause. */
 void lar_session_drop_forces(lar_session *session);
-/* Instead of both while nothing moves: forces shrink to `share` of what they are. True when there
+/* Instead of both while nothing moves: what hands feel shrinks to `share` of it. True when there
  * is a device, which wants to be looked after in every tick. */
 bool lar_session_idle_tools(lar_session *session, double share);
 

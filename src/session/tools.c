@@ -87,9 +87,12 @@ static void look_at_hands(lar_session *session) {
         lar_session_tool *tool = &session->tool[i];
         bool fresh;
         const lar_tool_pose *hand = lar_triple_buffer_newest(&tool->hand, &fresh);
-        if (tool->device)
+        if (tool->device) {
             fresh = lar_device_poll(tool->device, &now, &tool->target);
-        else if (fresh)
+            const uint64_t owners = lar_device_owners(tool->device);
+            if (tool->owners != owners) lar_coupling_greet(&tool->coupling);
+            tool->owners = owners;
+        } else if (fresh)
             tool->target = *hand;
         lead_evenly(session, tool, fresh);
         if (tool->info.shape == LAR_TOOL_NONE) continue;
@@ -256,8 +259,7 @@ bool lar_session_idle_tools(lar_session *session, double share) {
     bool device = false;
     look_at_hands(session);
     for (int32_t i = 0; i < session->tools; i++) {
-        shrink(&session->tool[i].force, share);
-        shrink(&session->tool[i].felt, share);
+        shrink(&session->tool[i].felt, share); /* the tissue's stays: it still pushes */
         device = device || session->tool[i].device;
     }
     tell_devices(session);

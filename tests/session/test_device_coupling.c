@@ -400,6 +400,26 @@ static void test_jaws_close_no_faster(void **state) {
     assert_true(w.tool.opening == 0);
 }
 
+/* A hand that presses and then is far above the tissue all of a sudden has got what it did not pay
+ * for: it feels nothing until it has. Whoever takes over owes nothing, and pays for what it does.
+ */
+static void test_another_hand_owes_nothing(void **state) {
+    (void)state;
+    for (int greets = 0; greets < 2; greets++) {
+        world w = start(&PROBE, 1000, 0);
+        for (int i = 0; i < 500; i++) tick(&w, 0, -0.004 * fmin(1, i / 300.0));
+        assert_true(w.felt.force[2] > 0.5);
+        tick(&w, 0, 0.2);
+        for (int i = 0; i < 1000; i++) tick(&w, 0, 0.2 - 0.2 * i / 1000.0);
+        if (greets) lar_coupling_greet(&w.coupling);
+        for (int i = 0; i < 1000; i++) tick(&w, 0, -0.002 * fmin(1, i / 900.0));
+        assert_true(greets ? w.felt.force[2] > 0.3 : w.felt.force[2] == 0);
+        double work = w.hand_work;
+        for (int i = 0; i < 1000; i++) tick(&w, 0, -0.002 + 0.01 * i / 1000.0);
+        if (greets) assert_true(work - w.hand_work < 5e-3);
+    }
+}
+
 static void test_reset_forgets(void **state) {
     (void)state;
     world w = start(&PROBE, 1000, 0.001);
@@ -432,6 +452,7 @@ int main(void) {
         cmocka_unit_test(test_free_hand_is_put),
         cmocka_unit_test(test_turns_no_faster),
         cmocka_unit_test(test_jaws_close_no_faster),
+        cmocka_unit_test(test_another_hand_owes_nothing),
         cmocka_unit_test(test_reset_forgets),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -211,6 +211,7 @@ static void test_silence_fades(void **state) {
     }
     assert_int_equal(link.timeouts, 1);
     assert_true(link.owned);
+    assert_int_equal(link.owners, 1);
     link.tool = ORIGIN;
     link.tool.position[0] = 0.07; /* where the tool stayed */
     for (int i = 0; i < 350; i++, t += MS) {

@@ -36,6 +36,7 @@ typedef struct lar_device_backend {
     bool (*poll)(void *state, const lar_device_tick *tick, lar_tool_pose *pose);
     /* The pose of lar_device_evenly; NULL: the newest. */
     void (*evenly)(void *state, int64_t due, lar_tool_pose *pose);
+    uint64_t (*owners)(const void *state); /* of lar_device_owners; NULL: one */
     /* NULL: feels nothing. Force and pose in the device's axes. */
     void (*feel)(void *state, const lar_device_tick *tick, const lar_tool_force *force,
                  const lar_tool_pose *pose);

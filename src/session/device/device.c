@@ -268,6 +268,10 @@ bool lar_device_poll(lar_device *device, const lar_device_tick *tick, lar_tool_p
     return true;
 }
 
+uint64_t lar_device_owners(const lar_device *device) {
+    return device->backend->owners ? device->backend->owners(device->state) : 0;
+}
+
 void lar_device_evenly(lar_device *device, int64_t due, lar_tool_pose *pose) {
     lar_tool_pose own;
     if (!device->backend->evenly) return;

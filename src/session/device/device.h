@@ -47,6 +47,10 @@ double lar_device_rate(const lar_device *device);
  */
 bool lar_device_poll(lar_device *device, const lar_device_tick *tick, lar_tool_pose *pose);
 
+/* How many hands have had it so far, as of the last poll: each that comes to a device which nobody
+ * had, or had no longer, is another one. */
+uint64_t lar_device_owners(const lar_device *device);
+
 /* After it was true: where the hand was a little before the tick was due [ns], as far on from the
  * tick before as it has gone in that time, however packets came. As it is where a device has no
  * times of its own. */

@@ -47,6 +47,7 @@ static uint32_t another_word(lar_link *link) {
 
 static void take_owner(lar_link *link, const lar_link_address *from) {
     link->owned = true;
+    link->owners++;
     link->owner = *from;
     link->word = another_word(link);
     link->proved = false;

@@ -46,6 +46,7 @@ typedef struct lar_link {
     char token[LAR_PACKET_TOKEN]; /* zeros: none is asked for */
     bool owned;
     lar_link_address owner;
+    uint64_t owners;                      /* so far */
     uint32_t word;                        /* in answers to the owner: 16 bits, never 0 */
     bool proved;                          /* the owner has sent it back: it hears */
     uint64_t dice;                        /* for words; start it from something unknown */

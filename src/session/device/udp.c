@@ -231,6 +231,11 @@ static bool udp_poll(void *data, const lar_device_tick *tick, lar_tool_pose *pos
     return here;
 }
 
+static uint64_t udp_owners(const void *data) {
+    const udp_state *state = data;
+    return state->link.owners;
+}
+
 static void udp_evenly(void *data, int64_t due, lar_tool_pose *pose) {
     udp_state *state = data;
     lar_link_evenly(&state->link, due, pose);
@@ -241,10 +246,12 @@ static void udp_evenly(void *data, int64_t due, lar_tool_pose *pose) {
 static lar_force_packet force_packet(const udp_state *state, const lar_device_tick *tick,
                                      const lar_tool_force *force, const lar_tool_pose *pose) {
     lar_force_packet packet = {.step = tick->step};
+    static const double FEW = 0.01;
+    const bool whole = state->link.strength >= 1 && !(state->link.left > 0) &&
+                       !(tick->held_back[0] > FEW) && !(tick->held_back[1] > FEW);
     packet.flags = (tick->paused ? 0 : LAR_ANSWER_PLAYING) |
                    (force->touching ? LAR_ANSWER_TOUCHING : 0) |
-                   (force->held ? LAR_ANSWER_HOLDING : 0) |
-                   (state->link.strength < 1 || state->link.left > 0 ? LAR_ANSWER_FADING : 0) |
+                   (force->held ? LAR_ANSWER_HOLDING : 0) | (whole ? 0 : LAR_ANSWER_FADING) |
                    state->link.word << LAR_PACKET_WORD;
     for (int i = 0; i < 3; i++) {
         packet.force[i] = state->link.force[i];
@@ -335,6 +342,7 @@ const lar_device_backend lar_device_udp = {.name = "udp",
                                            .close = udp_close,
                                            .poll = udp_poll,
                                            .evenly = udp_evenly,
+                                           .owners = udp_owners,
                                            .feel = udp_feel,
                                            .told = udp_told,
                                            .reset = udp_reset,
