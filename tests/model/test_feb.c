@@ -416,7 +416,7 @@ static void test_sections(void **state) {
     assert_int_equal(notices_with(model, "the attribute lc of <bc>"), 1);
     lar_model_destroy(model);
     expect_failure(BASE4 "<Contact>\n<contact type=\"sliding\"/></Contact>" TAIL,
-                   LAR_ERROR_UNSUPPORTED, LINE + 1, "<contact> of type 'sliding' asks for contact");
+                   LAR_ERROR_UNSUPPORTED, LINE + 1, "<contact> of type 'sliding' is not read");
     expect_failure(BASE4 "<Rigid>\n<rigid_bc/></Rigid>" TAIL, LAR_ERROR_UNSUPPORTED, LINE + 1,
                    "rigid bodies");
     expect_failure(BASE4 "<Constraints>\n<constraint/></Constraints>" TAIL, LAR_ERROR_UNSUPPORTED,

@@ -318,8 +318,74 @@ static void test_bad_curves(void **state) {
     lar_model_destroy(model);
 }
 
+/* ---- contact --------------------------------------------------------------------------------- */
+
+#define PAIRS                                                                                      \
+    HEAD4 CONTROL("STATIC") MATERIAL                                                               \
+        "<Mesh>\n" NODES PARTS SETS4                                                               \
+        "<Surface name=\"start\"><quad4 id=\"1\">1,5,8,4</quad4></Surface>"                        \
+        "<Surface name=\"within\"><quad4 id=\"1\">2,3,7,6</quad4></Surface>"                       \
+        "<SurfacePair name=\"p\"><primary> end "                                                   \
+        "</primary><secondary>start</secondary></SurfacePair>"                                     \
+        "<SurfacePair name=\"old\"><master surface=\"end\"/><slave "                               \
+        "surface=\"end\"/></SurfacePair>"                                                          \
+        "<SurfacePair name=\"bad\"><primary>within</primary><secondary>end</secondary>"            \
+        "</SurfacePair><SurfacePair name=\"none\"><primary>end</primary><secondary>x</secondary>"  \
+        "</SurfacePair><SurfacePair "                                                              \
+        "name=\"half\"><primary>end</primary></SurfacePair></Mesh>\n" DOMAINS
+#define TOUCH(type, pair, more)                                                                    \
+    PAIRS "<Contact><contact type=\"" type "\" surface_pair=\"" pair "\">" more                    \
+          "</contact></Contact>" TAIL
+
+static void test_contact(void **state) {
+    (void)state;
+    lar_model *model = read_deck(TOUCH("sliding-elastic", "p",
+                                       "<laugon>PENALTY</laugon><penalty>10</penalty><tension>0"
+                                       "</tension><fric_coeff>0.3</fric_coeff><glue>1</glue>"));
+    assert_int_equal(model->contact_count, 1);
+    const lar_contact *contact = &model->contact[0];
+    assert_int_equal(contact->kind, LAR_CONTACT_BETWEEN);
+    assert_true(contact->friction == 0.3);
+    assert_true(contact->face_count == 1 && contact->face[0] / 6 == 1);
+    assert_true(contact->against_count == 1 && contact->against[0] / 6 == 0);
+    assert_int_equal(notices_with(model, "penalties, tolerances and searches"), 1);
+    assert_int_equal(notices_with(model, "<glue> in <contact>"), 1);
+    lar_model_destroy(model);
+    model = read_deck(TOUCH("facet-to-facet sliding", "old", ""));
+    assert_int_equal(model->contact[0].kind, LAR_CONTACT_SELF);
+    assert_int_equal(notices_with(model, "penalties"), 0);
+    lar_model_destroy(model);
+}
+
+static void test_contact_that_is_refused(void **state) {
+    (void)state;
+    static const struct {
+        const char *deck, *words;
+    } bad[] = {
+        {TOUCH("tied-elastic", "p", ""), "join their nodes in the mesh"},
+        {TOUCH("sticky", "p", ""), "of type 'sticky' is not read"},
+        {TOUCH("sliding-elastic", "q", ""), "the surface pair 'q'"},
+        {TOUCH("sliding-elastic", "none", ""), "the surface 'x'"},
+        {TOUCH("sliding-elastic", "half", ""), "<SurfacePair> has no <secondary>"},
+        {TOUCH("sliding-elastic", "bad", ""), "is inside the body"},
+        {TOUCH("sliding-elastic", "p", "<tension>1</tension>"), "<tension> other than 0"},
+        {TOUCH("sliding-elastic", "p", "<offset>0.1</offset>"), "<offset> other than 0"},
+        {TOUCH("sliding-elastic", "p", "<fric_coeff>-1</fric_coeff>"), "<fric_coeff> is -1"},
+        {TOUCH("sliding-elastic", "p", "<fric_coeff lc=\"1\">1</fric_coeff>"), "load curve"},
+    };
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        lar_error error = {0};
+        lar_model *model = NULL;
+        lar_status status = parse_bytes(bad[i].deck, strlen(bad[i].deck), &model, &error);
+        if (!status || !strstr(error.message, bad[i].words))
+            fail_msg("%d: %s", (int)i, error.message);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_contact),
+        cmocka_unit_test(test_contact_that_is_refused),
         cmocka_unit_test(test_supports),
         cmocka_unit_test(test_loads),
         cmocka_unit_test(test_traction),

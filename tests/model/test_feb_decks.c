@@ -126,11 +126,8 @@ static void test_real_decks(void **state) {
 
 static void test_real_refusals(void **state) {
     (void)state;
-    static const char *const decks[][2] = {{"co01.feb", "co01.feb:149: <contact> of type "
-                                                        "'sliding-facet-on-facet'"},
-                                           {"co02.feb", "'sliding-node-on-facet' asks for contact"},
-                                           {"ex01.feb", "part 'Part3' are a rigid body"}};
-    for (int i = 0; i < 3; i++) {
+    static const char *const decks[][2] = {{"ex01.feb", "part 'Part3' are a rigid body"}};
+    for (int i = 0; i < 1; i++) {
         lar_error error = {0};
         lar_model *model = NULL;
         read_shared(decks[i][0], LAR_ERROR_UNSUPPORTED, &model, &error);

@@ -16,7 +16,8 @@
 
 /* How FEBio's own contact is made to hold. */
 static const char NUMERICS[] =
-    "laugon penalty auto_penalty update_penalty tolerance gaptol ptol minaug maxaug two_pass knmult "
+    "laugon penalty auto_penalty update_penalty tolerance gaptol ptol minaug maxaug two_pass "
+    "knmult "
     "search_tol search_scale search_radius search_tolerance seg_up node_reloc smooth_aug "
     "smooth_fls symmetric_stiffness fric_penalty fric_tol fnmult ktmult enable_jitter "
     "border_primary border_secondary force_redistribution";
@@ -38,8 +39,8 @@ static const xmlNode *find_side(lar_feb *feb, const xmlNode *pair, const char *s
     const xmlNode *found = lar_feb_child(pair, side);
     if (found) {
         const lar_span text = lar_span_trim(lar_feb_text(feb, found));
-        *name = (const char *)xmlDictLookup(feb->strings, (const xmlChar *)text.at,
-                                            (int)text.length);
+        *name =
+            (const char *)xmlDictLookup(feb->strings, (const xmlChar *)text.at, (int)text.length);
         *status = *name ? LAR_OK : lar_feb_no_memory(feb, "the contact");
     } else if ((found = lar_feb_child(pair, old))) {
         *status = lar_feb_need_attribute(feb, found, "surface", name);
@@ -91,8 +92,12 @@ static lar_status read_friction(lar_feb *feb, const xmlNode *at, double *frictio
 
 /* What would change the answer, unless it is 0. */
 static lar_status refuse_more(lar_feb *feb, const xmlNode *at) {
-    static const char *const names[] = {"tension", "offset", "flip_primary", "flip_secondary",
-                                        "shell_bottom_primary", "shell_bottom_secondary"};
+    static const char *const names[] = {"tension",
+                                        "offset",
+                                        "flip_primary",
+                                        "flip_secondary",
+                                        "shell_bottom_primary",
+                                        "shell_bottom_secondary"};
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
         const xmlNode *value = lar_feb_child(at, names[i]);
         double number = 0;
@@ -123,8 +128,7 @@ static lar_status notice_numerics(lar_feb *feb, const xmlNode *at) {
     return status ? status : lar_feb_notice_others(feb, at, known);
 }
 
-static lar_status read_pair(lar_feb *feb, const xmlNode *at, const xmlNode *pair,
-                            double friction) {
+static lar_status read_pair(lar_feb *feb, const xmlNode *at, const xmlNode *pair, double friction) {
     char problem[LAR_PROBLEM_SIZE];
     const lar_set *first, *second;
     lar_status status = LAR_OK;
@@ -150,9 +154,9 @@ static lar_status read_pair(lar_feb *feb, const xmlNode *at, const xmlNode *pair
 }
 
 static lar_status read_contact(lar_feb *feb, const xmlNode *at) {
-    static const char *const types[] = {"sliding-elastic", "sliding-facet-on-facet",
+    static const char *const types[] = {"sliding-elastic",       "sliding-facet-on-facet",
                                         "sliding-node-on-facet", "facet-to-facet sliding",
-                                        "sliding_with_gaps", "sliding2"};
+                                        "sliding_with_gaps",     "sliding2"};
     const char *type, *name;
     double friction;
     lar_status status = lar_feb_need_attribute(feb, at, "type", &type);
