@@ -332,8 +332,8 @@ static double hardened(double hardness, hardness_change change, double fading, d
     return change == FADES ? fmax(1, fading * hardness) : hardness;
 }
 
-lar_hardened lar_tools_harden(const lar_tool_list *list, lar_tools *tools, double fading,
-                              double seconds, double unit) {
+lar_hardened lar_tools_harden(const lar_tool_list *list, lar_tools *tools, double least,
+                              double fading, double seconds, double unit) {
     lar_hardened all = {.most = 1};
     for (int32_t i = 0; i < tools->count; i++) {
         const lar_tool_felt *felt = &tools->follower[i].felt;
@@ -346,7 +346,7 @@ lar_hardened lar_tools_harden(const lar_tool_list *list, lar_tools *tools, doubl
                                 lar_length(mean.force) / list->limits[i].force);
         }
         tools->deep[i] = depth > DANGER ? felt->depth : 0;
-        double now = hardened(before, change, fading, seconds);
+        double now = fmax(hardened(before, change, fading, seconds), least);
         tools->hardness[i] = now;
         int32_t *outside = &tools->motion[i].outside, was = *outside;
         *outside = is_outside(&list->tool[i], &tools->follower[i], depth, was);

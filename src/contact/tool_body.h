@@ -53,9 +53,10 @@ typedef struct lar_hardened {
 
 /* At the beginning of an interval: how hard each tool is from now on (lar_tools.hardness). One that
  * tissue is deep in becomes harder, which takes parts of a step. `fading`: what is left of
- * something over the time since the last decision, `seconds`; `unit`: newtons of a force unit. */
-lar_hardened lar_tools_harden(const lar_tool_list *list, lar_tools *tools, double fading,
-                              double seconds, double unit);
+ * something over the time since the last decision, `seconds`; `unit`: newtons of a force unit;
+ * `least`: how hard they are at least. */
+lar_hardened lar_tools_harden(const lar_tool_list *list, lar_tools *tools, double least,
+                              double fading, double seconds, double unit);
 
 /* How far a tool that tissue is in goes in a step, from step `step` on [m]. */
 double lar_tools_way(const lar_tool_list *list, const lar_tools *tools, uint64_t step);

@@ -93,7 +93,8 @@ static void set_tool_limits(const lar_domain *domain, lar_tool_list *list) {
     }
     if (surface->face_count > 0) {
         scale.edge = edges / (4 * (double)surface->face_count);
-        scale.stiffness = law.stiffness * mass / (4 * (double)surface->face_count);
+        scale.stiffness =
+            lar_interval_springs(domain) * law.stiffness * mass / (4 * (double)surface->face_count);
     }
     lar_tool_limits_set(&scale, list);
 }
@@ -314,10 +315,10 @@ static bool may_touch(const lar_simulation *simulation) {
  * nothing is measured by the energy that the bodies have and have lost, or quiet ones would be
  * stopped for what they did not mind in motion (that of muscle may be below zero), and by what
  * contact has exchanged, for faces are flat: what slides takes a little here and gives it there.
- * Where loads have hardly begun there is rounding only. The first is asked for only when contact is behind by more than it was the last time, or may be:
- * what a report has lacks half of its last step, which is taken for as much as all steps since the
- * last look. The steps of looks are the same however a run is divided into advances, and intervals
- * end there (step/interval.h). */
+ * Where loads have hardly begun there is rounding only. The first is asked for only when contact is
+ * behind by more than it was the last time, or may be: what a report has lacks half of its last
+ * step, which is taken for as much as all steps since the last look. The steps of looks are the
+ * same however a run is divided into advances, and intervals end there (step/interval.h). */
 static lar_status check_contact(lar_simulation *simulation, lar_error *error) {
     static const double NOTHING = 1e-3, SLIDING = 5e-3;
     if (!may_touch(simulation)) return LAR_OK;
@@ -562,8 +563,7 @@ size_t lar_simulation_bytes(const lar_simulation *simulation) {
     size_t nodes = (size_t)layout->node_padded;
     size_t elements = (size_t)domain->model->mesh.element_count;
     size_t bytes = domain->block_bytes + domain->more_bytes + domain->relaxing_bytes +
-                   domain->fold_bytes +
-                   elements * sizeof *layout->corner +
+                   domain->fold_bytes + elements * sizeof *layout->corner +
                    (size_t)layout->block_count * sizeof *layout->block +
                    (size_t)domain->model->mesh.node_count * sizeof *layout->local +
                    nodes * (sizeof *layout->global + sizeof *domain->mass + sizeof *domain->push +

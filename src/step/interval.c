@@ -97,21 +97,39 @@ uint64_t lar_interval_end(const lar_domain *whole, const lar_step_division *divi
     return (step / whole->interval + 1) * whole->interval;
 }
 
-/* Parts that stiffer materials need. Elements take s^2 of a step, times what they are faster, and
- * contact at most what it takes beside elements as they are (mechanics/contact.c): a part of 1/p of
- * a step has room for p^2 of both together. */
-static int32_t base_of(const lar_domain *whole) {
-    static const double CONTACT_MAX = 9.0 / 16, CONTACT_MIN = 0.09;
-    double dt = whole->time_step, share = dt / whole->stable_step, elements = share * share;
-    double contact = fmax(CONTACT_MIN, fmin(CONTACT_MAX, 1 - elements)), stiff = 0;
-    bool stiffer = false;
+/* What elements take of a step, as a share of all, of the materials that are set. */
+static double taken_now(const lar_domain *whole, bool *stiffer) {
+    double dt = whole->time_step, stiff = 0;
+    *stiffer = false;
     for (int i = 0; i < LAR_FACTORS_MAX; i++) {
-        stiffer = stiffer || whole->faster[i] > 1;
+        *stiffer = *stiffer || whole->faster[i] > 1;
         stiff = fmax(stiff, 0.25 * dt * dt * whole->fastest[i] * whole->faster[i]);
     }
+    return stiff;
+}
+
+static double taken_at_first(const lar_domain *whole) {
+    double share = whole->time_step / whole->stable_step;
+    return share * share;
+}
+
+/* Parts of a step that stiffer materials need. Elements take s^2 of a step, times what they are
+ * faster, and contact at most what it takes beside elements as they are (mechanics/contact.c): a
+ * part of 1/p of a step has room for p^2 of both together. */
+static int32_t base_of(const lar_domain *whole) {
+    static const double CONTACT_MAX = 9.0 / 16, CONTACT_MIN = 0.09;
+    bool stiffer;
+    double elements = taken_at_first(whole), stiff = taken_now(whole, &stiffer);
+    double contact = fmax(CONTACT_MIN, fmin(CONTACT_MAX, 1 - elements));
     int32_t base = 1;
     while (stiffer && stiff + contact > fmax(1, elements + contact) * base * base) base *= 2;
     return base;
+}
+
+double lar_interval_springs(const lar_domain *whole) {
+    bool stiffer;
+    double base = base_of(whole), times = taken_now(whole, &stiffer) / taken_at_first(whole);
+    return fmax(1, fmin(times, base * base));
 }
 
 /* Elements that tools press on have reported what that takes of a step (step/mass/pressed.h); what
@@ -207,7 +225,8 @@ bool lar_interval_divide(const lar_domain *whole, uint64_t step, double seconds,
     lar_step_division *d = &tools->division;
     double fading = fmax(0.5, 1 - seconds / MEMORY);
     const lar_hardened tool =
-        lar_tools_harden(whole->surroundings.list, tools, fading, seconds, 1 / whole->scale);
+        lar_tools_harden(whole->surroundings.list, tools, lar_interval_springs(whole), fading,
+                         seconds, 1 / whole->scale);
     const double way = lar_tools_way(whole->surroundings.list, tools, step);
     const double reach = lar_division_reach(d);
     bool close = lar_division_is_close(d), let_go = lar_division_lets_go(d);

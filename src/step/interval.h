@@ -44,6 +44,11 @@ bool lar_interval_decide(const lar_domain *whole, uint64_t step, lar_tools *tool
  * decision. True when something changes. */
 bool lar_interval_divide(const lar_domain *whole, uint64_t step, double seconds, lar_tools *tools);
 
+/* How many times as stiff springs of tools are as those of the model's own materials: what stiffer
+ * ones that are set ask for, as far as the parts that they divide steps into have room. At least 1.
+ */
+double lar_interval_springs(const lar_domain *whole);
+
 /* Steps of an interval: those with tools decide more often. */
 uint64_t lar_interval_length(const lar_domain *whole, const lar_tools *tools);
 

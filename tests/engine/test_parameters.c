@@ -3,6 +3,7 @@
  * bits are the same on every grid, in processes, through checkpoints and after going back. */
 #include "simulation/checkpoint.h"
 #include "engine/engine_test.h"
+#include "engine/tool_contact_test.h"
 #include "engine/changes_test.h"
 #include "engine/tools_test.h"
 
@@ -390,6 +391,42 @@ static void forged_checkpoints_are_refused(void **unused) {
     finish(simulation, model);
 }
 
+/* A ball on a block, as if the block had been made `made` times as stiff and then set to `set`. */
+static lar_tool_force pressed(double made, double set) {
+    const brick b = {{6, 6, 3}, 0.01, 0, LAR_LAW_neo_hookean, 2e3 * made, 4e4 * made, 1000};
+    lar_model *model = brick_model(&b);
+    fix_nodes(model, brick_side(&b, 2, 0), LAR_AXIS_ALL);
+    model->damping = 20;
+    touch_tool(model, "ball", (lar_tool){.shape = LAR_TOOL_SPHERE, .radius = 0.01},
+               (double[]){0.03, 0.03, 0.045});
+    lar_simulation *simulation = start(model);
+    double step = lar_simulation_time_step(simulation);
+    if (set != 1) assert_int_equal(lar_simulation_set_stiffness(simulation, -1, set, NULL), LAR_OK);
+    place(simulation, 0, (double[]){0.03, 0.03, 0.036}, (double[]){1, 0, 0, 0}, 1,
+          (uint64_t)(0.2 / step));
+    advance(simulation, (uint64_t)(1.5 / step));
+    lar_tool_force force;
+    assert_int_equal(lar_simulation_tool_force(simulation, 0, &force, NULL), LAR_OK);
+    finish(simulation, model);
+    return force;
+}
+
+/* Whatever springs tools have: with stiffer tissue that is set they push as tissue that was made so
+ * pushes them, and bear as much. */
+static void tools_are_as_hard_as_tissue_that_is_set(void **unused) {
+    (void)unused;
+    static const double times[] = {1.5, 3, 4};
+    for (int i = 0; i < 3; i++) {
+        const lar_tool_force made = pressed(times[i], 1), set = pressed(1, times[i]);
+        print_message("%g times as stiff: %.6g N, set %.6g N; limits %.4g and %.4g N\n", times[i],
+                      made.force[2], set.force[2], made.limit, set.limit);
+        assert_true(made.force[2] > 0.1);
+        assert_below(fabs(set.force[2] / made.force[2] - 1), 1e-3);
+        assert_below(fabs(set.depth / made.depth - 1), 0.01);
+        assert_below(fabs(set.limit / made.limit - 1), 1e-3);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_body_is_that_of_a_model_with_them),
@@ -406,6 +443,7 @@ int main(void) {
         cmocka_unit_test(a_loaded_run_goes_on_with_them),
         cmocka_unit_test(clones_and_resets_have_what_they_should),
         cmocka_unit_test(forged_checkpoints_are_refused),
+        cmocka_unit_test(tools_are_as_hard_as_tissue_that_is_set),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -161,7 +161,7 @@ static void test_bad_materials(void **state) {
     expect_failure(WITH_MATERIAL("<material id=\"1\" name=\"soft\" type=\"muscle\"/>"),
                    LAR_ERROR_UNSUPPORTED, 6, "'muscle'");
     expect_failure(WITH_MATERIAL("<material id=\"1\" name=\"soft\" type=\"rigid body\"/>"),
-                   LAR_ERROR_UNSUPPORTED, 0, "the elements of part 'left' are a rigid body");
+                   LAR_ERROR_UNSUPPORTED, 6, "all elements are of rigid bodies");
     expect_failure(WITH_MATERIAL("<material id=\"1\" name=\"soft\" type=\"neo-Hookean\">\n"
                                  "<E>1</E></material>"),
                    LAR_ERROR_FORMAT, 6, "no parameter <v>");
@@ -417,8 +417,7 @@ static void test_sections(void **state) {
     lar_model_destroy(model);
     expect_failure(BASE4 "<Contact>\n<contact type=\"sliding\"/></Contact>" TAIL,
                    LAR_ERROR_UNSUPPORTED, LINE + 1, "<contact> of type 'sliding' is not read");
-    expect_failure(BASE4 "<Rigid>\n<rigid_bc/></Rigid>" TAIL, LAR_ERROR_UNSUPPORTED, LINE + 1,
-                   "rigid bodies");
+    expect_failure(BASE4 "<Rigid>\n<rigid_bc/></Rigid>" TAIL, LAR_ERROR_FORMAT, LINE + 1, "type");
     expect_failure(BASE4 "<Constraints>\n<constraint/></Constraints>" TAIL, LAR_ERROR_UNSUPPORTED,
                    LINE + 1, "constraints");
     expect_failure(BASE4 "<Discrete>\n<discrete/></Discrete>" TAIL, LAR_ERROR_UNSUPPORTED, LINE + 1,

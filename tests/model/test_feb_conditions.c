@@ -382,8 +382,103 @@ static void test_contact_that_is_refused(void **state) {
     }
 }
 
+/* ---- rigid bodies ---------------------------------------------------------------------------- */
+
+#define STONE                                                                                      \
+    HEAD4 CONTROL("STATIC") "<Material><material id=\"7\" name=\"soft\" "                          \
+                            "type=\"neo-Hookean\"><density>1000</density>"                         \
+                            "<E>3000</E><v>0.25</v></material><material id=\"8\" name=\"stone\" "  \
+                            "type=\"rigid body\">"                                                 \
+                            "<density>1</density></material></Material>\n" MESH4                   \
+                            "<MeshDomains><SolidDomain name=\"left\" mat=\"soft\"/><SolidDomain "  \
+                            "name=\"right\" "                                                      \
+                            "mat=\"stone\"/></MeshDomains>\n"
+#define HELD(but)                                                                                  \
+    "<rigid_bc type=\"rigid_fixed\"><rb>stone</rb><Ry_dof>1</Ry_dof><Rz_dof>1</Rz_dof>"            \
+    "<Rv_dof>1</Rv_dof><Rw_dof>1</Rw_dof>" but "</rigid_bc>"
+#define SLIDES                                                                                     \
+    "<rigid_bc type=\"rigid_displacement\"><rb>8</rb><dof>x</dof><value "                          \
+    "lc=\"1\">0.1</value></rigid_bc>"
+#define TURNS(way)                                                                                 \
+    "<rigid_bc type=\"rigid_rotation\"><rb>stone</rb><dof>" way "</dof><value lc=\"1\">0.5"        \
+    "</value></rigid_bc>"
+#define RIGID(all) STONE "<Rigid>" all "</Rigid>" LINEAR1 TAIL
+
+static void test_rigid_bodies(void **state) {
+    (void)state;
+    lar_model *model = read_deck(RIGID(HELD("") SLIDES TURNS("Ru")));
+    assert_int_equal(model->move_count, 1);
+    const lar_move *move = &model->move[0];
+    assert_int_equal(move->nodes.count, 8);
+    assert_int_equal(move->axes, LAR_AXIS_ALL);
+    assert_int_equal(move->screw_count, 2);
+    const lar_screw *turn = &move->screw[0], *way = &move->screw[1];
+    assert_true(turn->angle == 0.5 && turn->slide == 0 && turn->axis[0] == 1);
+    assert_true(turn->point[0] == 1.5 && turn->point[1] == 0.5 && turn->point[2] == 0.5);
+    assert_true(way->angle == 0 && way->slide == 0.1 && way->axis[0] == 1);
+    assert_true(lar_curve_value(&model->curve[way->curve], 0.5) == 1.0);
+    assert_int_equal(notices_with(model, "about the middle of its elements"), 1);
+    assert_int_equal(notices_with(model, "moves as prescribed"), 1);
+    assert_true(lar_material_shear(&model->material[1]) == lar_material_shear(&model->material[0]));
+    assert_true(model->material[1].density == 100 * model->material[0].density);
+    lar_model_destroy(model);
+    model = read_deck(RIGID(HELD("<Rx_dof>1</Rx_dof><Ru_dof>1</Ru_dof>")));
+    assert_true(model->move_count == 0 && model->fix_count == 1);
+    assert_int_equal(model->fix[0].nodes.count, 8);
+    lar_model_destroy(model);
+    /* the words of version 3, and a node of another part that goes with the body */
+    model =
+        read_deck(STONE "<Boundary><bc type=\"rigid\" node_set=\"wall\"><rb>8</rb></bc></Boundary>"
+                        "<Rigid><rigid_constraint type=\"fix\"><rb>8</rb><dofs>Rx,Ry,Ru,Rv,Rw"
+                        "</dofs></rigid_constraint><rigid_constraint type=\"prescribe\"><rb>8"
+                        "</rb><dof>Rz</dof><value lc=\"1\">2</value></rigid_constraint>"
+                        "</Rigid>" LINEAR1 TAIL);
+    assert_int_equal(model->move[0].nodes.count, 12);
+    assert_true(model->move[0].screw_count == 1 && model->move[0].screw[0].slide == 2);
+    lar_model_destroy(model);
+    /* those of 2.5, where Rx is a turn */
+    model = read_deck(STONE
+                      "<Boundary><rigid_body mat=\"8\"><fixed bc=\"x\"/><fixed bc=\"y\"/>"
+                      "<fixed bc=\"z\"/><prescribed bc=\"Rx\" lc=\"1\">0.25</prescribed>"
+                      "<fixed bc=\"Ry\"/><fixed bc=\"Rz\"/></rigid_body></Boundary>" LINEAR1 TAIL);
+    assert_true(model->move[0].screw_count == 1 && model->move[0].screw[0].angle == 0.25);
+    lar_model_destroy(model);
+}
+
+static void test_rigid_bodies_that_are_refused(void **state) {
+    (void)state;
+    static const struct {
+        const char *deck, *words;
+    } bad[] = {
+        {RIGID(HELD("") SLIDES), "may move about x by itself"},
+        {RIGID(""), "may move along x by itself"},
+        {RIGID(HELD("") SLIDES SLIDES), "along or about x a second time"},
+        {RIGID(HELD("<Ru_dof>1</Ru_dof>") SLIDES TURNS("Rv")), "about y a second time"},
+        {RIGID("<rigid_bc type=\"rigid_fixed\"><rb>soft</rb></rigid_bc>"),
+         "'soft', which is no material of type rigid"},
+        {RIGID("<rigid_bc type=\"rigid_fixed\"></rigid_bc>"), "has no <rb>"},
+        {RIGID(TURNS("q")), "'q' is no degree of freedom"},
+        {RIGID("<rigid_load type=\"rigid_force\"><rb>8</rb></rigid_load>"), "is not read"},
+        {RIGID("<rigid_bc type=\"rigid_fixed\"><rb>8</rb><Rx_dof>1</Rx_dof><Ry_dof>1</Ry_dof>"
+               "<Rz_dof>1</Rz_dof><Rw_dof>1</Rw_dof></rigid_bc>" TURNS("Ru") TURNS("Rv")),
+         "turns about several axes"},
+        {STONE "<Boundary><bc type=\"zero displacement\" node_set=\"tip\"><x_dof>1</x_dof></bc>"
+               "</Boundary><Rigid>" HELD("") SLIDES TURNS("Ru") "</Rigid>" LINEAR1 TAIL,
+         "leave one of the two"},
+    };
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        lar_error error = {0};
+        lar_model *model = NULL;
+        lar_status status = parse_bytes(bad[i].deck, strlen(bad[i].deck), &model, &error);
+        if (!status || !strstr(error.message, bad[i].words))
+            fail_msg("%d: %s", (int)i, error.message);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_rigid_bodies),
+        cmocka_unit_test(test_rigid_bodies_that_are_refused),
         cmocka_unit_test(test_contact),
         cmocka_unit_test(test_contact_that_is_refused),
         cmocka_unit_test(test_supports),

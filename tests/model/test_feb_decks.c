@@ -126,7 +126,8 @@ static void test_real_decks(void **state) {
 
 static void test_real_refusals(void **state) {
     (void)state;
-    static const char *const decks[][2] = {{"ex01.feb", "part 'Part3' are a rigid body"}};
+    static const char *const decks[][2] = {
+        {"ex01.feb", "<rigid_load> of type 'rigid_force' is not read"}};
     for (int i = 0; i < 1; i++) {
         lar_error error = {0};
         lar_model *model = NULL;

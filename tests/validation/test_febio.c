@@ -329,11 +329,11 @@ static void co01_co02_bodies_that_touch(void **unused) {
     lar_model_destroy(model);
 }
 
-/* Rigid bodies are not done yet, and say so. */
+/* Rigid bodies that forces move are not done, and say so. */
 static void other_decks_are_refused_by_name(void **unused) {
     (void)unused;
     NEED_REFERENCE();
-    static const char *const deck[1][2] = {{"ex01", "rigid body"}};
+    static const char *const deck[1][2] = {{"ex01", "rigid_force"}};
     for (int i = 0; i < 1; i++) {
         char relative[128];
         lar_model *model = NULL;

@@ -90,7 +90,8 @@ lar_status lar_feb_scaled(lar_feb *feb, const xmlNode *at, const char *name, dou
 static bool is_same(const lar_model *model, const lar_feb_holder *other, const lar_move *move) {
     if (!move || other->move < 0) return !move && other->move < 0;
     const lar_move *first = &model->move[other->move];
-    return first->by == move->by && first->curve == move->curve;
+    return first->by == move->by && first->curve == move->curve && first->screw_count == 0 &&
+           move->screw_count == 0;
 }
 
 static lar_status refuse_holder(lar_feb *feb, const xmlNode *at, const lar_feb_holder *other,
@@ -105,10 +106,8 @@ static lar_status refuse_holder(lar_feb *feb, const xmlNode *at, const lar_feb_h
                         lar_feb_line(other->at), other->move < 0 ? "fixes" : "moves");
 }
 
-/* Writes down who holds the nodes along these axes; `move` NULL: they are fixed. Nodes that move in
- * the same way already leave the list. */
-static lar_status hold(lar_feb *feb, const xmlNode *at, unsigned axes, lar_node_list *nodes,
-                       const lar_move *move) {
+lar_status lar_feb_hold(lar_feb *feb, const xmlNode *at, unsigned axes, lar_node_list *nodes,
+                        const lar_move *move) {
     if (!feb->held) feb->held = lar_calloc(3 * (size_t)feb->mesh->node_count, sizeof *feb->held);
     if (!feb->held || !LAR_GROW(feb->holder, feb->holder_room, feb->holder_count))
         return lar_feb_no_memory(feb, "the supports");
@@ -180,7 +179,7 @@ static lar_status read_fix(lar_feb *feb, const xmlNode *at) {
         return lar_feb_notice(feb, at, "<%s> holds no %s and was left out", lar_feb_name(at),
                               axes ? "node" : "axis");
     }
-    if (!status) status = hold(feb, at, axes, &nodes, NULL);
+    if (!status) status = lar_feb_hold(feb, at, axes, &nodes, NULL);
     lar_fix *fix = status ? NULL : LAR_MODEL_APPEND(feb->model, fix);
     if (!status && !fix) status = lar_feb_no_memory(feb, "the supports");
     if (status) {
@@ -192,7 +191,7 @@ static lar_status read_fix(lar_feb *feb, const xmlNode *at) {
 }
 
 /* Without a load curve a displacement is there at once. Of a static deck only the end matters. */
-static lar_status notice_at_once(lar_feb *feb, const xmlNode *value, double by, int curve) {
+lar_status lar_feb_notice_at_once(lar_feb *feb, const xmlNode *value, double by, int curve) {
     const lar_model *model = feb->model;
     if (by * lar_curve_value(&model->curve[curve], 0.0) == 0.0 || feb->is_static) return LAR_OK;
     return lar_feb_notice(feb, value, LAR_DISPLACED_AT_ONCE, "a load curve", "lc");
@@ -210,15 +209,15 @@ static lar_status read_move(lar_feb *feb, const xmlNode *at) {
     move.axes = 1u << axis;
     if (!status) status = lar_feb_scaled(feb, at, "value", &move.by, 1, &move.curve);
     if (!status)
-        status =
-            notice_at_once(feb, value ? value : lar_feb_child(at, "scale"), move.by, move.curve);
+        status = lar_feb_notice_at_once(feb, value ? value : lar_feb_child(at, "scale"), move.by,
+                                        move.curve);
     if (!status) status = lar_feb_check_flags(feb, at);
     if (!status) status = lar_feb_notice_others(feb, at, known);
     if (!status) status = lar_feb_nodes_of(feb, at, &move.nodes);
     const bool none = move.nodes.count == 0;
     if (!status && none)
         status = lar_feb_notice(feb, at, "<%s> holds no node and was left out", lar_feb_name(at));
-    if (!status && !none) status = hold(feb, at, move.axes, &move.nodes, &move);
+    if (!status && !none) status = lar_feb_hold(feb, at, move.axes, &move.nodes, &move);
     lar_move *to = status || move.nodes.count == 0 ? NULL : LAR_MODEL_APPEND(feb->model, move);
     if (to) {
         *to = move;
@@ -230,7 +229,8 @@ static lar_status read_move(lar_feb *feb, const xmlNode *at) {
 
 static lar_status read_bc(lar_feb *feb, const xmlNode *bc) {
     static const char known[] =
-        "zero displacement, fixed displacement, fix, prescribed displacement and prescribe";
+        "zero displacement, fixed displacement, fix, prescribed displacement, prescribe and rigid";
+    if (lar_feb_is(bc, "rigid_body")) return lar_feb_read_rigid_body(feb, bc);
     if (!lar_feb_is(bc, "bc"))
         return lar_feb_fail(feb, bc, LAR_ERROR_UNSUPPORTED,
                             "<%s> in <Boundary> is not read and would change the answer; Lariat "
@@ -247,6 +247,7 @@ static lar_status read_bc(lar_feb *feb, const xmlNode *bc) {
                               "a %s holds shells, of which there are none; it was left out", type);
     if (strcmp(type, "prescribed displacement") == 0 || strcmp(type, "prescribe") == 0)
         return read_move(feb, bc);
+    if (strcmp(type, "rigid") == 0) return lar_feb_tie_to_rigid(feb, bc);
     return lar_feb_refuse_type(feb, bc, known);
 }
 

@@ -104,7 +104,6 @@ static const char *refusal(const xmlNode *section) {
     static const struct {
         const char *name, *what;
     } refused[] = {
-        {"Rigid", "rigid bodies, which Lariat does not do; remove the section"},
         {"Constraints", "constraints, which Lariat does not read; remove the section"},
         {"Discrete", "springs and other discrete elements, which Lariat does not do; remove the "
                      "section"},
@@ -127,12 +126,13 @@ static lar_status check_section(lar_feb *feb, const xmlNode *section) {
                             (const char *)(content ? content : section)->name,
                             type ? " of type '" : "", type ? type : "", type ? "'" : "", what);
     }
-    const bool known = lar_feb_is_any(section, "Boundary Loads Initial Contact MeshData");
+    const bool known = lar_feb_is_any(section, "Boundary Loads Initial Contact Rigid MeshData");
     if (what || is_harmless(feb, section) || (known && !content)) return LAR_OK;
     if (lar_feb_is(section, "Boundary")) return lar_feb_read_boundary(feb, section);
     if (lar_feb_is(section, "Loads")) return lar_feb_read_loads(feb, section);
     if (lar_feb_is(section, "Initial")) return lar_feb_read_initial(feb, section);
     if (lar_feb_is(section, "Contact")) return lar_feb_read_contact(feb, section);
+    if (lar_feb_is(section, "Rigid")) return lar_feb_read_rigid(feb, section);
     if (lar_feb_is(section, "MeshData")) {
         while (content && lar_feb_is_direction(feb, content)) content = lar_feb_next(content);
         if (!content) return LAR_OK; /* read with the materials */
@@ -254,8 +254,10 @@ static lar_status read_model(lar_feb *feb) {
     if (!status) status = lar_feb_read_activation(feb);
     if (!status) status = read_sections(feb, feb->root);
     if (!status && step) status = read_sections(feb, step);
+    if (!status) status = lar_feb_hold_rigid(feb);
     if (!status) status = lar_feb_notice_attributes(feb, feb->root);
     if (!status) status = finish_static(feb, control);
+    if (!status) status = lar_feb_weigh_rigid(feb);
     return status ? status : lar_model_check(feb->model, feb->error);
 }
 

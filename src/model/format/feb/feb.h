@@ -42,6 +42,15 @@ typedef struct lar_feb_holder {
     int move;
 } lar_feb_holder;
 
+/* A body of a material of type "rigid body": what it does along x, y and z, and about them. */
+typedef struct lar_feb_body {
+    int material;         /* in lar_feb.material */
+    const xmlNode *at[6]; /* what says so, NULL: nothing does */
+    double value[6];      /* [m], [rad] */
+    int curve[6];         /* in lar_model.curve, -1: held */
+    uint8_t *tied;        /* [node_count] nodes that go with it, or NULL */
+} lar_feb_body;
+
 typedef struct lar_feb {
     const char *path;
     lar_error *error;
@@ -65,6 +74,9 @@ typedef struct lar_feb {
     int holder_count;
     size_t holder_room;
     lar_feb_holder *holder;
+    int body_count;
+    size_t body_room;
+    lar_feb_body *body;
     int32_t *held; /* per node and axis 1 + its holder, 0: none; NULL before the first one */
 } lar_feb;
 
@@ -235,12 +247,33 @@ lar_status lar_feb_check_flags(lar_feb *feb, const xmlNode *at);
 lar_status lar_feb_scaled(lar_feb *feb, const xmlNode *at, const char *name, double *value,
                           int count, int *curve);
 
+/* Writes down that the condition `at` holds the nodes along these axes; `move` NULL: fixed. Nodes
+ * that move in the same way already leave the list. */
+lar_status lar_feb_hold(lar_feb *feb, const xmlNode *at, unsigned axes, lar_node_list *nodes,
+                        const lar_move *move);
+/* Where something is displaced at the start. */
+lar_status lar_feb_notice_at_once(lar_feb *feb, const xmlNode *value, double by, int curve);
+
 lar_status lar_feb_read_boundary(lar_feb *feb, const xmlNode *section);
 lar_status lar_feb_read_initial(lar_feb *feb, const xmlNode *section);
 
 /* ---- loads.c --------------------------------------------------------------------------------- */
 
 lar_status lar_feb_read_loads(lar_feb *feb, const xmlNode *section);
+
+/* ---- rigid.c --------------------------------------------------------------------------------- */
+
+bool lar_feb_is_rigid(lar_feb *feb, const lar_feb_material *material); /* NULL: false */
+lar_status lar_feb_read_rigid(lar_feb *feb, const xmlNode *section);
+/* Of version 2.5, in <Boundary>; and a <bc> that ties nodes to such a body. */
+lar_status lar_feb_read_rigid_body(lar_feb *feb, const xmlNode *node);
+lar_status lar_feb_tie_to_rigid(lar_feb *feb, const xmlNode *at);
+/* When all sections are read: makes supports of them. */
+lar_status lar_feb_hold_rigid(lar_feb *feb);
+/* When all materials are read: what their elements are made of; when the deck's own densities are
+ * those of the run, how heavy they are. */
+lar_status lar_feb_fill_rigid(lar_feb *feb);
+lar_status lar_feb_weigh_rigid(lar_feb *feb);
 
 /* ---- contact.c ------------------------------------------------------------------------------- */
 

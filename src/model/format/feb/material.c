@@ -526,6 +526,7 @@ static lar_status read_material(lar_feb *feb, lar_feb_material *entry) {
     if (!material) return lar_feb_no_memory(feb, "the materials");
     material->name = lar_strdup(entry->name);
     if (!material->name) return lar_feb_no_memory(feb, "the materials");
+    if (lar_feb_is_rigid(feb, entry)) return LAR_OK; /* made when there are others */
     status = add_density(feb, entry->node, &material->density);
     if (status) return status;
     const xmlNode *outer = outermost(entry->node, type, NULL);
@@ -577,5 +578,6 @@ lar_status lar_feb_read_materials(lar_feb *feb) {
                                     "material '%.100s' is not used by any element and was left "
                                     "out",
                                     feb->material[i].name);
+    if (!status) status = lar_feb_fill_rigid(feb);
     return status ? status : lar_feb_lay_fibres(feb);
 }

@@ -78,7 +78,7 @@ static const struct solid_type *find_solid(const char *type) {
 
 /* Refuses parts that Lariat cannot make of hexahedra, by name. */
 static lar_status check_part(mesh_reader *reader, const xmlNode *block,
-                             const lar_feb_material *material, const struct solid_type **solid) {
+                             const struct solid_type **solid) {
     lar_feb *feb = reader->feb;
     const char *type, *name = lar_feb_attribute(feb, block, "name");
     lar_status status = lar_feb_need_attribute(feb, block, "type", &type);
@@ -95,13 +95,6 @@ static lar_status check_part(mesh_reader *reader, const xmlNode *block,
                             "eight-node hexahedra (hex8), make them of the mesh's boundary and "
                             "parts: lariat mesh %s",
                             name ? name : "", type, feb->path);
-    if (!feb->model || !material) return LAR_OK;
-    const char *law = lar_feb_attribute(feb, material->node, "type");
-    if (law && strcmp(law, "rigid body") == 0)
-        return lar_feb_fail(feb, block, LAR_ERROR_UNSUPPORTED,
-                            "the elements of part '%.100s' are a rigid body (material '%.100s'), "
-                            "which Lariat does not do; remove the part or make it deformable",
-                            name ? name : "", material->name);
     return LAR_OK;
 }
 
@@ -110,7 +103,7 @@ static lar_status read_elements(mesh_reader *reader, const xmlNode *block) {
     const lar_feb_material *material = NULL;
     lar_status status = lar_feb_part_material(feb, block, &material);
     const struct solid_type *solid = NULL;
-    if (!status) status = check_part(reader, block, material, &solid);
+    if (!status) status = check_part(reader, block, &solid);
     const char *name = lar_feb_attribute(feb, block, "name");
     bool named = name && *name;
     if (!status && named) status = define_name(reader, block, "element set", name);

@@ -96,6 +96,8 @@ void lar_feb_clear(lar_feb *feb) {
     free(feb->material);
     free(feb->controller);
     free(feb->holder);
+    for (int b = 0; b < feb->body_count; b++) free(feb->body[b].tied);
+    free(feb->body);
     free(feb->held);
     *feb = (lar_feb){0};
 }
@@ -210,7 +212,8 @@ lar_status lar_feb_refuse_files(lar_feb *feb, const xmlNode *parent) {
  * can be followed, and refused at parameters. */
 lar_status lar_feb_notice_attributes(const lar_feb *feb, const xmlNode *parent) {
     static const char known[] = "id name type node_set surface elem_set mat bc extend surface_pair";
-    static const char with_curve[] = "value scale force traction pressure x y z T0 dtmax";
+    static const char with_curve[] =
+        "value scale force traction pressure x y z T0 dtmax prescribed";
     static const char loads[] = "nodal_load surface_load body_load";
     static const char not_looked_at[] = "Module Globals MeshData Output";
     lar_status status = LAR_OK;
