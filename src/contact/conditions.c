@@ -402,7 +402,7 @@ typedef struct rigid {
 } rigid;
 
 /* One screw: Rodrigues' formula, with an angle of any size. */
-static rigid screw_at(const lar_screw *screw, double factor) {
+LAR_SETUP static rigid screw_at(const lar_screw *screw, double factor) {
     double sine, cosine, k[3][3], square[3][3];
     lar_sine_cosine(0.5 * remainder(factor * screw->angle, 2 * LAR_PI), &sine, &cosine);
     const double s = 2 * sine * cosine, versine = 2 * sine * sine, *a = screw->axis;
@@ -423,7 +423,7 @@ static rigid screw_at(const lar_screw *screw, double factor) {
 }
 
 /* First one, then the next. */
-static rigid behind(const rigid *first, const rigid *next) {
+LAR_SETUP static rigid behind(const rigid *first, const rigid *next) {
     rigid out = *first;
     for (int i = 0; i < 3; i++) {
         out.shift[i] += next->shift[i];
@@ -444,7 +444,8 @@ typedef struct course {
     struct rigid motion;
 } course;
 
-static void find_course(const lar_model *model, const lar_constraint *constraint, course *now) {
+LAR_SETUP static void find_course(const lar_model *model, const lar_constraint *constraint,
+                                  course *now) {
     now->curve = constraint->curve;
     now->rigid = constraint->rigid;
     if (now->rigid < 0) {

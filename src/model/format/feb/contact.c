@@ -14,13 +14,14 @@
 
 #include "model/contact_check.h"
 
-/* How FEBio's own contact is made to hold. */
-static const char NUMERICS[] =
-    "laugon penalty auto_penalty update_penalty tolerance gaptol ptol minaug maxaug two_pass "
-    "knmult "
-    "search_tol search_scale search_radius search_tolerance seg_up node_reloc smooth_aug "
-    "smooth_fls symmetric_stiffness fric_penalty fric_tol fnmult ktmult enable_jitter "
-    "border_primary border_secondary force_redistribution";
+/* What is read, and behind it how FEBio's own contact is made to hold. */
+#define LOOKED_AT                                                                                  \
+    "fric_coeff tension offset flip_primary flip_secondary shell_bottom_primary "                  \
+    "shell_bottom_secondary "
+static const char KNOWN[] =
+    LOOKED_AT "laugon penalty auto_penalty update_penalty tolerance gaptol minaug maxaug two_pass "
+              "knmult search_tol search_radius seg_up node_reloc smooth_aug symmetric_stiffness "
+              "fric_penalty";
 
 static const xmlNode *find_pair(lar_feb *feb, const char *name) {
     const xmlNode *section = lar_feb_child(feb->root, "Mesh");
@@ -38,9 +39,7 @@ static const xmlNode *find_side(lar_feb *feb, const xmlNode *pair, const char *s
                                 const char *old, const char **name, lar_status *status) {
     const xmlNode *found = lar_feb_child(pair, side);
     if (found) {
-        const lar_span text = lar_span_trim(lar_feb_text(feb, found));
-        *name =
-            (const char *)xmlDictLookup(feb->strings, (const xmlChar *)text.at, (int)text.length);
+        *name = lar_feb_word(feb, found);
         *status = *name ? LAR_OK : lar_feb_no_memory(feb, "the contact");
     } else if ((found = lar_feb_child(pair, old))) {
         *status = lar_feb_need_attribute(feb, found, "surface", name);
@@ -113,19 +112,15 @@ static lar_status refuse_more(lar_feb *feb, const xmlNode *at) {
 }
 
 static lar_status notice_numerics(lar_feb *feb, const xmlNode *at) {
-    char known[sizeof NUMERICS + 160];
-    snprintf(known, sizeof known,
-             "%s fric_coeff tension offset flip_primary flip_secondary shell_bottom_primary "
-             "shell_bottom_secondary",
-             NUMERICS);
     const xmlNode *child = lar_feb_first(at);
-    while (child && !lar_feb_is_any(child, NUMERICS)) child = lar_feb_next(child);
+    while (child && !lar_feb_is_any(child, KNOWN + sizeof LOOKED_AT - 1))
+        child = lar_feb_next(child);
     lar_status status =
         child ? lar_feb_notice(feb, at,
                                "penalties, tolerances and searches of <contact> were left out: "
                                "Lariat's contact has its own stiffness")
               : LAR_OK;
-    return status ? status : lar_feb_notice_others(feb, at, known);
+    return status ? status : lar_feb_notice_others(feb, at, KNOWN);
 }
 
 static lar_status read_pair(lar_feb *feb, const xmlNode *at, const xmlNode *pair, double friction) {

@@ -127,6 +127,9 @@ lar_status lar_feb_id_attribute(lar_feb *feb, const xmlNode *element, const char
  * text. Lives as long as `feb`. */
 lar_span lar_feb_text(lar_feb *feb, const xmlNode *element);
 
+/* The same as a string of its own, without white space at both ends; NULL: no memory. */
+const char *lar_feb_word(lar_feb *feb, const xmlNode *element);
+
 /* Values separated by commas or white space, with the line where each stands. */
 typedef struct lar_feb_list {
     const char *at, *end;
@@ -263,7 +266,7 @@ lar_status lar_feb_read_loads(lar_feb *feb, const xmlNode *section);
 
 /* ---- rigid.c --------------------------------------------------------------------------------- */
 
-bool lar_feb_is_rigid(lar_feb *feb, const lar_feb_material *material); /* NULL: false */
+bool lar_feb_is_rigid(lar_feb *feb, const lar_feb_material *material);
 lar_status lar_feb_read_rigid(lar_feb *feb, const xmlNode *section);
 /* Of version 2.5, in <Boundary>; and a <bc> that ties nodes to such a body. */
 lar_status lar_feb_read_rigid_body(lar_feb *feb, const xmlNode *node);

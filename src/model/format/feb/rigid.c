@@ -18,13 +18,9 @@
 
 /* ---- which body ------------------------------------------------------------------------------ */
 
-static bool is_rigid(lar_feb *feb, const lar_feb_material *material) {
+bool lar_feb_is_rigid(lar_feb *feb, const lar_feb_material *material) {
     const char *type = lar_feb_attribute(feb, material->node, "type");
     return type && strcmp(type, "rigid body") == 0;
-}
-
-bool lar_feb_is_rigid(lar_feb *feb, const lar_feb_material *material) {
-    return material && is_rigid(feb, material);
 }
 
 static lar_status add_body(lar_feb *feb, int material, lar_feb_body **body) {
@@ -43,7 +39,7 @@ static lar_status find_body(lar_feb *feb, const xmlNode *at, const char *name,
     lar_span_int64((lar_span){name, strlen(name)}, &id);
     for (int i = 0; i < feb->material_count && found < 0; i++)
         if (strcmp(feb->material[i].name, name) == 0 || feb->material[i].id == id) found = i;
-    if (found < 0 || !is_rigid(feb, &feb->material[found]))
+    if (found < 0 || !lar_feb_is_rigid(feb, &feb->material[found]))
         return lar_feb_fail(feb, at, LAR_ERROR_FORMAT,
                             "<%s> names '%.60s', which is no material of type rigid body; correct "
                             "the name",
@@ -60,10 +56,8 @@ static lar_status named_body(lar_feb *feb, const xmlNode *at, lar_feb_body **bod
     const xmlNode *name;
     lar_status status = lar_feb_need_child(feb, at, "rb", &name);
     if (status) return status;
-    const lar_span text = lar_span_trim(lar_feb_text(feb, name));
-    const xmlChar *kept = xmlDictLookup(feb->strings, (const xmlChar *)text.at, (int)text.length);
-    return kept ? find_body(feb, name, (const char *)kept, body)
-                : lar_feb_no_memory(feb, "the rigid bodies");
+    const char *word = lar_feb_word(feb, name);
+    return word ? find_body(feb, name, word, body) : lar_feb_no_memory(feb, "the rigid bodies");
 }
 
 /* ---- what it does ---------------------------------------------------------------------------- */
@@ -299,7 +293,7 @@ lar_status lar_feb_hold_rigid(lar_feb *feb) {
     lar_status status = LAR_OK;
     for (int i = 0; i < feb->material_count && !status; i++) {
         lar_feb_body *body = NULL;
-        if (feb->material[i].index < 0 || !is_rigid(feb, &feb->material[i])) continue;
+        if (feb->material[i].index < 0 || !lar_feb_is_rigid(feb, &feb->material[i])) continue;
         status = find_body(feb, feb->material[i].node, feb->material[i].name, &body);
         if (!status) status = hold_body(feb, body);
     }
@@ -311,10 +305,10 @@ lar_status lar_feb_hold_rigid(lar_feb *feb) {
 lar_status lar_feb_fill_rigid(lar_feb *feb) {
     const lar_material *like = NULL;
     for (int i = 0; i < feb->material_count && !like; i++)
-        if (feb->material[i].index >= 0 && !is_rigid(feb, &feb->material[i]))
+        if (feb->material[i].index >= 0 && !lar_feb_is_rigid(feb, &feb->material[i]))
             like = &feb->model->material[feb->material[i].index];
     for (int i = 0; i < feb->material_count; i++) {
-        if (feb->material[i].index < 0 || !is_rigid(feb, &feb->material[i])) continue;
+        if (feb->material[i].index < 0 || !lar_feb_is_rigid(feb, &feb->material[i])) continue;
         if (!like)
             return lar_feb_fail(feb, feb->material[i].node, LAR_ERROR_UNSUPPORTED,
                                 "all elements are of rigid bodies; nothing can be computed");
@@ -331,7 +325,7 @@ lar_status lar_feb_weigh_rigid(lar_feb *feb) {
     enum { HEAVIER = 100 };
     lar_status status = LAR_OK;
     for (int i = 0; i < feb->material_count && !status; i++) {
-        if (feb->material[i].index < 0 || !is_rigid(feb, &feb->material[i])) continue;
+        if (feb->material[i].index < 0 || !lar_feb_is_rigid(feb, &feb->material[i])) continue;
         feb->model->material[feb->material[i].index].density *= HEAVIER;
         status = lar_feb_notice(feb, feb->material[i].node,
                                 "the rigid body '%.60s' moves as prescribed; its elements are "

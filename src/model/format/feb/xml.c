@@ -294,6 +294,11 @@ lar_span lar_feb_text(lar_feb *feb, const xmlNode *element) {
     return lar_span_trim((lar_span){text, strlen(text)});
 }
 
+const char *lar_feb_word(lar_feb *feb, const xmlNode *element) {
+    const lar_span text = lar_feb_text(feb, element);
+    return (const char *)xmlDictLookup(feb->strings, (const xmlChar *)text.at, (int)text.length);
+}
+
 lar_feb_list lar_feb_list_of(lar_feb *feb, const xmlNode *element) {
     const char *text = whole_text(feb, element);
     return (lar_feb_list){text, text + strlen(text), lar_feb_line(element)};
