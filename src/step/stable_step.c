@@ -147,11 +147,19 @@ static double wave_square(const lar_material *material) {
     return (bulk + 4.0 / 3 * shear) / material->density;
 }
 
+/* How much tools count: all beside compressible tissue, and nothing from K = 8 G on. A step that
+ * jumped at a Poisson's ratio would let forces jump there. */
+static double tools_count(const lar_model *model, const lar_material *material) {
+    double ratio = lar_material_instant_bulk(material) / lar_material_instant_shear(material);
+    return model->tool_count > 0 ? fmax(0, fmin(1, 2 - ratio / 4)) : 0;
+}
+
 /* Where bodies touch, springs of a longer step would be softer than their tissue: it would go
  * through them. So are those of tools on compressible tissue, which besides has modes as fast as
  * what is left for springs: under a tool at rest it would tremble for ever. Where only the state at
  * rest counts springs are as hard beside all other tissue. Elements are taken to be of one size. */
 static double share_for_contact(const lar_model *model) {
+    static const double ENOUGH = 0.25; /* what springs have at 0.8 of the stable step */
     double share = 1, fastest = 0;
     bool bodies = false, at_rest;
     for (int i = 0; i < model->contact_count; i++)
@@ -161,10 +169,11 @@ static double share_for_contact(const lar_model *model) {
         fastest = fmax(fastest, wave_square(&model->material[i]));
     for (int i = 0; i < model->material_count; i++) {
         const lar_material *material = &model->material[i];
-        const bool tools = model->tool_count > 0 && lar_material_compressible(material);
-        if (!bodies && !tools && !at_rest) continue;
+        const double tools = tools_count(model, material);
+        if (!bodies && !(tools > 0) && !at_rest) continue;
         double slower = sqrt(fastest / wave_square(material));
         double wanted = lar_contact_wanted(lar_material_confined(material));
+        if (!bodies && !at_rest) wanted = ENOUGH + tools * (wanted - ENOUGH);
         if (at_rest) wanted *= 2;
         if (at_rest && bodies) wanted = fmax(wanted, LAR_CONTACT_WANTED_AT_REST);
         share = fmin(share, slower * lar_contact_longest(wanted));
