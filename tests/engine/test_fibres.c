@@ -61,11 +61,11 @@ static lar_model *straight_tool_model(const brick *b) {
 
 /* ---- the same bits -------------------------------------------------------------------------- */
 
-static same_bits body = {fibrous_tool_model, PATH, {0x9f894947fc5079de, 0x87344058a9cefcce}};
+static same_bits body = {fibrous_tool_model, PATH, {0x123c820a0a3f293d, 0x8013c4a2253e33cc}};
 
 static same_bits straight = {straight_tool_model,
                              LAR_TEST_BUILD "/straight.checkpoint",
-                             {0xb9ffb1d518c0a464, 0x79990cdf459d923d}};
+                             {0x2e5e12c36ba8ac81, 0x2bb448dfe7d8f844}};
 
 /* Parameters of each law beside tissue of some kilopascal. */
 static const double LAWS[LAR_FIBRE_LAWS][LAR_FIBRE_PARAMETERS] = {
