@@ -366,7 +366,10 @@ typedef enum lar_tool_shape {
     LAR_TOOL_CAPSULE,    /* a shaft with round ends: radius, length */
     LAR_TOOL_GRASPER,    /* two jaws that take hold of tissue: radius and length of a jaw, spread */
     LAR_TOOL_HAND,       /* touches nothing, but takes hold of the surface within its radius */
-    LAR_TOOL_NONE        /* a spare one that is not there (lar_simulation_add_tool) */
+    LAR_TOOL_NONE,       /* a spare one that is not there (lar_simulation_add_tool) */
+    LAR_TOOL_RIGID       /* touches nothing, but moves nodes of the body as one rigid body: a bone,
+                            a clamp. radius: the shortest edge of elements there; length: from its
+                            tip to the farthest node at the start */
 } lar_tool_shape;
 
 /* Where a tool is. Its own axes: the tip is the origin, the shaft lies along +z, the jaws of a
@@ -921,7 +924,8 @@ LAR_SIZED lar_status lar_simulation_tool(const lar_simulation *simulation, int32
  * least 1) steps, and rests there: in the same steps on all processors. Taking hold and letting go
  * happen now. Neither its tip nor its other end faster than half its radius in a step
  * (LAR_ERROR_ARGUMENT), but a hand that holds nothing may be put anywhere. Up to a quarter of it
- * tissue keeps a tool out; what is faster may go through a wall as thin as the tool. */
+ * tissue keeps a tool out; what is faster may go through a wall as thin as the tool. A rigid one
+ * takes its nodes along: none of them goes farther than half its radius in a step. */
 LAR_API lar_status lar_simulation_tool_move(lar_simulation *simulation, int32_t tool,
                                             const lar_tool_pose *pose, uint64_t steps,
                                             lar_error *error);

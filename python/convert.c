@@ -242,7 +242,7 @@ PyObject *python_touch_list(const lar_touch *touch, int32_t count) {
     return list;
 }
 
-static const char *const shape_name[] = {"sphere", "capsule", "grasper", "hand", "none"};
+static const char *const shape_name[] = {"sphere", "capsule", "grasper", "hand", "none", "rigid"};
 
 PyObject *python_tool_dict(const lar_tool_info *t) {
     return Py_BuildValue("{s:s,s:s,s:d,s:d,s:d,s:d,s:N,s:i}", "name", t->name, "shape",

@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/quaternion.h"
+#include "base/vector.h"
 #include "mechanics/contact.h"
 
 /* Room for at most so many entries; the lists are still empty. */
@@ -49,9 +51,11 @@ static void list_constraints(lar_conditions *c, const lar_model *model, const in
     c->fixed_count = c->constraint_count;
     for (int i = 0; i < model->move_count; i++) {
         const lar_move *move = &model->move[i];
-        const int32_t rigid = move->screw_count > 0 ? i : -1;
-        add_constraints(c, local, share, &move->nodes, move->axes,
-                        (lar_constraint){.curve = move->curve, .rigid = rigid, .by = move->by});
+        lar_constraint like = {.curve = move->curve, .rigid = -1, .by = move->by};
+        if (move->screw_count > 0) like.rigid = i;
+        if (move->tool) like.curve = LAR_CURVE_TOOL;
+        if (move->tool) like.rigid = move->tool - 1;
+        add_constraints(c, local, share, &move->nodes, move->axes, like);
     }
 }
 
@@ -436,18 +440,52 @@ LAR_SETUP static rigid behind(const rigid *first, const rigid *next) {
     return out;
 }
 
+/* What a tool moves as it goes from where it is at rest to a pose. */
+LAR_SETUP static rigid carried_to(const lar_tool_pose *rest, const lar_tool_pose *pose) {
+    double back[4], q[4];
+    lar_quaternion_inverse(rest->orientation, back);
+    lar_quaternion_product(pose->orientation, back, q);
+    rigid out;
+    for (int j = 0; j < 3; j++) {
+        const double axis[3] = {j == 0, j == 1, j == 2};
+        double turned[3];
+        lar_turn(q, axis, turned);
+        for (int i = 0; i < 3; i++) out.turn[i][j] = turned[i] - axis[i];
+    }
+    for (int i = 0; i < 3; i++)
+        out.shift[i] = pose->position[i] - rest->position[i] - lar_dot(out.turn[i], rest->position);
+    return out;
+}
+
 /* What all constraints of an entry have in common at one time: they stand one behind the other. */
 typedef struct course {
     double time;
+    const lar_condition_context *context; /* NULL: tools are at rest */
+    const lar_state *state;
+    int32_t ahead;        /* 0: at the beginning of the part of the step, 1: at its end */
     int32_t curve, rigid; /* whose it is; -1: nobody's yet */
     double factor;
     struct rigid motion;
 } course;
 
+LAR_SETUP static void find_carried(course *now) {
+    const lar_condition_context *context = now->context;
+    lar_tool_pose pose;
+    now->motion = (rigid){0};
+    if (!context || !context->tools) return;
+    lar_tool_pose_now(&context->tools->motion[now->rigid], now->state, now->ahead,
+                      context->whole_step, &pose);
+    now->motion = carried_to(&context->list->tool[now->rigid].rest, &pose);
+}
+
 LAR_SETUP static void find_course(const lar_model *model, const lar_constraint *constraint,
                                   course *now) {
     now->curve = constraint->curve;
     now->rigid = constraint->rigid;
+    if (now->curve == LAR_CURVE_TOOL) {
+        find_carried(now);
+        return;
+    }
     if (now->rigid < 0) {
         now->factor = lar_curve_value(&model->curve[now->curve], now->time);
         return;
@@ -463,7 +501,7 @@ LAR_SETUP static void find_course(const lar_model *model, const lar_constraint *
 }
 
 static double value_in(const lar_model *model, const lar_constraint *constraint, course *now) {
-    if (constraint->curve < 0) return constraint->by;
+    if (constraint->curve < 0 && constraint->curve != LAR_CURVE_TOOL) return constraint->by;
     if (now->curve != constraint->curve || now->rigid != constraint->rigid)
         find_course(model, constraint, now);
     if (now->rigid < 0) return constraint->by * now->factor;
@@ -476,6 +514,17 @@ static double value_in(const lar_model *model, const lar_constraint *constraint,
 double lar_constraint_value(const lar_model *model, const lar_constraint *constraint, double time) {
     course now = {.time = time, .curve = -1, .rigid = -1};
     return value_in(model, constraint, &now);
+}
+
+double lar_constraint_velocity(const lar_condition_context *context,
+                               const lar_constraint *constraint, double time,
+                               const lar_state *state) {
+    const double dt = context->time_step;
+    course now = {time, context, state, 0, .curve = -1, .rigid = -1};
+    course next = {time + dt, context, state, 1, .curve = -1, .rigid = -1};
+    return (value_in(context->model, constraint, &next) -
+            value_in(context->model, constraint, &now)) /
+           dt;
 }
 
 /* The kernel moved what stands still as if it were free, and counted that as damped motion. */
@@ -495,8 +544,8 @@ double lar_conditions_impose(const lar_condition_context *context, double time,
     double damping = lar_damping_of(model, context->settings), gravity[3], work = 0;
     double dt = context->time_step, step = context->mean_step;
     double share = damping * step / context->whole_step;
-    course was = {.time = time, .curve = -1, .rigid = -1};
-    course next = {.time = time + dt, .curve = -1, .rigid = -1};
+    course was = {time, context, state, 0, .curve = -1, .rigid = -1};
+    course next = {time + dt, context, state, 1, .curve = -1, .rigid = -1};
     lar_gravity_at(model, context->settings, time, gravity);
     state->damped -= share * hold(notes, context->weight, state);
     for (int32_t i = notes->fixed_count; i < notes->constraint_count; i++) {

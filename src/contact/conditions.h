@@ -15,6 +15,7 @@
 #ifndef LAR_CONTACT_CONDITIONS_H
 #define LAR_CONTACT_CONDITIONS_H
 
+#include "contact/tools.h"
 #include "layout/state.h"
 #include "model/forces.h"
 #include "model/settings.h"
@@ -27,8 +28,9 @@
 /* One axis of one node held at, or moved to, by * curve(t). */
 typedef struct lar_constraint {
     int32_t node, axis; /* local */
-    int32_t curve;      /* -1: held at 0; LAR_CURVE_HERE */
-    int32_t rigid;      /* of the model's entries of move: the one with screws; -1: none */
+    int32_t curve;      /* -1: held at 0; LAR_CURVE_HERE, LAR_CURVE_TOOL */
+    int32_t rigid;      /* of the model's entries of move: the one with screws; LAR_CURVE_TOOL: the
+                           tool; -1: none */
     int32_t point;      /* its node of the model */
     double by;          /* of LAR_CURVE_HERE: where it is, as of the step under way [m] */
 } lar_constraint;
@@ -38,8 +40,8 @@ static inline size_t lar_constraint_at(const lar_state *state, const lar_constra
     return lar_state_at(state, constraint->node, constraint->axis);
 }
 
-/* Held where it is: a support that was set (model/supports.h). */
-enum { LAR_CURVE_HERE = -2 };
+/* Held where it is: a support that was set (model/supports.h); and moved by a tool. */
+enum { LAR_CURVE_HERE = -2, LAR_CURVE_TOOL = -3 };
 
 /* A dead force on one node. */
 typedef struct lar_point_force {
@@ -99,6 +101,8 @@ typedef struct lar_condition_context {
     const lar_model *model;
     const lar_settings *settings; /* NULL: as the model says */
     const lar_forces *forces;     /* that were set; NULL: none */
+    const lar_tool_list *list;    /* NULL: no tools */
+    const lar_tools *tools;       /* likewise */
     const uint8_t *held;          /* [nodes of the model] axes, where supports were set, or NULL */
     double scale;                 /* force units per newton */
     double time_step;             /* of the step, or the part of it, under way [s] */
@@ -159,8 +163,14 @@ void lar_conditions_observe(const lar_condition_context *context, lar_condition_
 double lar_conditions_impose(const lar_condition_context *context, double time,
                              const lar_condition_notes *notes, lar_state *state);
 
-/* Displacement of a constraint at `time` [m]. */
+/* Displacement of a constraint at `time` [m]; of what a tool moves at the start, 0. */
 double lar_constraint_value(const lar_model *model, const lar_constraint *constraint, double time);
+
+/* How fast a constraint goes in the part of a step that begins at `time`, as the state has it
+ * [m/s]. */
+double lar_constraint_velocity(const lar_condition_context *context,
+                               const lar_constraint *constraint, double time,
+                               const lar_state *state);
 
 /* Largest nodal load [N], for the choice of the force scale. */
 double lar_conditions_largest(const lar_conditions *conditions);

@@ -217,15 +217,6 @@ double lar_tool_way(const lar_segment *from, const lar_segment *to, int32_t coun
     return sqrt(farthest);
 }
 
-void lar_tool_pose_now(const lar_tool_motion *motion, const lar_state *state, int32_t ahead,
-                       double time_step, lar_tool_pose *pose) {
-    int32_t part = state->part + ahead;
-    if (part >= state->parts)
-        lar_tool_at(motion, state->step + 1, time_step, pose, NULL);
-    else
-        lar_tool_within(motion, state->step, (double)part / state->parts, time_step, pose, NULL);
-}
-
 /* Brings the tool to the step. Returns how far it has come since the last one. */
 static double follow(lar_tool_vicinity *vicinity, const lar_tool *tool,
                      const lar_tool_motion *motion, const lar_state *state, double time_step) {
@@ -489,6 +480,37 @@ void lar_tool_contact_half_work(const lar_tool_contact *contact,
     }
     state->external += 0.5 * context->mean_step * work / context->scale;
     if (contact->rubbed_count > 0) lar_tool_friction_half_work(contact, context, state);
+}
+
+/* What a force along an axis turns about the tip, in whole units and what it is more. */
+static void add_turn(int axis, double turn, lar_tool_push *push) {
+    const int64_t whole = whole_units(turn);
+    push->torque[axis] += whole;
+    push->rest[axis] += whole_units((turn - (double)whole) / LAR_TORQUE_REST);
+}
+
+void lar_tool_contact_carry(lar_tool_contact *contact, const lar_condition_context *context,
+                            const lar_condition_notes *notes, const lar_state *state) {
+    lar_tool_pose pose;
+    int32_t tool = -1;
+    for (int32_t i = notes->fixed_count; i < notes->constraint_count; i++) {
+        const lar_constraint *c = &notes->constraint[i];
+        const int32_t next = (c->axis + 1) % 3, last = (c->axis + 2) % 3;
+        if (c->curve != LAR_CURVE_TOOL || !(context->weight[c->node] > 0)) continue;
+        if (tool != c->rigid)
+            lar_tool_pose_now(&contact->tools->motion[c->rigid], state, 0, context->whole_step,
+                              &pose);
+        tool = c->rigid;
+        const double *at = context->model->mesh.position[c->point];
+        lar_tool_push push = {0};
+        double u[3];
+        lar_state_displacement(state, c->node, u);
+        push.force[c->axis] = -state->force[lar_constraint_at(state, c)];
+        const double force = (double)push.force[c->axis];
+        add_turn(next, (at[last] + u[last] - pose.position[last]) * force, &push);
+        add_turn(last, -(at[next] + u[next] - pose.position[next]) * force, &push);
+        lar_tool_sum_add(&contact->sum[tool], context->shares, &push);
+    }
 }
 
 void lar_tool_contact_observe(lar_tool_contact *contact, const lar_condition_context *context,

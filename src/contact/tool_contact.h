@@ -183,6 +183,11 @@ void lar_tool_contact_apply(lar_tool_contact *contact, const lar_condition_conte
 void lar_tool_contact_half_work(const lar_tool_contact *contact,
                                 const lar_condition_context *context, lar_state *state);
 
+/* When all forces stand in state->force: tools that move nodes feel what pulls at these, without
+ * their weight and inertia. */
+void lar_tool_contact_carry(lar_tool_contact *contact, const lar_condition_context *context,
+                            const lar_condition_notes *notes, const lar_state *state);
+
 /* Planes: before the nodes move, and after they have, supports included. */
 void lar_tool_contact_observe(lar_tool_contact *contact, const lar_condition_context *context,
                               const lar_state *state);
@@ -215,9 +220,6 @@ static inline void lar_tool_sum_add(lar_tool_sum *sum, int32_t shares, const lar
         sum->rest[i] += shares * push->rest[i];
     }
 }
-/* The pose now, or `ahead` parts of a step later. `time_step`: of a whole step. */
-void lar_tool_pose_now(const lar_tool_motion *motion, const lar_state *state, int32_t ahead,
-                       double time_step, lar_tool_pose *pose);
 /* Where a tool's segments are in a pose. */
 void lar_tool_place(const lar_tool *tool, const lar_tool_pose *pose, lar_tool_body *body,
                     lar_segment segment[2]);

@@ -188,6 +188,15 @@ void lar_tool_within(const lar_tool_motion *motion, uint64_t step, double part, 
     pose->opening = (1 - share) * motion->from.opening + share * motion->to.opening;
 }
 
+void lar_tool_pose_now(const lar_tool_motion *motion, const lar_state *state, int32_t ahead,
+                       double time_step, lar_tool_pose *pose) {
+    int32_t part = state->part + ahead;
+    if (part >= state->parts)
+        lar_tool_at(motion, state->step + 1, time_step, pose, NULL);
+    else
+        lar_tool_within(motion, state->step, (double)part / state->parts, time_step, pose, NULL);
+}
+
 /* v' = v + 2 w (a x v) + 2 a x (a x v), a the vector part; `sign` -1 turns back. */
 static void rotate(const double q[4], double sign, const double v[3], double out[3]) {
     double c[3], a[3] = {sign * q[1], sign * q[2], sign * q[3]};

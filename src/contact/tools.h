@@ -17,6 +17,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "layout/state.h"
 #include "model/forces.h"
 #include "model/parameters.h"
 #include "model/settings.h"
@@ -223,9 +224,9 @@ lar_status lar_tool_list_create(const lar_model *model, int32_t hands, int32_t s
 /* All at rest, holding nothing. What was added stays. */
 void lar_tools_reset(const lar_tool_list *list, lar_tools *tools);
 
-/* Whether tissue can touch it: it is there, and no hand. */
+/* Whether tissue can touch it: it is there, and has a surface. */
 static inline bool lar_tool_touches(const lar_tool *tool) {
-    return tool->shape != LAR_TOOL_HAND && tool->shape != LAR_TOOL_NONE;
+    return tool->shape <= LAR_TOOL_GRASPER;
 }
 
 /* Bytes of the used part, from the beginning on: what travels. */
@@ -259,6 +260,10 @@ void lar_tool_at(const lar_tool_motion *motion, uint64_t step, double time_step,
 /* The same when a part of the step, 0 up to 1, has passed. */
 void lar_tool_within(const lar_tool_motion *motion, uint64_t step, double part, double time_step,
                      lar_tool_pose *pose, double velocity[3]);
+
+/* The same at the state's part of a step, or `ahead` parts later. `time_step`: of a whole step. */
+void lar_tool_pose_now(const lar_tool_motion *motion, const lar_state *state, int32_t ahead,
+                       double time_step, lar_tool_pose *pose);
 
 /* ---- quaternions w, x, y, z, of unit length ------------------------------------------------- */
 

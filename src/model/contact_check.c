@@ -157,12 +157,13 @@ bool lar_tool_jaws_part(const lar_tool *tool) {
 
 const char *lar_tool_size_problem(const lar_tool *tool) {
     static const double LARGEST = 1e6; /* [m] */
+    const bool rigid = tool->shape == LAR_TOOL_RIGID;
     bool long_one = tool->shape == LAR_TOOL_CAPSULE || tool->shape == LAR_TOOL_GRASPER;
-    if (tool->shape != LAR_TOOL_SPHERE && !long_one)
+    if (tool->shape != LAR_TOOL_SPHERE && !long_one && !rigid)
         return "the shape must be a sphere, a capsule or a grasper";
     if (!(tool->radius > 0) || !isfinite(tool->radius))
         return "the radius must be finite and more than zero";
-    if (long_one ? !(tool->length > 0) || !isfinite(tool->length) : tool->length != 0)
+    if (long_one ? !(tool->length > 0) || !isfinite(tool->length) : !rigid && tool->length != 0)
         return long_one ? "the length must be finite and more than zero" : "a sphere has no length";
     if (tool->shape == LAR_TOOL_GRASPER ? !(tool->spread > 0 && tool->spread < LAR_PI)
                                         : tool->spread != 0)
@@ -190,6 +191,7 @@ bool lar_tool_problem(const lar_model *model, const lar_tool *tool,
         snprintf(problem, LAR_PROBLEM_SIZE, "%s", wrong);
         return true;
     }
+    if (tool->shape == LAR_TOOL_RIGID) return false; /* it touches nothing */
     int32_t face = 0;
     double gap = lar_tool_gap(model, tool, &face);
     if (gap >= -ROUNDING * size_of(&model->mesh)) return false;

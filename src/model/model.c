@@ -321,6 +321,11 @@ static bool screws_hold(const lar_model *model, const lar_move *move) {
     return hold;
 }
 
+static bool tool_moves(const lar_model *model, const lar_move *move) {
+    return move->tool >= 1 && move->tool <= model->tool_count && move->axes == LAR_AXIS_ALL &&
+           move->screw_count == 0 && model->tool[move->tool - 1].shape == LAR_TOOL_RIGID;
+}
+
 static lar_status check_supports(const lar_model *model, lar_error *error) {
     const int64_t nodes = model->mesh.node_count;
     lar_status status = LAR_OK;
@@ -332,10 +337,11 @@ static lar_status check_supports(const lar_model *model, lar_error *error) {
     }
     for (int i = 0; !status && i < model->move_count; i++) {
         const lar_move *move = &model->move[i];
+        const bool course = move->tool ? tool_moves(model, move)
+                                       : curve_exists(model, move->curve) && isfinite(move->by) &&
+                                             screws_hold(model, move);
         status = check_entry(model, "move", i,
-                             move->axes >= 1 && move->axes <= LAR_AXIS_ALL && isfinite(move->by) &&
-                                 curve_exists(model, move->curve) && screws_hold(model, move),
-                             error);
+                             move->axes >= 1 && move->axes <= LAR_AXIS_ALL && course, error);
         if (!status)
             status =
                 check_list(model, "move", i, move->nodes.node, move->nodes.count, nodes, error);
@@ -389,12 +395,23 @@ static lar_status check_loads(const lar_model *model, lar_error *error) {
     return status;
 }
 
+enum { MOVER = LAR_TOOL_NAME_MAX + 32 };
+static const char *mover_of(const lar_model *model, int entry, char text[MOVER]) {
+    const int tool = model->move[entry].tool;
+    if (tool)
+        snprintf(text, MOVER, "the tool \"%s\"", model->tool[tool - 1].name);
+    else
+        snprintf(text, MOVER, "move entry %d", entry + 1);
+    return text;
+}
+
 /* A node's axis is free, fixed, or moved by one entry. `held` notes per node which axes are
  * taken: bits 0..2 fixed, bits 3..5 moved. */
 static lar_status check_conflicts(const lar_model *model, lar_error *error) {
     const lar_mesh *mesh = &model->mesh;
     uint8_t *held = lar_calloc((size_t)mesh->node_count, 1);
     if (!held) return lar_fail_memory(error, (size_t)mesh->node_count, "the check of supports");
+    char mover[MOVER];
     lar_status status = LAR_OK;
     for (int i = 0; i < model->fix_count; i++) {
         const lar_node_list *nodes = &model->fix[i].nodes;
@@ -408,10 +425,11 @@ static lar_status check_conflicts(const lar_model *model, lar_error *error) {
             uint8_t *node = &held[nodes->node[n]];
             if ((*node | *node >> 3) & axes)
                 status = lar_fail(error, LAR_ERROR_MODEL,
-                                  "%s: node %lld is moved by move entry %d and %s on the same "
-                                  "axis; leave one of the two",
+                                  "%s: node %lld is moved by %s and %s on the same axis; leave one "
+                                  "of the two",
                                   lar_model_source(model), (long long)mesh->node_id[nodes->node[n]],
-                                  i + 1, *node & axes ? "fixed" : "moved by another entry");
+                                  mover_of(model, i, mover),
+                                  *node & axes ? "fixed" : "moved by another entry or tool");
             *node |= (uint8_t)(axes << 3);
         }
     }

@@ -38,7 +38,7 @@ typedef struct lar_screw {
 enum { LAR_SCREWS_MAX = 6 }; /* of one entry: as many as a rigid body has ways to move */
 
 /* Axes of nodes moved by `by` (metres) times a curve; or, with screws, nodes moved along all axes
- * as one rigid body, by one screw after the other. */
+ * as one rigid body, by one screw after the other or by a tool (LAR_TOOL_RIGID). */
 typedef struct lar_move {
     lar_node_list nodes;
     unsigned axes;
@@ -46,6 +46,7 @@ typedef struct lar_move {
     int curve; /* index into lar_model.curve */
     int screw_count;
     lar_screw *screw; /* owned */
+    int tool;         /* one more than the tool that moves them instead, as a rigid body; else 0 */
 } lar_move;
 
 /* Springs between nodes and where these are at rest: what holds tissue that itself gives way. */
@@ -242,6 +243,14 @@ void *lar_model_append(void **array, int *count, size_t size);
 /* ":LINE" for behind a file's name in a message; nothing where the line is 0. Returns `text`. */
 enum { LAR_LINE_TEXT = 16 };
 const char *lar_line_text(int line, char text[LAR_LINE_TEXT]);
+
+/* Whether it has tools that touch it. */
+static inline bool lar_model_touched(const lar_model *model) {
+    bool touched = false;
+    for (int i = 0; i < model->tool_count; i++)
+        touched = touched || model->tool[i].shape != LAR_TOOL_RIGID;
+    return touched;
+}
 
 /* The first material that is viscous; NULL: none is. */
 static inline const lar_material *lar_model_viscous(const lar_model *model) {

@@ -18,8 +18,8 @@ const lar_field_name lar_field_names[LAR_FIELDS] = {
     {"energy", "strain energy density", "J/m³", LAR_FIELD_ENERGY},
     {"processor", "processor", "", LAR_FIELD_PROCESSOR}};
 
-const char *const lar_shape_names[LAR_TOOL_NONE + 1] = {"sphere", "capsule", "grasper", "hand",
-                                                        "none"};
+const char *const lar_shape_names[LAR_TOOL_RIGID + 1] = {"sphere", "capsule", "grasper",
+                                                         "hand",   "none",    "rigid"};
 
 int lar_field_index(lar_field field) {
     for (int i = 0; i < LAR_FIELDS; i++)

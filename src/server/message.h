@@ -98,7 +98,7 @@ typedef struct lar_field_name {
 } lar_field_name;
 
 /* Words of lar_tool_shape. */
-extern const char *const lar_shape_names[LAR_TOOL_NONE + 1];
+extern const char *const lar_shape_names[LAR_TOOL_RIGID + 1];
 
 enum { LAR_FIELDS = 6 }; /* the first is "none" */
 extern const lar_field_name lar_field_names[LAR_FIELDS];

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/pose.h"
+#include "base/quaternion.h"
 #include "base/vector.h"
 #include "contact/tool_body.h"
 #include "contact/touch_list.h"
@@ -108,6 +109,12 @@ static const double STEPS_MAX = 0x1p53;
 /* How far the end goes that goes farthest. */
 static double way_of(const lar_tool *tool, const lar_tool_pose *now, const lar_tool_pose *pose) {
     lar_tool_body body;
+    if (tool->shape == LAR_TOOL_RIGID) {
+        double way[3];
+        lar_minus(pose->position, now->position, way);
+        return lar_length(way) +
+               tool->length * lar_quaternion_angle(now->orientation, pose->orientation);
+    }
     lar_segment from[2], to[2];
     lar_tool_place(tool, now, &body, from);
     lar_tool_place(tool, pose, &body, to);
@@ -125,6 +132,11 @@ static uint64_t steps_for(const lar_simulation *simulation, int32_t index,
     return 1 + (uint64_t)(2 * way_of(tool, &now, pose) / tool->radius);
 }
 
+/* How much of a tool's radius it may go in a step, in words. */
+static const char *half_of(const lar_tool *tool) {
+    return tool->shape == LAR_TOOL_RIGID ? "half an element's edge" : "half its radius";
+}
+
 /* Contact is looked for once in a step: what goes farther could pass through a surface. */
 static lar_status check_speed(const lar_tool *tool, const lar_tool_pose *now,
                               const lar_tool_pose *pose, uint64_t steps, double time_step,
@@ -134,9 +146,9 @@ static lar_status check_speed(const lar_tool *tool, const lar_tool_pose *now,
     return lar_fail(
         error, LAR_ERROR_ARGUMENT,
         "tool %s: an end or jaw that goes %.4g m in %llu steps is at %.4g m/s, more than "
-        "half its radius in a step (%.4g m/s); take %.0f steps or a smaller way",
+        "%s in a step (%.4g m/s); take %.0f steps or a smaller way",
         tool->name, way, (unsigned long long)steps, way / ((double)steps * time_step),
-        0.5 * tool->radius / time_step, ceil(2 * way / tool->radius));
+        half_of(tool), 0.5 * tool->radius / time_step, ceil(2 * way / tool->radius));
 }
 
 /* On processor 0, between two steps. */
@@ -205,9 +217,9 @@ lar_status lar_simulation_check_paths(const lar_simulation *simulation, lar_erro
             if (way > max)
                 return lar_fail(error, LAR_ERROR_MODEL,
                                 "%s: tool %s: its path goes %.4g m from %.6g to %.6g s, more than "
-                                "half its radius in a step of %.3g s; give it %.3g s or more",
+                                "%s in a step of %.3g s; give it %.3g s or more",
                                 lar_model_source(simulation->domain.model), tool->name, way,
-                                row->time, row[1].time, time_step,
+                                row->time, row[1].time, half_of(tool), time_step,
                                 2 * way / tool->radius * time_step);
         }
     }

@@ -172,6 +172,7 @@ static uint64_t hash_model_conditions(const lar_model *model) {
         hash = lar_hash_word(hash_nodes(hash, &m->nodes), m->axes);
         hash = lar_hash_word(lar_hash_double(hash, m->by), (uint32_t)m->curve);
         for (int k = 0; k < m->screw_count; k++) hash = hash_screw(hash, &m->screw[k]);
+        if (m->tool) hash = lar_hash_word(hash, (uint32_t)m->tool);
     }
     for (int i = 0; i < model->load_count; i++) {
         const lar_nodal_load *l = &model->load[i];

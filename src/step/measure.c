@@ -200,10 +200,8 @@ static double gravity_potential(const look *l) {
 
 /* The velocity half a step ahead of a supported value. */
 static double supported_velocity(const look *l, const lar_constraint *constraint) {
-    double time = lar_state_time(l->domain, &l->state), dt = part_of_step(l);
-    return (lar_constraint_value(l->domain->model, constraint, time + dt) -
-            lar_constraint_value(l->domain->model, constraint, time)) /
-           dt;
+    return lar_constraint_velocity(&l->context, constraint, lar_state_time(l->domain, &l->state),
+                                   &l->state);
 }
 
 /* The velocity half a step ahead of the node whose first plane is `entry`, without planes and with
@@ -421,12 +419,20 @@ static void take_planes(const look *l, double (*force)[3]) {
     }
 }
 
+/* What tissue pulls at a node with that a tool moves, the tool pushes with [N]. */
+static double carried_force(const look *l, const lar_constraint *c) {
+    return c->curve == LAR_CURVE_TOOL
+               ? (double)l->state.force[lar_constraint_at(&l->state, c)] / l->domain->scale
+               : 0;
+}
+
+/* But for what tools count as theirs. */
 static void take_supports(const look *l, double (*force)[3]) {
     const lar_condition_notes *supports = supports_of(l);
     for (int32_t i = 0; i < supports->constraint_count; i++) {
         const lar_constraint *c = &supports->constraint[i];
         force[l->domain->layout.global[c->node]][c->axis] =
-            support_force(l, c, supported_velocity(l, c));
+            support_force(l, c, supported_velocity(l, c)) - carried_force(l, c);
     }
 }
 
@@ -463,6 +469,20 @@ static void take_part(const lar_domain *domain, lar_measure_scratch *scratch,
     end_look(&l);
 }
 
+static void take_carried(const lar_domain *domain, lar_measure_scratch *scratch,
+                         const lar_state *state, int32_t tool, double (*force)[3]) {
+    look l;
+    memset(force, 0, (size_t)domain->model->mesh.node_count * sizeof *force);
+    begin_look(domain, scratch, state, &l);
+    const lar_condition_notes *supports = supports_of(&l);
+    for (int32_t i = supports->fixed_count; i < supports->constraint_count; i++) {
+        const lar_constraint *c = &supports->constraint[i];
+        if (c->curve == LAR_CURVE_TOOL && c->rigid == tool)
+            force[domain->layout.global[c->node]][c->axis] = carried_force(&l, c);
+    }
+    end_look(&l);
+}
+
 static lar_status take_tool(const lar_domain *domain, lar_measure_scratch *scratch,
                             const lar_state *state, int32_t tool, double (*force)[3],
                             lar_error *error) {
@@ -481,6 +501,11 @@ lar_status lar_measure_nodal_forces(const lar_domain *domain, lar_measure_scratc
                                     const lar_state *state, lar_cause cause, int32_t tool,
                                     double (*force)[3], lar_error *error) {
     look l;
+    const lar_tool_list *list = domain->surroundings.list;
+    if (cause == LAR_CAUSE_TOOL && list && list->tool[tool].shape == LAR_TOOL_RIGID) {
+        take_carried(domain, scratch, state, tool, force);
+        return LAR_OK;
+    }
     if (cause == LAR_CAUSE_TOOL) return take_tool(domain, scratch, state, tool, force, error);
     if (cause == LAR_CAUSE_ELEMENTS)
         take_part(domain, scratch, state, LAR_ACTING_ELEMENTS, force);

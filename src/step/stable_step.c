@@ -151,7 +151,7 @@ static double wave_square(const lar_material *material) {
  * jumped at a Poisson's ratio would let forces jump there. */
 static double tools_count(const lar_model *model, const lar_material *material) {
     double ratio = lar_material_instant_bulk(material) / lar_material_instant_shear(material);
-    return model->tool_count > 0 ? fmax(0, fmin(1, 2 - ratio / 4)) : 0;
+    return lar_model_touched(model) ? fmax(0, fmin(1, 2 - ratio / 4)) : 0;
 }
 
 /* Where bodies touch, springs of a longer step would be softer than their tissue: it would go
@@ -164,7 +164,7 @@ static double share_for_contact(const lar_model *model) {
     bool bodies = false, at_rest;
     for (int i = 0; i < model->contact_count; i++)
         bodies = bodies || model->contact[i].kind != LAR_CONTACT_PLANE;
-    at_rest = model->until_rest && (bodies || model->tool_count > 0);
+    at_rest = model->until_rest && (bodies || lar_model_touched(model));
     for (int i = 0; i < model->material_count; i++)
         fastest = fmax(fastest, wave_square(&model->material[i]));
     for (int i = 0; i < model->material_count; i++) {

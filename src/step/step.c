@@ -217,6 +217,8 @@ void lar_step_enter(const lar_domain *domain, const lar_interactions *interactio
     context->settings = lar_settings_of(interactions);
     context->forces =
         interactions->tool_contact.tools ? &interactions->tool_contact.tools->forces : NULL;
+    context->list = interactions->tool_contact.list;
+    context->tools = interactions->tool_contact.tools;
     context->held = interactions->notes.mark;
     state->hardness = division->hardness;
     state->pressed = state->strained ? state->strained->pressed : NULL;
@@ -438,6 +440,7 @@ void lar_step_move(const lar_domain *domain, lar_interactions *interactions,
     hold_up_added(domain, interactions, context, state);
     add_friction(domain, interactions, context, state);
     lar_tool_friction_half_work(&interactions->tool_contact, context, state);
+    lar_tool_contact_carry(&interactions->tool_contact, context, &interactions->notes, state);
     lar_conditions_observe(context, &interactions->notes, state);
     lar_tool_contact_observe(&interactions->tool_contact, context, state);
     move_nodes(domain, interactions, context, time, state, fault);

@@ -125,7 +125,8 @@ TEST_UNUSED static int add_table(lar_model *model, lar_curve_shape shape, int co
 
 TEST_UNUSED static void move_nodes(lar_model *model, lar_node_list nodes, unsigned axes, double by,
                                    int curve) {
-    *(lar_move *)LAR_MODEL_APPEND(model, move) = (lar_move){nodes, axes, by, curve, 0, NULL};
+    *(lar_move *)LAR_MODEL_APPEND(model, move) =
+        (lar_move){.nodes = nodes, .axes = axes, .by = by, .curve = curve};
 }
 
 TEST_UNUSED static void load_nodes(lar_model *model, lar_node_list nodes, double x, double y,

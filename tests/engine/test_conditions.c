@@ -395,7 +395,8 @@ static void a_turned_bar_is_twisted(void **unused) {
                 continue;
             }
             lar_move *move = LAR_MODEL_APPEND(model, move);
-            *move = (lar_move){side, LAR_AXIS_ALL, 0, curve, 1 + both, NULL};
+            *move = (lar_move){
+                .nodes = side, .axes = LAR_AXIS_ALL, .curve = curve, .screw_count = 1 + both};
             move->screw = lar_calloc(2, sizeof *move->screw);
             move->screw[0] = (lar_screw){{0, 0.01, 0.01}, {1, 0, 0}, end * 0.3, 0, curve};
             move->screw[1] = (lar_screw){{0.1, 0, 0}, {0, 0.6, 0.8}, 2.5, 0.01, curve};

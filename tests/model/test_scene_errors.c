@@ -492,7 +492,14 @@ static void test_tools(void **state) {
         {"tools: [{name: a, shape: spere}]\n", "4:26",
          "the shape \"spere\" is unknown; did you mean sphere? the shapes are: sphere, capsule, "
          "grasper"},
-        {"tools: [{name: a, shape: hand}]\n", "4:26", "the shapes are: sphere, capsule, grasper"},
+        {"tools: [{name: a, shape: hand}]\n", "4:26",
+         "the shapes are: sphere, capsule, grasper, rigid"},
+        {"tools: [{name: a, shape: rigid}]\n", "4:9", "a rigid tool needs the key \"nodes\""},
+        {"tools: [{name: a, shape: rigid, nodes: all, radius: 1}]\n", "4:45",
+         "the key \"radius\" is unknown; a rigid tool may have the keys: name, shape, nodes, at"},
+        {"tools:\n  - {name: a, shape: rigid, nodes: {box: [[-1, -1, -1], [1, 1, 0]]}}\n"
+         "  - {name: b, shape: rigid, nodes: all}\n",
+         "6:5", "node 1 is moved along x here (line 6) and already moved in line 5"},
         {SPHERE("name: a"), "4:9", "a sphere needs the key \"radius\""},
         {SPHERE("name: a, radius: 0.01"), "4:9", "a sphere needs the key \"at\""},
         {SPHERE("name: a, radius: 0, at: [0, 0, 1]"), "4:42", "radius is 0; it must be more than"},

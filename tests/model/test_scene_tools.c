@@ -52,6 +52,33 @@ static void points(const lar_tool *tool, int axis, double x, double y, double z)
     same(v[2], z / length);
 }
 
+/* It stands in the middle of the nodes that it moves, as a part of the list of motions. */
+static void test_rigid_tools(void **state) {
+    (void)state;
+    lar_model *model = scene(
+        HEAD MATERIAL
+        "tools:\n"
+        "  - {name: base, shape: rigid, nodes: {box: [[-1, -1, -1], [1, 1, 0.001]]}}\n"
+        "  - {name: top, shape: rigid, nodes: {box: [[-1, -1, 0.019], [1, 1, 1]]},\n"
+        "     at: [0.01, 0.01, 0.05], path: [[0, 0.01, 0.01, 0.05], [1, 0.01, 0.02, 0.05]]}\n");
+    assert_int_equal(model->tool_count, 2);
+    assert_int_equal(model->move_count, 2);
+    const lar_tool *tool = model->tool;
+    for (int i = 0; i < 2; i++) {
+        assert_int_equal(tool[i].shape, LAR_TOOL_RIGID);
+        assert_int_equal(model->move[i].tool, i + 1);
+        assert_int_equal(model->move[i].nodes.count, 9);
+        assert_int_equal(model->move[i].axes, LAR_AXIS_ALL);
+        same(tool[i].radius, 0.01);
+        for (int k = 0; k < 2; k++) same(tool[i].rest.position[k], 0.01);
+    }
+    same(tool[0].rest.position[2], 0);
+    same(tool[0].length, 0.01 * sqrt(2));
+    same(tool[1].rest.position[2], 0.05);
+    same(tool[1].length, sqrt(0.0009 + 0.0002));
+    lar_model_destroy(model);
+}
+
 static void test_tools(void **state) {
     (void)state;
     lar_model *model = scene(
@@ -131,9 +158,8 @@ static void test_thin_tools(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_contact),
-        cmocka_unit_test(test_tools),
-        cmocka_unit_test(test_tools_beside_the_body),
+        cmocka_unit_test(test_contact),     cmocka_unit_test(test_tools),
+        cmocka_unit_test(test_rigid_tools), cmocka_unit_test(test_tools_beside_the_body),
         cmocka_unit_test(test_thin_tools),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

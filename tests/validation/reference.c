@@ -184,7 +184,7 @@ void fix_nodes(lar_model *model, lar_node_list nodes, unsigned axes) {
 void move_nodes_by(lar_model *model, lar_node_list nodes, unsigned axes, double by, int curve) {
     lar_move *move = LAR_MODEL_APPEND(model, move);
     assert_non_null(move);
-    *move = (lar_move){nodes, axes, by, curve, 0, NULL};
+    *move = (lar_move){.nodes = nodes, .axes = axes, .by = by, .curve = curve};
 }
 
 int add_ramp(lar_model *model, double time, double over, double from, double to) {

@@ -7,7 +7,7 @@
 #include "cli/report/mass_scaling.h"
 
 /* The words of scenes; hands are in none. */
-static const char *const shape_word[] = {"sphere", "capsule", "grasper", "hand"};
+static const char *const shape_word[] = {"sphere", "capsule", "grasper", "hand", "none", "rigid"};
 
 static double degrees(double radians) {
     static const double HALF_TURN = 3.14159265358979323846;

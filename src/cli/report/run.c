@@ -331,11 +331,15 @@ static void print_tools(const run_report *report, const lar_energy *energy, FILE
         lar_tool_info info;
         lar_tool_force force;
         if (!tool_of(simulation, i, &info, &force)) continue;
-        if (force.touching == 0 && force.held == 0) continue;
-        const double *f = force.force;
+        const bool moves = info.shape == LAR_TOOL_RIGID;
+        if (force.touching == 0 && force.held == 0 && !moves) continue;
+        const double *f = force.force, *t = force.torque;
         fprintf(out, "%-17s%s: %.3g N", "tool", info.name,
                 sqrt(f[0] * f[0] + f[1] * f[1] + f[2] * f[2]));
         if (force.grasp_force > 0) fprintf(out, ", jaws grasp with %.3g N", force.grasp_force);
+        if (moves)
+            fprintf(out, " and %.3g N m on the nodes that it moves",
+                    sqrt(t[0] * t[0] + t[1] * t[1] + t[2] * t[2]));
         if (force.held > 0) fprintf(out, ", holds %d points", (int)force.held);
         fputc('\n', out);
         print_depth(report, &info, &force, energy, out);

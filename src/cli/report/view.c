@@ -44,8 +44,10 @@ static void write_tools(lar_json *json, const view_report *report) {
 static void print_tools(const view_report *report, FILE *out) {
     for (int32_t i = 0; i < report->tools; i++) {
         const lar_tool_load *load = &report->tool[i].load;
-        fprintf(out, "%-17s%s: largest force %.3g N, limit %.3g N%s", "tool", report->tool[i].name,
-                load->force, load->limit, load->reached ? "; the limit was reached" : "");
+        fprintf(out, "%-17s%s: largest force %.3g N", "tool", report->tool[i].name, load->force);
+        if (load->limit > 0)
+            fprintf(out, ", limit %.3g N%s", load->limit,
+                    load->reached ? "; the limit was reached" : "");
         if (load->grasp_force > 0)
             fprintf(out, "; jaws grasped with up to %.3g N", load->grasp_force);
         fputc('\n', out);

@@ -164,6 +164,10 @@ lar_status lar_scene_select_nodes(lar_scene *scene, const lar_yaml *node, lar_no
 /* ---- scene_material.c, scene_motion.c, scene_contact.c, scene_tools.c, scene_output.c,
  * scene_surface.c ---------------------------------------------------------------------------- */
 
+/* Notes who holds which axis, for messages with lines; a moved axis must not be held by another
+ * entry. Lines of fix entries are kept as negative numbers. */
+lar_status lar_scene_claim_axes(lar_scene *scene, const lar_yaml *entry, const lar_node_list *nodes,
+                                unsigned axes, bool moved);
 lar_status lar_scene_read_materials(lar_scene *scene, const lar_yaml *node);
 /* Law, density, stiffness and viscosity from keys of a mapping, an entry of a scene or a tissue
  * file: reads all of `material` but its cells, name and fibres. */

@@ -148,10 +148,8 @@ static lar_status read_axes(const lar_scene *scene, const lar_yaml *node, unsign
     return LAR_OK;
 }
 
-/* Notes who holds which axis; a moved axis must not be held by another entry. Lines of fix
- * entries are kept as negative numbers. */
-static lar_status claim_axes(lar_scene *scene, const lar_yaml *entry, const lar_node_list *nodes,
-                             unsigned axes, bool moved) {
+lar_status lar_scene_claim_axes(lar_scene *scene, const lar_yaml *entry, const lar_node_list *nodes,
+                                unsigned axes, bool moved) {
     const lar_mesh *mesh = &scene->model->mesh;
     size_t count = 3 * (size_t)mesh->node_count;
     if (!scene->axis_line) scene->axis_line = lar_calloc(count, sizeof *scene->axis_line);
@@ -184,7 +182,7 @@ static lar_status read_fix_entry(lar_scene *scene, const lar_yaml *entry) {
     if (!fix) return lar_scene_no_memory(scene, sizeof *fix);
     status = read_axes(scene, axes, &fix->axes);
     if (!status) status = lar_scene_select_nodes(scene, nodes, &fix->nodes);
-    return status ? status : claim_axes(scene, entry, &fix->nodes, fix->axes, false);
+    return status ? status : lar_scene_claim_axes(scene, entry, &fix->nodes, fix->axes, false);
 }
 
 static lar_status read_screw(lar_scene *scene, const lar_yaml *node, lar_screw *screw) {
@@ -249,7 +247,7 @@ static lar_status read_rigid_entry(lar_scene *scene, const lar_yaml *entry, cons
     *move = (lar_move){
         .axes = LAR_AXIS_ALL, .curve = screw[0].curve, .screw_count = count, .screw = screw};
     status = lar_scene_select_nodes(scene, nodes, &move->nodes);
-    return status ? status : claim_axes(scene, entry, &move->nodes, LAR_AXIS_ALL, true);
+    return status ? status : lar_scene_claim_axes(scene, entry, &move->nodes, LAR_AXIS_ALL, true);
 }
 
 static lar_status read_move_entry(lar_scene *scene, const lar_yaml *entry) {
@@ -268,7 +266,7 @@ static lar_status read_move_entry(lar_scene *scene, const lar_yaml *entry) {
     if (!status) status = lar_scene_number(scene, by, LAR_IN_METRES, &move->by);
     if (!status) status = lar_scene_read_course(scene, entry, true, &move->curve);
     if (!status) status = lar_scene_select_nodes(scene, nodes, &move->nodes);
-    return status ? status : claim_axes(scene, entry, &move->nodes, move->axes, true);
+    return status ? status : lar_scene_claim_axes(scene, entry, &move->nodes, move->axes, true);
 }
 
 /* ---- springs ------------------------------------------------------------------------------ */

@@ -35,7 +35,13 @@ static const shape_keys known[] = {
      true,
      true,
      {"name", "shape", "radius", "length", "spread", "at", "towards", "turn", "path", "friction",
-      NULL}}};
+      NULL}},
+    {"rigid",
+     "a rigid tool",
+     LAR_TOOL_RIGID,
+     false,
+     false,
+     {"name", "shape", "nodes", "at", "path", NULL}}};
 enum { SHAPES = sizeof known / sizeof known[0] };
 
 static lar_status read_shape(const lar_scene *scene, const lar_yaml *node,
@@ -198,7 +204,8 @@ static lar_status read_pose(lar_scene *scene, const lar_yaml *entry, const shape
     const lar_yaml *turn = lar_yaml_get(entry, "turn");
     double direction[3] = {0, 0, -1}, degrees = 0;
     lar_status status = LAR_OK;
-    if (tool->path.count > 0 && tool->path.row[0].time == 0) /* where a path begins */
+    const bool begins = tool->path.count > 0 && tool->path.row[0].time == 0;
+    if (begins || shape->shape == LAR_TOOL_RIGID)
         at = lar_yaml_get(entry, "at");
     else
         status = lar_scene_need(scene, entry, shape->what, "at", "at: [0, 0, 0.1]", &at);
@@ -210,10 +217,68 @@ static lar_status read_pose(lar_scene *scene, const lar_yaml *entry, const shape
     return status ? status : begin_path(scene, at, tool);
 }
 
+/* ---- what moves nodes ----------------------------------------------------------------------- */
+
+static double distance_of(const double a[3], const double b[3]) {
+    return hypot(hypot(a[0] - b[0], a[1] - b[1]), a[2] - b[2]);
+}
+
+/* The shortest edge of elements of the nodes: what moves them by more within a step turns these
+ * inside out. */
+static lar_status find_shortest_edge(const lar_scene *scene, const lar_node_list *nodes,
+                                     double *shortest) {
+    const lar_mesh *mesh = &scene->model->mesh;
+    uint8_t *moved = lar_calloc((size_t)mesh->node_count, 1);
+    if (!moved) return lar_scene_no_memory(scene, (size_t)mesh->node_count);
+    for (int32_t k = 0; k < nodes->count; k++) moved[nodes->node[k]] = 1;
+    *shortest = INFINITY;
+    for (int32_t e = 0; e < mesh->element_count; e++)
+        for (int a = 0; a < 24; a++) {
+            const int32_t *face = mesh->element[e];
+            const int32_t p = face[lar_face_node[a / 4][a % 4]];
+            const int32_t q = face[lar_face_node[a / 4][(a + 1) % 4]];
+            const double edge = distance_of(mesh->position[p], mesh->position[q]);
+            if ((moved[p] || moved[q]) && edge > 0) *shortest = fmin(*shortest, edge);
+        }
+    free(moved);
+    return LAR_OK;
+}
+
+/* Its nodes are moved by an entry of their own; before its place is read, which by default is in
+ * their middle. */
+static lar_status read_nodes(lar_scene *scene, const lar_yaml *entry, lar_tool *tool) {
+    const lar_yaml *nodes = NULL;
+    lar_model *model = scene->model;
+    lar_status status =
+        lar_scene_need(scene, entry, "a rigid tool", "nodes", "nodes: bone", &nodes);
+    if (status) return status;
+    lar_move *move = LAR_MODEL_APPEND(model, move);
+    if (!move) return lar_scene_no_memory(scene, sizeof *move);
+    move->axes = LAR_AXIS_ALL;
+    move->tool = model->tool_count;
+    status = lar_scene_select_nodes(scene, nodes, &move->nodes);
+    if (!status) status = lar_scene_claim_axes(scene, entry, &move->nodes, LAR_AXIS_ALL, true);
+    if (!status) status = find_shortest_edge(scene, &move->nodes, &tool->radius);
+    for (int32_t k = 0; !status && k < move->nodes.count; k++)
+        for (int i = 0; i < 3; i++)
+            tool->rest.position[i] +=
+                model->mesh.position[move->nodes.node[k]][i] / move->nodes.count;
+    return status;
+}
+
+/* How far the farthest of them is, once it is known where the tool is. */
+static void find_reach(const lar_model *model, lar_tool *tool) {
+    const lar_node_list *nodes = &model->move[model->move_count - 1].nodes;
+    for (int32_t k = 0; k < nodes->count; k++)
+        tool->length = fmax(tool->length,
+                            distance_of(model->mesh.position[nodes->node[k]], tool->rest.position));
+}
+
 static lar_status read_size(lar_scene *scene, const lar_yaml *entry, const shape_keys *shape,
                             lar_tool *tool) {
     const lar_yaml *radius = NULL, *length = NULL, *spread = lar_yaml_get(entry, "spread");
     double degrees = SPREAD;
+    if (shape->shape == LAR_TOOL_RIGID) return read_nodes(scene, entry, tool);
     lar_status status =
         lar_scene_need(scene, entry, shape->what, "radius", "radius: 0.005", &radius);
     if (!status) status = lar_scene_positive(scene, radius, LAR_IN_METRES, &tool->radius);
@@ -233,7 +298,7 @@ static lar_status read_size(lar_scene *scene, const lar_yaml *entry, const shape
 
 static lar_status read_tool(lar_scene *scene, const lar_yaml *entry) {
     static const char *const keys[] = {"name",    "shape", "radius", "length",   "spread", "at",
-                                       "towards", "turn",  "path",   "friction", NULL};
+                                       "towards", "turn",  "path",   "friction", "nodes",  NULL};
     const char *const what = "a tool";
     const lar_yaml *name = NULL, *word = NULL;
     const shape_keys *shape = NULL;
@@ -253,6 +318,7 @@ static lar_status read_tool(lar_scene *scene, const lar_yaml *entry) {
     if (!status) status = read_size(scene, entry, shape, tool);
     if (!status) status = read_path(scene, entry, shape, tool);
     if (!status) status = read_pose(scene, entry, shape, tool);
+    if (!status && shape->shape == LAR_TOOL_RIGID) find_reach(scene->model, tool);
     if (!status) status = lar_scene_friction(scene, entry, &tool->friction);
     char problem[LAR_PROBLEM_SIZE];
     if (!status && lar_tool_problem(scene->model, tool, problem))
@@ -278,7 +344,7 @@ static lar_status notice_thin_tools(lar_scene *scene) {
     double edge = longest_edge(model), room = edge / 6 * sqrt(0.5);
     lar_status status = LAR_OK;
     for (int i = 0; !status && i < model->tool_count; i++)
-        if (model->tool[i].radius < room)
+        if (model->tool[i].shape != LAR_TOOL_RIGID && model->tool[i].radius < room)
             status = lar_model_notice(
                 model, scene->error,
                 "%s: the tool \"%s\" has a radius of %.3g m, and the surface has edges of up to "

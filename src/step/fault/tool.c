@@ -121,6 +121,18 @@ static double holding_distance(const lar_domain *domain, const lar_tools *tools,
     return nearest;
 }
 
+/* Of a tool that moves nodes: from the nearest of them. */
+static double moving_distance(const lar_model *model, int32_t tool, const double rest[3]) {
+    double nearest = INFINITY, way[3];
+    for (int i = 0; i < model->move_count; i++)
+        for (int32_t k = 0; model->move[i].tool == tool + 1 && k < model->move[i].nodes.count;
+             k++) {
+            lar_minus(model->mesh.position[model->move[i].nodes.node[k]], rest, way);
+            nearest = fmin(nearest, lar_length(way));
+        }
+    return nearest;
+}
+
 /* How far the nearest node with a force of an entry is, in edges; *node says which. */
 static double push_distance(const lar_domain *domain, const lar_force_entry *entry,
                             const fault_spot *spot, lar_gid *node) {
@@ -199,7 +211,10 @@ void lar_fault_attribute(const lar_domain *domain, const lar_tools *tools, lar_f
             continue;
         lar_tool_at(&tools->motion[t], fault->step, domain->time_step, &pose, velocity);
         double holding = holding_distance(domain, tools, t, spot.rest), touching = INFINITY;
-        if (tool->shape != LAR_TOOL_HAND) touching = touching_distance(tool, &pose, fault->place);
+        if (tool->shape == LAR_TOOL_RIGID)
+            touching = moving_distance(domain->model, t, spot.rest);
+        else if (tool->shape != LAR_TOOL_HAND)
+            touching = touching_distance(tool, &pose, fault->place);
         if (!(fmin(holding, touching) < force)) continue;
         holding /= PULLING * spot.edge;
         touching /= (moving ? MOVING : TOUCHING) * spot.edge;

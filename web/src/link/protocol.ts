@@ -8,7 +8,7 @@ export interface Pose {
 
 export interface ToolInfo {
     name: string;
-    shape: 'sphere' | 'capsule' | 'grasper' | 'hand' | 'none'; // none: a place for one that is added
+    shape: 'sphere' | 'capsule' | 'grasper' | 'hand' | 'none' | 'rigid'; // rigid: moves nodes; none: a place for one that is added
     radius: number;
     length: number;
     spread: number;

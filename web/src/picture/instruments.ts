@@ -123,6 +123,9 @@ function draw(info: ToolInfo): DrawnTool {
         add(rod(info.radius * 0.28, info.radius * 0.9, info.radius * 14));
         shade(0, 0, info.radius);
         shade(info.radius * 0.9, info.radius * 14, info.radius * 0.28);
+    } else if (info.shape === 'rigid') {
+        // A mark where it is: what it moves is seen as it is.
+        add(new THREE.SphereGeometry(info.radius / 2, 24, 18));
     } else if (info.shape === 'capsule') {
         add(round(info.radius, info.length)).position.z = info.length / 2;
         shade(0, info.length, info.radius);

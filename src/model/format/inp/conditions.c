@@ -285,7 +285,8 @@ static lar_status add_move(inp_deck *deck, int axis, const inp_prescribed *value
         free(list);
         return inp_no_memory(deck, "the supports");
     }
-    *move = (lar_move){{0, list}, 1u << axis, value->by, value->curve, 0, NULL};
+    *move =
+        (lar_move){.nodes = {0, list}, .axes = 1u << axis, .by = value->by, .curve = value->curve};
     return LAR_OK;
 }
 
