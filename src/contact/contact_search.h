@@ -75,6 +75,11 @@ lar_status lar_contact_tree_create(const lar_model *model, const double *mass, c
                                    lar_contact_tree *tree, lar_error *error);
 void lar_contact_tree_clear(lar_contact_tree *tree); /* idempotent */
 
+/* For that: LAR_ERROR_MODEL where a node of the surface lies inside another body that may touch it,
+ * deeper than the list of a search at rest tells. */
+lar_status lar_contact_refuse_inside(const lar_model *model, const lar_contact_surface *surface,
+                                     const lar_contact_list *list, lar_error *error);
+
 /* `tree`, which has nodes, outlives it. */
 lar_status lar_contact_search_create(const lar_contact_tree *tree, lar_contact_search *search,
                                      lar_error *error);

@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "base/text.h"
+#include "base/vector.h"
 #include "step/measure.h"
 
 static lar_status fail_to(const lar_probe_file *file, const char *verb, int cause,
@@ -30,7 +31,7 @@ static void print_name(FILE *line, const char *name, const char *what, const cha
     if (quote) fputc('"', line);
 }
 
-enum { COLUMNS = 7 }; /* of one probe, at most */
+enum { COLUMNS = 9 }; /* of one probe, at most */
 
 /* What a mean is of; nothing where the probe's name says so already, as one that is made does. */
 static const char *field_of(const lar_probe *probe) {
@@ -40,7 +41,8 @@ static const char *field_of(const lar_probe *probe) {
 }
 
 /* Returns their number; `what` and `unit` of column k. */
-static int column_of(const lar_probe *probe, int k, char what[32], const char **unit) {
+static int column_of(const lar_model *model, const lar_probe *probe, int k, char what[32],
+                     const char **unit) {
     static const char *const axis[] = {"x", "y", "z"};
     static const char *const component[] = {"xx", "yy", "zz", "xy", "yz", "zx"};
     static const char *const energy[] = {"kinetic", "strain",  "hourglass", "external",
@@ -54,9 +56,9 @@ static int column_of(const lar_probe *probe, int k, char what[32], const char **
         *unit = mean->unit;
         return mean->components;
     case LAR_PROBE_TOOL:
-        snprintf(what, 32, "%s%s", k < 3 ? "" : "force ", axis[k % 3]);
-        *unit = k < 3 ? "m" : "N";
-        return 6;
+        snprintf(what, 32, "%s%s", k < 3 ? "" : k < 6 ? "force " : "torque ", axis[k % 3]);
+        *unit = k < 3 ? "m" : k < 6 ? "N" : "N m";
+        return model->tool[probe->tool].shape == LAR_TOOL_RIGID ? 9 : 6;
     case LAR_PROBE_ENERGY:
         snprintf(what, 32, "%s", energy[k]);
         *unit = "J";
@@ -75,7 +77,7 @@ static void print_header(FILE *line, const lar_model *model) {
         for (int k = 0, count = 1; k < count; k++) {
             char what[32];
             const char *unit;
-            count = column_of(probe, k, what, &unit);
+            count = column_of(model, probe, k, what, &unit);
             fputc(',', line);
             print_name(line, probe->name ? probe->name : "probe", what, unit);
         }
@@ -111,32 +113,47 @@ static void mean_field(const lar_simulation *simulation, const lar_probe *probe,
     for (int k = 0; k < 6; k++) mean[k] = sum[k] / volume;
 }
 
-/* What a cause does to some nodes, all of them where `nodes` is NULL, is added to the sum. */
-static lar_status add_forces(const lar_simulation *simulation, lar_cause cause, int tool,
+static lar_status forces_of(const lar_simulation *simulation, lar_cause cause, int tool,
+                            double (*force)[3], lar_error *error) {
+    return lar_measure_nodal_forces(&simulation->domain, &simulation->scratch->measure,
+                                    &simulation->state, cause, tool, force, error);
+}
+
+/* What a cause does to some nodes is added to the sum. */
+static lar_status add_forces(const lar_simulation *simulation, lar_cause cause,
                              const lar_node_list *nodes, double sum[3], lar_error *error) {
     const lar_gid count = simulation->domain.model->mesh.node_count;
     double(*force)[3] = lar_calloc((size_t)count, sizeof *force);
     if (!force)
         return lar_fail_memory(error, (size_t)count * sizeof *force, "the forces of a probe");
-    lar_status status = lar_measure_nodal_forces(&simulation->domain, &simulation->scratch->measure,
-                                                 &simulation->state, cause, tool, force, error);
-    for (lar_gid i = 0; !status && i < (nodes ? nodes->count : count); i++)
-        for (int axis = 0; axis < 3; axis++) sum[axis] += force[nodes ? nodes->node[i] : i][axis];
+    lar_status status = forces_of(simulation, cause, 0, force, error);
+    for (int32_t i = 0; !status && i < nodes->count; i++)
+        for (int axis = 0; axis < 3; axis++) sum[axis] += force[nodes->node[i]][axis];
     free(force);
     return status;
 }
 
-/* Where a tool is, and the force that tissue begins the next step with on it. */
-static lar_status measure_tool(const lar_simulation *simulation, int tool, double value[6],
+/* Where a tool is, and the force and torque that tissue begins the next step with on it. */
+static lar_status measure_tool(const lar_simulation *simulation, int tool, double value[9],
                                lar_error *error) {
+    const lar_mesh *mesh = &simulation->domain.model->mesh;
     lar_tool_pose pose;
-    double on_tissue[3] = {0};
+    double(*force)[3] = lar_calloc((size_t)mesh->node_count, sizeof *force);
+    if (!force)
+        return lar_fail_memory(error, (size_t)mesh->node_count * sizeof *force,
+                               "the forces of a probe");
     lar_status status = lar_simulation_tool_pose(simulation, tool, &pose, error);
-    if (!status) status = add_forces(simulation, LAR_CAUSE_TOOL, tool, NULL, on_tissue, error);
-    for (int axis = 0; !status && axis < 3; axis++) {
-        value[axis] = pose.position[axis];
-        value[3 + axis] = 0 - on_tissue[axis]; /* no -0 */
+    if (!status) status = forces_of(simulation, LAR_CAUSE_TOOL, tool, force, error);
+    for (int axis = 0; !status && axis < 3; axis++) value[axis] = pose.position[axis];
+    for (lar_gid n = 0; n < mesh->node_count && !status; n++) {
+        double arm[3], turn[3];
+        lar_state_displacement(&simulation->state, simulation->domain.layout.local[n], arm);
+        for (int i = 0; i < 3; i++) arm[i] += mesh->position[n][i] - pose.position[i];
+        lar_cross(arm, force[n], turn);
+        for (int i = 0; i < 3; i++) value[3 + i] -= force[n][i];
+        for (int i = 0; i < 3; i++) value[6 + i] -= turn[i];
     }
+    free(force);
     return status;
 }
 
@@ -158,9 +175,9 @@ static lar_status measure(const lar_simulation *simulation, const lar_probe *pro
                                     &simulation->state, &probe->nodes,
                                     simulation->domain.model->by_material_time, value, error);
     case LAR_PROBE_CONTACT:
-        status = add_forces(simulation, LAR_CAUSE_BODIES, 0, &probe->nodes, value, error);
+        status = add_forces(simulation, LAR_CAUSE_BODIES, &probe->nodes, value, error);
         return status ? status
-                      : add_forces(simulation, LAR_CAUSE_PLANES, 0, &probe->nodes, value, error);
+                      : add_forces(simulation, LAR_CAUSE_PLANES, &probe->nodes, value, error);
     case LAR_PROBE_TOOL:
         return measure_tool(simulation, probe->tool, value, error);
     case LAR_PROBE_MEAN:
@@ -185,7 +202,7 @@ static lar_status print_values(FILE *line, const lar_simulation *simulation, lar
         if (status) return status;
         char what[32];
         const char *unit;
-        const int count = column_of(probe, 0, what, &unit);
+        const int count = column_of(simulation->domain.model, probe, 0, what, &unit);
         for (int k = 0; k < count; k++) fprintf(line, ",%.17g", value[k]);
     }
     fputc('\n', line);

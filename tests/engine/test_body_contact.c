@@ -164,6 +164,28 @@ static void bodies_in_each_other_are_refused(void **unused) {
     }
 }
 
+/* Deeper than an element no face is near; and wholly inside. */
+static void bodies_deep_in_each_other_are_refused(void **unused) {
+    (void)unused;
+    static const brick large = {{4, 4, 4}, 0.01, 0, LAR_LAW_neo_hookean, 2e4, 4e5, 1000};
+    static const brick small = {{2, 2, 3}, 0.006, 0, LAR_LAW_neo_hookean, 2e4, 4e5, 1000};
+    static const double height[] = {0.041, 0.0401, 0.025, 0.011}; /* of the small one's base */
+    for (int i = 0; i < 4; i++) {
+        lar_model *model = empty_model(&large);
+        lar_simulation *s = NULL;
+        lar_error error = {0};
+        add_brick(model, &large, (double[]){0, 0, 0});
+        add_brick(model, &small, (double[]){0.014, 0.014, height[i]});
+        touch_self(model);
+        assert_int_equal(lar_model_check(model, &error), LAR_OK);
+        assert_int_equal(lar_simulation_create(model, NULL, &s, &error),
+                         i < 2 ? LAR_OK : LAR_ERROR_MODEL);
+        if (i >= 2) assert_non_null(strstr(error.message, "inside another body"));
+        lar_simulation_destroy(s);
+        lar_model_destroy(model);
+    }
+}
+
 /* Whatever comes after it: a node that has left the range of numbers is not forgotten. */
 static void what_is_no_number_is_the_most(void **unused) {
     (void)unused;
@@ -521,6 +543,7 @@ int main(void) {
         cmocka_unit_test(forces_come_in_pairs),
         cmocka_unit_test(a_body_given_twice_is_refused),
         cmocka_unit_test(bodies_in_each_other_are_refused),
+        cmocka_unit_test(bodies_deep_in_each_other_are_refused),
         cmocka_unit_test(flat_bodies_in_each_other_are_refused),
         cmocka_unit_test(what_is_no_number_is_the_most),
         cmocka_unit_test(a_collision_adds_no_energy),

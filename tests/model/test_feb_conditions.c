@@ -399,6 +399,8 @@ static void test_contact_that_is_refused(void **state) {
 #define SLIDES                                                                                     \
     "<rigid_bc type=\"rigid_displacement\"><rb>8</rb><dof>x</dof><value "                          \
     "lc=\"1\">0.1</value></rigid_bc>"
+#define AT_ONCE                                                                                    \
+    "<rigid_bc type=\"rigid_displacement\"><rb>8</rb><dof>x</dof><value>0.1</value></rigid_bc>"
 #define TURNS(way)                                                                                 \
     "<rigid_bc type=\"rigid_rotation\"><rb>stone</rb><dof>" way "</dof><value lc=\"1\">0.5"        \
     "</value></rigid_bc>"
@@ -421,6 +423,11 @@ static void test_rigid_bodies(void **state) {
     assert_int_equal(notices_with(model, "moves as prescribed"), 1);
     assert_true(lar_material_shear(&model->material[1]) == lar_material_shear(&model->material[0]));
     assert_true(model->material[1].density == 100 * model->material[0].density);
+    lar_model_destroy(model);
+    /* without a load curve within the first time step */
+    model = read_deck(RIGID(HELD("<Ru_dof>1</Ru_dof>") AT_ONCE));
+    const lar_curve *curve = &model->curve[model->move[0].screw[0].curve];
+    assert_true(lar_curve_value(curve, 0) == 0 && lar_curve_value(curve, 0.1) == 1);
     lar_model_destroy(model);
     model = read_deck(RIGID(HELD("<Rx_dof>1</Rx_dof><Ru_dof>1</Ru_dof>")));
     assert_true(model->move_count == 0 && model->fix_count == 1);

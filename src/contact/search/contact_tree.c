@@ -277,6 +277,7 @@ static lar_status keep_shape(const lar_model *model, lar_contact_search *search,
             LAR_PAIRS_PER_NODE, LAR_PAIRS_PER_NODE / 8);
     lar_status status = refuse_overlap(model, search, error);
     if (!status) status = refuse_twice(model, search, error);
+    if (!status) status = lar_contact_refuse_inside(model, s, list, error);
     if (status) return status;
     measure_clearance(s, list, lar_overlap_rounding(&model->mesh));
     status = lar_flush_find(s, list, lar_overlap_rounding(&model->mesh), error);

@@ -26,6 +26,7 @@ static lar_status read_duration(lar_feb *feb, const xmlNode *control) {
                             "time_steps %g times step_size %g is no duration; make both positive",
                             count, seconds);
     feb->model->duration = duration;
+    feb->first_step = seconds;
     return LAR_OK;
 }
 

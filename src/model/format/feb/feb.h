@@ -62,6 +62,7 @@ typedef struct lar_feb {
     lar_mesh *mesh;
     lar_model *model;   /* NULL when only the mesh is wanted */
     bool is_static;     /* the analysis */
+    double first_step;  /* time step of the deck, 0: it says none [s] */
     bool weightless;    /* the answer does not depend on density: static, no body load */
     int constant_curve; /* the curve that is 1 for ever, -1 until wanted */
 

@@ -13,6 +13,7 @@
  */
 #include "model/format/feb/feb.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -116,6 +117,20 @@ static lar_status read_fixed_list(lar_feb *feb, const xmlNode *at, lar_feb_body 
     return status ? status : lar_feb_notice_others(feb, at, "rb dofs");
 }
 
+/* What jumps within a contact is thrown. FEBio has it at the end of the first step, and of a static
+ * deck only the end counts. */
+static lar_status move_slowly(lar_feb *feb, const xmlNode *value, int *curve) {
+    static const double PART = 0.05; /* of the deck's time, at least */
+    const int index = feb->model->curve_count;
+    if (!feb->is_static || !value || lar_feb_attribute(feb, value, "lc")) return LAR_OK;
+    lar_curve *ramp = LAR_MODEL_APPEND(feb->model, curve);
+    if (!ramp) return lar_feb_no_memory(feb, "a curve");
+    *ramp = (lar_curve){.kind = LAR_CURVE_RAMP,
+                        .over = fmax(feb->first_step, PART * feb->model->duration)};
+    *curve = index;
+    return LAR_OK;
+}
+
 static lar_status read_prescribed(lar_feb *feb, const xmlNode *at, lar_feb_body *body) {
     const xmlNode *dof, *value = lar_feb_child(at, "value");
     double by = 0;
@@ -125,6 +140,7 @@ static lar_status read_prescribed(lar_feb *feb, const xmlNode *at, lar_feb_body 
     if (!status) status = lar_feb_scaled(feb, at, "value", &by, 1, &curve);
     if (!status) status = lar_feb_check_flags(feb, at);
     if (!status) status = lar_feb_notice_others(feb, at, "rb dof value scale relative");
+    if (!status) status = move_slowly(feb, value, &curve);
     if (!status) status = lar_feb_notice_at_once(feb, value ? value : at, by, curve);
     return status ? status : set_way(feb, at, body, way, by, curve);
 }
@@ -173,6 +189,7 @@ lar_status lar_feb_read_rigid_body(lar_feb *feb, const xmlNode *node) {
         if (!status && lar_feb_is(at, "prescribed")) {
             status = lar_feb_curve_of(feb, at, &curve);
             if (!status) status = lar_feb_doubles(feb, at, &by, 1);
+            if (!status) status = move_slowly(feb, at, &curve);
             if (!status) status = lar_feb_notice_at_once(feb, at, by, curve);
         }
         if (!status) status = set_way(feb, at, body, way, by, curve);
@@ -321,6 +338,7 @@ lar_status lar_feb_fill_rigid(lar_feb *feb) {
     return LAR_OK;
 }
 
+/* Softer they cannot be made instead: what is followed to rest waits for the slowest waves. */
 lar_status lar_feb_weigh_rigid(lar_feb *feb) {
     enum { HEAVIER = 100 };
     lar_status status = LAR_OK;
@@ -329,8 +347,11 @@ lar_status lar_feb_weigh_rigid(lar_feb *feb) {
         feb->model->material[feb->material[i].index].density *= HEAVIER;
         status = lar_feb_notice(feb, feb->material[i].node,
                                 "the rigid body '%.60s' moves as prescribed; its elements are "
-                                "never strained, and count as %d times as heavy as others",
-                                feb->material[i].name, HEAVIER);
+                                "never strained, and count as %d times as heavy as others%s",
+                                feb->material[i].name, HEAVIER,
+                                feb->weightless || !feb->is_static
+                                    ? ""
+                                    : ", also for body loads: reactions there hold that weight");
     }
     return status;
 }
