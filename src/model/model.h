@@ -159,7 +159,8 @@ enum { /* beside the bits of lar_field */
        LAR_OUTPUT_STRETCH = 128,
        LAR_OUTPUT_STRESS = 256,
        LAR_OUTPUT_STRAIN = 512,
-       LAR_OUTPUT_VOLUME = 1024
+       LAR_OUTPUT_VOLUME = 1024,
+       LAR_OUTPUT_CONTACT = 2048
 };
 
 typedef struct lar_output {

@@ -21,6 +21,7 @@ struct lar_results {
     lar_series series;
     lar_surface_results surface;
     double (*displacement)[3], (*velocity)[3]; /* NULL when not asked for */
+    double (*traction)[3], *contact_pressure;  /* the same, both */
     double *cell[LAR_CELL_FIELDS];             /* the same */
     int families;                              /* of fibres that are written */
     double (*fibre[2])[3], *stretch[2];        /* along what they run now, and how long: or NULL */
@@ -89,6 +90,11 @@ static lar_status prepare_arrays(lar_results *results, const lar_model *model, l
     if (fields & LAR_FIELD_VELOCITY) {
         results->velocity = lar_calloc(nodes, sizeof *results->velocity);
         complete = complete && results->velocity;
+    }
+    if (fields & LAR_OUTPUT_CONTACT) {
+        results->traction = lar_calloc(nodes, sizeof *results->traction);
+        results->contact_pressure = lar_calloc(nodes, sizeof *results->contact_pressure);
+        complete = complete && results->traction && results->contact_pressure;
     }
     for (int i = 0; i < LAR_CELL_FIELDS; i++)
         if (fields & lar_cell_field_table[i].bit) {
@@ -202,6 +208,8 @@ lar_status lar_results_close(lar_results *results, lar_error *error) {
     lar_series_clear(&results->series);
     free(results->displacement);
     free(results->velocity);
+    free(results->traction);
+    free(results->contact_pressure);
     let_go(results);
     free(results);
     return status;
@@ -262,7 +270,7 @@ static lar_status write_frame(lar_results *results, const lar_simulation *simula
                               const char *path, lar_error *error) {
     static const char *const fibre_name[] = {"fibre_now", "fibre2_now"};
     static const char *const stretch_name[] = {"fibre_stretch", "fibre2_stretch"};
-    lar_vtu_array point[2], cell[LAR_CELL_FIELDS + 4];
+    lar_vtu_array point[4], cell[LAR_CELL_FIELDS + 4];
     lar_vtu_frame frame = {.mesh = &simulation->domain.model->mesh,
                            .point_array = point,
                            .cell_array = cell,
@@ -275,6 +283,15 @@ static lar_status write_frame(lar_results *results, const lar_simulation *simula
     if (results->velocity) {
         lar_simulation_velocities(simulation, results->velocity);
         point[frame.point_array_count++] = (lar_vtu_array){"velocity", 3, &results->velocity[0][0]};
+    }
+    if (results->traction) {
+        lar_status status = lar_simulation_tractions(simulation, results->traction,
+                                                     results->contact_pressure, error);
+        if (status) return status;
+        point[frame.point_array_count++] =
+            (lar_vtu_array){"contact_traction", 3, &results->traction[0][0]};
+        point[frame.point_array_count++] =
+            (lar_vtu_array){"contact_pressure", 1, results->contact_pressure};
     }
     measure_cells(results, simulation);
     for (int i = 0; i < LAR_CELL_FIELDS; i++)

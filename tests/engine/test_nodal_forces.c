@@ -324,10 +324,37 @@ static void the_same_on_every_grid(void **unused) {
     lar_model_destroy(model);
 }
 
+/* ---- per area ------------------------------------------------------------------------------- */
+
+/* What stands on a plane presses on all of its base alike, up to the rim; no face looks aside. */
+static void a_block_presses_alike(void **unused) {
+    (void)unused;
+    const brick b = {{3, 4, 5}, 0.01, 0, LAR_LAW_neo_hookean, 2e5, 4e5 / 3, 1000}; /* nu = 0 */
+    lar_model *model = brick_model(&b);
+    model->gravity[2] = -9.81;
+    model->damping = 200;
+    add_plane(model, (double[]){0, 0, 0}, (double[]){0, 0, 1});
+    lar_simulation *simulation = start(model);
+    vectors traction = new_vectors(model);
+    double *pressure = lar_calloc((size_t)model->mesh.node_count, sizeof *pressure);
+    lar_error error;
+    advance(simulation, 20000);
+    assert_int_equal(lar_simulation_tractions(simulation, traction, pressure, &error), LAR_OK);
+    for (int32_t n = 0; n < model->mesh.node_count; n++) {
+        const double want = n < 4 * 5 ? 1000 * 9.81 * 0.05 : 0;
+        assert_below(fabs(pressure[n] - want), 0.01 * 490);
+        assert_below(fabs(traction[n][2] - pressure[n]), 1e-9 * 490);
+        assert_below(fabs(traction[n][0]) + fabs(traction[n][1]), 1e-9 * 490);
+    }
+    free(pressure);
+    free(traction);
+    finish(simulation, model);
+}
+
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(a_tool_feels_what_nodes_get),
-                                       cmocka_unit_test(all_are_mass_times_acceleration),
-                                       cmocka_unit_test(also_of_bodies_on_planes),
-                                       cmocka_unit_test(the_same_on_every_grid)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_tool_feels_what_nodes_get), cmocka_unit_test(a_block_presses_alike),
+        cmocka_unit_test(all_are_mass_times_acceleration),
+        cmocka_unit_test(also_of_bodies_on_planes), cmocka_unit_test(the_same_on_every_grid)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

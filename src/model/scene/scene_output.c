@@ -6,14 +6,14 @@
 /* ---- fields ------------------------------------------------------------------------------- */
 
 static lar_status read_fields(lar_scene *scene, const lar_yaml *node) {
-    enum { FIELDS = 10 };
+    enum { FIELDS = 11 };
     static const char *const names[FIELDS] = {
-        "displacement", "velocity", "von_mises", "pressure",     "energy",
-        "stress",       "strain",   "fibres",    "volume_ratio", "fibre_stretch"};
+        "displacement", "velocity", "von_mises",    "pressure",      "energy", "stress",
+        "strain",       "fibres",   "volume_ratio", "fibre_stretch", "contact"};
     static const unsigned bits[FIELDS] = {
         LAR_FIELD_DISPLACEMENT, LAR_FIELD_VELOCITY, LAR_FIELD_VON_MISES, LAR_FIELD_PRESSURE,
         LAR_FIELD_ENERGY,       LAR_OUTPUT_STRESS,  LAR_OUTPUT_STRAIN,   LAR_OUTPUT_FIBRES,
-        LAR_OUTPUT_VOLUME,      LAR_OUTPUT_STRETCH};
+        LAR_OUTPUT_VOLUME,      LAR_OUTPUT_STRETCH, LAR_OUTPUT_CONTACT};
     lar_status status = lar_scene_list(scene, node, "fields");
     if (status) return status;
     unsigned fields = 0;
