@@ -822,6 +822,13 @@ typedef enum lar_cause {
  * Changes nothing; takes as long as some steps, on processor 0. */
 LAR_API lar_status lar_simulation_nodal_forces(const lar_simulation *simulation, lar_cause cause,
                                                int32_t tool, double (*force)[3], lar_error *error);
+/* What bodies, planes and tools push the nodes of the surface with, per area around a node as it is
+ * now, on faces that look against the force (within some 70 degrees): as a vector, with friction,
+ * [nodes][3], and along the surface's normal there, [nodes], positive inwards [Pa]; 0 where nothing
+ * touches. Either may be NULL. Forces are those of lar_simulation_nodal_forces; takes as long. */
+LAR_API lar_status lar_simulation_contact_pressure(const lar_simulation *simulation,
+                                                   double (*traction)[3], double *pressure,
+                                                   lar_error *error);
 
 /* What all elements store at u, and what their hourglass control does [J]. u and threads as above.
  * Not finite when an element is inside out. */

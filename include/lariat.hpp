@@ -428,6 +428,18 @@ class Simulation : public detail::Handle<lar_simulation, lar_simulation_destroy>
                      reinterpret_cast<double(*)[3]>(force.data()));
         return force;
     }
+    /* What touches nodes, per area [Pa], and as a vector; see lariat.h. */
+    std::vector<double> contact_pressure() const {
+        std::vector<double> pressure(nodes());
+        detail::call(lar_simulation_contact_pressure, get(), nullptr, pressure.data());
+        return pressure;
+    }
+    std::vector<Vec3> contact_traction() const {
+        std::vector<Vec3> traction(nodes());
+        detail::call(lar_simulation_contact_pressure, get(),
+                     reinterpret_cast<double(*)[3]>(traction.data()), nullptr);
+        return traction;
+    }
     void stored_energy(const Vec3 *u, double &strain, double &hourglass) const {
         detail::call(lar_simulation_stored_energy, get(), detail::raw(u), &strain, &hourglass);
     }

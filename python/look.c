@@ -303,6 +303,31 @@ static PyObject *nodal_forces(PyObject *me, PyObject *args, PyObject *keywords) 
     return python_target_close(&target, status != LAR_OK);
 }
 
+static PyObject *contact_pressure(PyObject *me, PyObject *args, PyObject *keywords) {
+    static char *names[] = {"out", "traction", NULL};
+    python_simulation *self = (python_simulation *)me;
+    PyObject *out = NULL;
+    int traction = 0;
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, "|O$p:contact_pressure", names, &out,
+                                     &traction))
+        return NULL;
+    if (!python_simulation_look(self, "contact_pressure")) return NULL;
+    python_target target;
+    if (!python_target_open(out, 'd', lar_model_node_count(self->model->model), traction ? 3 : 0,
+                            &target))
+        return NULL;
+    lar_simulation *simulation = python_simulation_take(self, "contact_pressure");
+    if (!simulation) return python_target_close(&target, true);
+    lar_error error;
+    lar_status status;
+    PYTHON_UNLOCKED(status =
+                        lar_simulation_contact_pressure(simulation, traction ? target.data : NULL,
+                                                        traction ? NULL : target.data, &error));
+    python_simulation_give(self);
+    if (status) python_raise(&error);
+    return python_target_close(&target, status != LAR_OK);
+}
+
 #define FUNCTION(f) ((PyCFunction)(void (*)(void))(f))
 #define OUT_DOC                                                                                    \
     " float64 [elements, 6] as xx, yy, zz, xy, yz, zx: components of tensors, shear without a "    \
@@ -332,6 +357,11 @@ PyMethodDef python_look_methods[] = {
      "feels in that step, to the last bit where the step is not divided and the tool is not "
      "limited (a limited one decides anew where it goes when the step begins). Into `out` where "
      "given."},
+    {"contact_pressure", FUNCTION(contact_pressure), METH_VARARGS | METH_KEYWORDS,
+     "contact_pressure($self, out=None, *, traction=False)\n--\n\nWhat other bodies, planes and "
+     "tools push the surface with now, per area [Pa]: float64 [nodes], positive inwards, or with "
+     "`traction` the vector, [nodes, 3], friction included. The area is that around a node of the "
+     "faces that look against the force; 0 where nothing touches. Into `out` where given."},
     {"stresses", FUNCTION(stresses), METH_VARARGS | METH_KEYWORDS,
      "stresses($self, out=None)\n--\n\nMean Cauchy stress of every element now [Pa], viscous and "
      "active stress included," OUT_DOC},

@@ -79,23 +79,36 @@ static void add_areas(const lar_simulation *simulation, const double (*force)[3]
     }
 }
 
-lar_status lar_simulation_tractions(const lar_simulation *simulation, double (*traction)[3],
-                                    double *pressure, lar_error *error) {
+/* The force on each node becomes that per area. */
+static void divide(const lar_simulation *simulation, const double (*normal)[3], const double *area,
+                   double (*force)[3], double *pressure) {
+    for (int32_t n = 0; n < simulation->domain.model->mesh.node_count; n++) {
+        const double length = lar_length(normal[n]);
+        if (pressure)
+            pressure[n] = length > 0 ? 0 - lar_dot(normal[n], force[n]) / (length * area[n]) : 0;
+        for (int i = 0; i < 3; i++) force[n][i] = area[n] > 0 ? force[n][i] / area[n] : 0;
+    }
+}
+
+lar_status lar_simulation_contact_pressure(const lar_simulation *simulation, double (*traction)[3],
+                                           double *pressure, lar_error *error) {
+    lar_status status =
+        lar_simulation_check_zero(simulation, "lar_simulation_contact_pressure", error);
+    if (!status) status = lar_simulation_gather(simulation, error);
+    if (status) return status;
     const size_t nodes = (size_t)simulation->domain.model->mesh.node_count;
-    double(*normal)[3] = lar_calloc(nodes, sizeof *normal);
+    double(*own)[3] = traction ? NULL : lar_calloc(nodes, sizeof *own);
+    double(*force)[3] = traction ? traction : own, (*normal)[3] = lar_calloc(nodes, sizeof *normal);
     double *area = lar_calloc(nodes, sizeof *area);
-    lar_status status = LAR_OK;
-    if (!normal || !area) status = lar_fail_memory(error, 32 * nodes, "contact of a frame");
-    if (!status) status = sum_contact(simulation, traction, normal, error);
+    if (!force || !normal || !area)
+        status = lar_fail_memory(error, 56 * nodes, "the pressure of contact");
+    if (!status) status = sum_contact(simulation, force, normal, error);
     if (!status) {
         memset(normal, 0, nodes * sizeof *normal);
-        add_areas(simulation, (const double(*)[3])traction, normal, area);
+        add_areas(simulation, (const double(*)[3])force, normal, area);
+        divide(simulation, (const double(*)[3])normal, area, force, pressure);
     }
-    for (size_t n = 0; n < nodes && !status; n++) {
-        const double length = lar_length(normal[n]);
-        pressure[n] = length > 0 ? 0 - lar_dot(normal[n], traction[n]) / (length * area[n]) : 0;
-        for (int i = 0; i < 3; i++) traction[n][i] = area[n] > 0 ? traction[n][i] / area[n] : 0;
-    }
+    free(own);
     free(normal);
     free(area);
     return status;

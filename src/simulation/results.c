@@ -285,8 +285,8 @@ static lar_status write_frame(lar_results *results, const lar_simulation *simula
         point[frame.point_array_count++] = (lar_vtu_array){"velocity", 3, &results->velocity[0][0]};
     }
     if (results->traction) {
-        lar_status status = lar_simulation_tractions(simulation, results->traction,
-                                                     results->contact_pressure, error);
+        lar_status status = lar_simulation_contact_pressure(simulation, results->traction,
+                                                            results->contact_pressure, error);
         if (status) return status;
         point[frame.point_array_count++] =
             (lar_vtu_array){"contact_traction", 3, &results->traction[0][0]};

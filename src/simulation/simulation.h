@@ -181,12 +181,6 @@ lar_status lar_simulation_copy(const lar_simulation *simulation, lar_state *stat
 lar_status lar_simulation_go_back(lar_simulation *simulation, const lar_state *state,
                                   const lar_tools *tools, lar_error *error);
 
-/* What bodies, planes and tools push nodes with, per area of the surface as it is now that looks
- * against it: [nodes][3] and, along the surface's normal there, [nodes], positive inwards [Pa]; 0
- * where nothing touches. Of the state on processor 0, as lar_simulation_nodal_forces. */
-lar_status lar_simulation_tractions(const lar_simulation *simulation, double (*traction)[3],
-                                    double *pressure, lar_error *error);
-
 /* lar_simulation_save and lar_simulation_load between advances, without the file: only copying.
  * `path` is for messages; the caller frees the bytes. */
 lar_status lar_simulation_pack(const lar_simulation *simulation, const char *path, lar_bytes *bytes,

@@ -272,6 +272,7 @@ static void tool_calls(void **unused) {
     REFUSED(lar_simulation_nodal_forces(simulation, (lar_cause)99, -1, on_node, &error));
     REFUSED(lar_simulation_nodal_forces(simulation, (lar_cause)-1, -1, on_node, &error));
     REFUSED(lar_simulation_nodal_forces(simulation, LAR_CAUSE_TOOL, 99, on_node, &error));
+    REFUSED(lar_simulation_contact_pressure(NULL, on_node, NULL, &error));
     REFUSED(lar_session_tool_touches(NULL, 0, 1, &touch, &count, &error));
     assert_int_equal(count, -1);
     REFUSED(lar_session_set_gravity(NULL, NULL, &error));

@@ -484,6 +484,14 @@ class Tools(unittest.TestCase):
             self.assertAlmostEqual(sum(touch["weights"]), 1)
             sums = [a + b for a, b in zip(sums, touch["force"])]
         pushed = sim.nodal_forces("tool", "probe")
+        pressure = sim.contact_pressure()
+        traction = sim.contact_pressure(traction=True)
+        touched = [n for n in range(len(pressure)) if pressure[n] > 0]
+        assert touched and len(touched) < len(pressure) / 2
+        for n in range(len(pressure)):
+            force = [pushed[n, i] for i in range(3)]
+            assert (pressure[n] > 0) == (force != [0, 0, 0])
+            assert all((traction[n, i] == 0) == (force[i] == 0) for i in range(3))
         self.assertEqual(pushed.shape, (sim.model.node_count, 3))
         sim.advance(1)
         force = sim.tool_force(0)
