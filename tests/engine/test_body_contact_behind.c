@@ -1,26 +1,34 @@
 /* Who comes behind the faces of another body from the back is not pushed by them: a little block
  * deep inside a large one, farther than contact looks, leaves it as if nothing were there. (Scenes
- * begin outside of each other; a surface that is folded through itself turns its back to who is
- * outside, and that is the same to contact.) */
+ * begin outside of each other, so it is led there at once, and out again; a surface that is folded
+ * through itself turns its back to who is outside, and that is the same to contact.) */
 #include "engine/body_contact_test.h"
 
 static const brick large = {{8, 8, 8}, 0.01, 0, LAR_LAW_neo_hookean, 3e3, 3e4, 1000};
 static const brick little = {{1, 1, 1}, 0.004, 0, LAR_LAW_neo_hookean, 3e3, 3e4, 1000};
-static const double SPEED = 0.5;
+/* By so much it starts below its place at rest, and comes back within so long [m] [s]. */
+static const double DOWN = 0.1, LONG = 0.2;
 
 static lar_model *hidden(int32_t *first) {
+    const double course[][2] = {{0, 1}, {LONG, 0}};
     lar_model *model = empty_model(&large);
     add_brick(model, &large, (double[]){0, 0, 0});
     int32_t split = model->mesh.element_count;
-    *first = add_brick(model, &little, (double[]){0.043, 0.043, 0.05});
+    *first = add_brick(model, &little, (double[]){0.043, 0.043, 0.05 + DOWN});
     touch_between(model, split);
-    throw_nodes(model, *first, model->mesh.node_count, (double[]){0, 0, SPEED});
+    lar_node_list nodes = {0, lar_calloc(8, sizeof *nodes.node)};
+    while (nodes.count < 8) {
+        nodes.node[nodes.count] = *first + nodes.count;
+        nodes.count++;
+    }
+    move_nodes(model, nodes, LAR_AXIS_Z, -DOWN, add_table(model, LAR_CURVE_LINEAR, 2, course));
     return model;
 }
 
 static uint64_t leave(const lar_model *model, int32_t first, const lar_options *options) {
     lar_simulation *s = start_with(model, *options);
     lar_energy energy;
+    advance(s, 1);
     lar_simulation_energy(s, &energy);
     const double before = energy.kinetic;
     while (lar_simulation_time(s) < 0.12) {
