@@ -823,7 +823,7 @@ typedef enum lar_cause {
 LAR_API lar_status lar_simulation_nodal_forces(const lar_simulation *simulation, lar_cause cause,
                                                int32_t tool, double (*force)[3], lar_error *error);
 /* What bodies, planes and tools push the nodes of the surface with, per area around a node as it is
- * now, on faces that look against the force (within some 70 degrees): as a vector, with friction,
+ * now, on faces that look against the force (within 60 degrees): as a vector, with friction,
  * [nodes][3], and along the surface's normal there, [nodes], positive inwards [Pa]; 0 where nothing
  * touches. Either may be NULL. Forces are those of lar_simulation_nodal_forces; takes as long. */
 LAR_API lar_status lar_simulation_contact_pressure(const lar_simulation *simulation,
@@ -1048,6 +1048,12 @@ LAR_SIZED void lar_simulation_contact(const lar_simulation *simulation, lar_cont
 /* From how far on different bodies push each other, before they touch: the most of all that may
  * [m]; 0 where none do, or those that may touch at rest (docs/formats.md, contact). */
 LAR_API double lar_simulation_contact_distance(const lar_simulation *simulation);
+
+/* How many nodes lie inside another body that may touch them, now, where contact does not see them:
+ * they came in past the end of a contact's faces, or from behind. *node (may be NULL): one of them;
+ * -1: none. Takes as long as some steps, on processor 0. */
+LAR_API lar_status lar_simulation_contact_inside(const lar_simulation *simulation, int32_t *count,
+                                                 int32_t *node, lar_error *error);
 
 /* ---- going back, saving, loading ---------------------------------------------------------- */
 

@@ -549,6 +549,12 @@ class Simulation : public detail::Handle<lar_simulation, lar_simulation_destroy>
         lar_simulation_contact(get(), &info);
         return info;
     }
+    /* Nodes that lie inside another body where contact does not see them. */
+    std::int32_t contact_inside() const {
+        std::int32_t count = 0;
+        detail::call(lar_simulation_contact_inside, get(), &count, nullptr);
+        return count;
+    }
     double contact_distance() const { return lar_simulation_contact_distance(get()); }
 
     void reset() { detail::call(lar_simulation_reset, get()); }

@@ -260,7 +260,7 @@ double lar_body_contact_nothing(const lar_body_contact *contact) {
     if (!contact->surface) return 0;
     for (int32_t n = 0; n < contact->surface->node_count; n++)
         mass += contact->surface->node[n].mass;
-    const double depth = 1e-8 * contact->surface->reach;
+    const double depth = fmax(1e-8 * contact->surface->reach, contact->surface->rounding);
     return 0.5 * contact->law.stiffness * mass * depth * depth;
 }
 

@@ -80,6 +80,13 @@ void lar_contact_tree_clear(lar_contact_tree *tree); /* idempotent */
 lar_status lar_contact_refuse_inside(const lar_model *model, const lar_contact_surface *surface,
                                      const lar_contact_list *list, lar_error *error);
 
+/* How many nodes that no contact pushes, `force` being what it does to nodes of the model, and that
+ * no face is near, lie inside another body that may touch them, when the nodes of the model have
+ * moved by u; *node: one of them, of the model; -1: none. */
+lar_status lar_contact_count_inside(const lar_model *model, const lar_contact_tree *tree,
+                                    const double (*u)[3], const double (*force)[3], int32_t *count,
+                                    int32_t *node, lar_error *error);
+
 /* `tree`, which has nodes, outlives it. */
 lar_status lar_contact_search_create(const lar_contact_tree *tree, lar_contact_search *search,
                                      lar_error *error);

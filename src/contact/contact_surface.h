@@ -83,6 +83,7 @@ typedef struct lar_contact_surface {
     int32_t *flush;           /* rest, by bodies: history/flush.h */
     double reach;             /* the least of all bodies [m] */
     double reach_max;         /* the largest [m] */
+    double rounding;          /* so deep bodies may lie in each other at rest [m] */
     uint64_t possible;        /* pairs of a node and a face that belong together, neighbours too */
     double friction[LAR_CONTACT_PASSES_MAX]; /* Coulomb's coefficient of each pass */
     bool rough;                              /* one of them is not 0 */

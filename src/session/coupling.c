@@ -183,6 +183,17 @@ static void put_hand(lar_coupling *c) {
     for (int i = 0; i < 3; i++) c->tool_velocity[i] = c->way[i] = c->spring[i] = c->tissue[i] = 0;
 }
 
+/* What moves nodes goes where it is asked to, as fast as tools go: it has no limit to stay behind,
+ * and a spring between it and the hand would swing with the tissue. */
+static void lead_nodes(lar_coupling *c) {
+    for (int i = 0; i < 3; i++) c->way[i] = c->end.position[i] - c->tool.position[i];
+    shorten(c->way, c->speed * c->seconds);
+    for (int i = 0; i < 3; i++) {
+        c->tool.position[i] += c->way[i];
+        c->tool_velocity[i] = c->spring[i] = 0;
+    }
+}
+
 void lar_coupling_follow(lar_coupling *coupling, const lar_tool_pose *hand,
                          const lar_tool_pose *evenly, lar_tool_pose *tool) {
     move_end(coupling, evenly ? evenly : hand);
@@ -190,7 +201,10 @@ void lar_coupling_follow(lar_coupling *coupling, const lar_tool_pose *hand,
     if (coupling->shape == LAR_TOOL_HAND && coupling->held == 0) {
         put_hand(coupling);
     } else {
-        pull_tool(coupling);
+        if (coupling->shape == LAR_TOOL_RIGID)
+            lead_nodes(coupling);
+        else
+            pull_tool(coupling);
         turn_tool(coupling);
         double max = coupling->squeeze * coupling->seconds;
         double change = hand->opening - coupling->tool.opening;
@@ -267,6 +281,8 @@ static void pay(lar_coupling *c) {
     c->energy = refill(c, c->energy, stored + c->credit);
     /* An overdraft is forgiven to a hand that has not got more than it gave all the same. */
     c->energy = fmax(c->energy, fmin(0, c->paid));
+    /* Without a spring nothing is stored between hand and tissue. */
+    if (c->shape == LAR_TOOL_RIGID) c->energy = c->paid;
     c->held_back[0] = hold_back(c->felt, c->energy, &c->steps, step);
     c->held_back[1] = hold_back(c->turned, c->turn_paid, &c->turns, turn);
 }
@@ -290,7 +306,8 @@ void lar_coupling_feel(lar_coupling *coupling, const lar_tool_force *force, doub
     memcpy(c->tissue, force->force, sizeof c->tissue);
     c->held = force->held;
     double wanted[3], torque[3], max = c->rate * passed;
-    for (int i = 0; i < 3; i++) wanted[i] = -c->spring[i];
+    const bool moves = c->shape == LAR_TOOL_RIGID;
+    for (int i = 0; i < 3; i++) wanted[i] = moves ? force->force[i] : -c->spring[i];
     shorten(wanted, c->feel);
     lar_coupling_approach(c->felt, wanted, max);
     memcpy(torque, force->torque, sizeof torque);

@@ -272,6 +272,8 @@ static void tool_calls(void **unused) {
     REFUSED(lar_simulation_nodal_forces(simulation, (lar_cause)99, -1, on_node, &error));
     REFUSED(lar_simulation_nodal_forces(simulation, (lar_cause)-1, -1, on_node, &error));
     REFUSED(lar_simulation_nodal_forces(simulation, LAR_CAUSE_TOOL, 99, on_node, &error));
+    REFUSED(lar_simulation_contact_inside(NULL, &count, NULL, &error));
+    REFUSED(lar_simulation_contact_inside(simulation, NULL, NULL, &error));
     REFUSED(lar_simulation_contact_pressure(NULL, on_node, NULL, &error));
     REFUSED(lar_session_tool_touches(NULL, 0, 1, &touch, &count, &error));
     assert_int_equal(count, -1);

@@ -160,6 +160,7 @@ static void bodies_in_each_other_are_refused(void **unused) {
     for (int i = 0; i < 3; i++) {
         lar_model *model = two_bricks(&lower_brick, &upper_brick, (1 - i) * 2e-8, false);
         lar_simulation *s = start(model);
+        advance(s, 200); /* what rounding has stored is no energy from nowhere */
         finish(s, model);
     }
 }

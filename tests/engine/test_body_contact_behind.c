@@ -28,7 +28,11 @@ static lar_model *hidden(int32_t *first) {
 static uint64_t leave(const lar_model *model, int32_t first, const lar_options *options) {
     lar_simulation *s = start_with(model, *options);
     lar_energy energy;
+    int32_t inside = 0, node = -1;
+    lar_error error;
     advance(s, 1);
+    if (lar_simulation_contact_inside(s, &inside, &node, &error)) fail_msg("%s", error.message);
+    assert_true(inside == 8 && node >= first);
     lar_simulation_energy(s, &energy);
     const double before = energy.kinetic;
     while (lar_simulation_time(s) < 0.12) {
@@ -40,6 +44,8 @@ static uint64_t leave(const lar_model *model, int32_t first, const lar_options *
     for (int32_t n = first; n < model->mesh.node_count; n++)
         lowest = fmin(lowest, model->mesh.position[n][2] + node_u(s, n)[2]);
     assert_true(lowest > 0.08 + 0.01); /* out, and out of reach */
+    if (lar_simulation_contact_inside(s, &inside, &node, &error)) fail_msg("%s", error.message);
+    assert_true(inside == 0 && node == -1);
     uint64_t hash = lar_simulation_hash(s);
     lar_simulation_destroy(s);
     return hash;

@@ -55,6 +55,32 @@ static void test_hand_never_gets_more_than_it_gave(void **state) {
     assert_true(min >= -LEAK);
 }
 
+/* What moves nodes is where the hand is, however stiff the tissue, and its hand never gets more
+ * than it put in either. */
+static void test_nodes_are_led_exactly(void **state) {
+    (void)state;
+    const lar_tool_info bone = {
+        .name = "bone", .shape = LAR_TOOL_RIGID, .radius = 0.005, .rest = {.orientation = {1}}};
+    double min = 0, most = 0;
+    for (int run = 0; run < 100; run++) {
+        seed = (uint64_t)run + 1;
+        world w = start(&bone, pow(10, 2 + 4 * any()), 0.01);
+        double vx = 0, vz = 0, tx = 0, tz = 0, max = pow(10, -2 + 1.6 * any());
+        w.wall.held = true;
+        for (int i = 0; i < 3000; i++) {
+            if (any() < 0.02) tx = 0.04 * (any() - 0.5), tz = 0.04 * (any() - 0.6);
+            double x = move(w.hand.position[0], &vx, tx, 70, max);
+            tick(&w, x, move(w.hand.position[2], &vz, tz, 70, max));
+            assert_below(fabs(w.tool.position[2] - w.hand.position[2]), 1e-15);
+            min = fmin(min, w.hand_work);
+            most = fmax(most, fabs(w.felt.force[2]));
+        }
+    }
+    printf("least energy of the hand %.3g J\n", min);
+    /* but for what accounts are refilled with in three seconds */
+    assert_true(min >= -couple(&bone, 1, 5).credit - 3 * REFILL && most > 1);
+}
+
 /* A hand that trembles as fast as it is looked at, against a wall or in the air: what a damper of
  * samples would feed, the account stops. */
 static void test_trembling_is_not_fed(void **state) {
@@ -436,6 +462,7 @@ static void test_reset_forgets(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_hand_never_gets_more_than_it_gave),
+        cmocka_unit_test(test_nodes_are_led_exactly),
         cmocka_unit_test(test_trembling_is_not_fed),
         cmocka_unit_test(test_held_force_is_what_is_counted),
         cmocka_unit_test(test_turns_are_counted_too),

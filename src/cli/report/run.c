@@ -109,12 +109,15 @@ static double stored_by_springs(const run_report *report, double deepest) {
 static void write_contact(lar_json *json, const run_report *report) {
     lar_contact_info info;
     lar_simulation_contact(report->simulation, &info);
+    int32_t inside = 0;
+    lar_simulation_contact_inside(report->simulation, &inside, NULL, NULL);
     lar_json_open(json, "contact", '{');
     lar_json_integer(json, "touching", info.touching);
     lar_json_number(json, "deepest", info.deepest);
     lar_json_number(json, "distance", lar_simulation_contact_distance(report->simulation));
     lar_json_number(json, "springs", stored_by_springs(report, info.deepest));
     lar_json_integer(json, "through", (int64_t)info.through);
+    lar_json_integer(json, "inside", inside);
     lar_json_number(json, "way", info.way);
     lar_json_integer(json, "possible", (int64_t)info.possible);
     lar_json_integer(json, "boxed", (int64_t)info.boxed);
@@ -149,6 +152,7 @@ static void write_tools(lar_json *json, const lar_simulation *simulation) {
         lar_json_open(json, NULL, '{');
         lar_json_text(json, "tool", info.name);
         lar_json_vector(json, "force", force.force, 3);
+        lar_json_vector(json, "torque", force.torque, 3);
         lar_json_number(json, "grasp", force.grasp_force);
         lar_json_integer(json, "touching", force.touching);
         lar_json_integer(json, "held", force.held);
@@ -249,6 +253,18 @@ static void print_through(const run_report *report, const lar_contact_info *info
                 two_digits_of(0.25 * step * report->info.shortest_edge / info->way));
 }
 
+/* Bodies lie in each other, and nothing keeps them apart. */
+static void print_inside(const run_report *report, FILE *out) {
+    int32_t count = 0, node = -1;
+    if (lar_simulation_contact_inside(report->simulation, &count, &node, NULL) || count == 0)
+        return;
+    fprintf(out,
+            "%-17sINSIDE: %d nodes lie inside another body, where contact does not see them, such "
+            "as node %lld: they came in past the end of its faces or from behind; let contact have "
+            "all faces of both bodies, a wider one, or smaller steps\n",
+            "", (int)count, (long long)lar_model_node_id(report->model, node));
+}
+
 /* Of a body that is back at its shape, or flies, what is left is a share of nothing. */
 static bool is_nothing(const run_report *report, const lar_energy *energy) {
     static const double NOTHING = 1e-3;
@@ -307,6 +323,7 @@ static void print_contact(const run_report *report, const lar_energy *energy, FI
                 "", 1e3 * distance);
     print_softness(report, energy, info.deepest, out);
     print_through(report, &info, out);
+    print_inside(report, out);
 }
 
 /* A tool's springs are in line with tissue, and where its volume may change they are no harder than

@@ -1,4 +1,6 @@
-/* Bodies that begin so deep in each other that no face is near. */
+/* Bodies that are so deep in each other that contact does not see them: at the start, where they
+ * are refused, and later, where nodes have come in past the end of a contact's faces or from
+ * behind. */
 #include "contact/contact_search.h"
 
 #include <math.h>
@@ -14,9 +16,10 @@
 typedef struct inside {
     const lar_model *model;
     const lar_contact_surface *surface;
-    int32_t *body;    /* [nodes of the model] the first node of its body (lar_mesh_bodies) */
+    const double (*u)[3]; /* [nodes of the model] displacements; NULL: at rest */
+    int32_t *body;        /* [nodes of the model] the first node of its body (lar_mesh_bodies) */
     uint64_t *active; /* [nodes of the model] passes of the faces of the body that begins there */
-    bool *near;       /* [contact nodes] faces of another body are near */
+    bool *near; /* [contact nodes] contact sees them: faces of another body are near, or push */
     int32_t count;
     int32_t *node;                    /* [count] contact nodes that are asked */
     double (*origin)[3], (*along)[3]; /* [count] */
@@ -33,11 +36,12 @@ static void inside_clear(inside *in) {
     free(in->hit);
 }
 
-static lar_status inside_create(const lar_model *model, const lar_contact_surface *s, inside *in,
-                                lar_error *error) {
+static lar_status inside_create(const lar_model *model, const lar_contact_surface *s,
+                                const double (*u)[3], inside *in, lar_error *error) {
     const size_t all = (size_t)model->mesh.node_count, nodes = (size_t)s->node_count;
     *in = (inside){.model = model,
                    .surface = s,
+                   .u = u,
                    .body = lar_calloc(all, sizeof *in->body),
                    .active = lar_calloc(all, sizeof *in->active),
                    .near = lar_calloc(nodes, sizeof *in->near),
@@ -50,57 +54,79 @@ static lar_status inside_create(const lar_model *model, const lar_contact_surfac
     return lar_fail_memory(error, 12 * all + nodes * sizeof *in->hit, "bodies at rest");
 }
 
-/* Whether a face of a group is so near that it has told where the node is. */
-static bool is_near(const lar_contact_surface *s, const lar_contact_list *list,
-                    const lar_contact_group *group) {
+static void place_of(const inside *in, int32_t n, double x[3]) {
+    const double *u = in->u ? in->u[in->surface->node[n].node] : NULL;
+    for (int i = 0; i < 3; i++) x[i] = in->surface->rest[n][i] + (u ? u[i] : 0);
+}
+
+/* Whether a face of a group is so near, in parts of the layer below it, that contact knows where
+ * the node is. */
+static bool is_near(const inside *in, const lar_contact_list *list, const lar_contact_group *group,
+                    double part) {
+    const lar_contact_surface *s = in->surface;
     bool near = false;
+    double x[3];
+    place_of(in, group->node, x);
     for (int32_t i = group->first; i < group->first + group->count && !near; i++) {
         const lar_contact_face *face = &s->face[list->face[i]];
         double corner[4][3];
         lar_face_point point;
-        for (int a = 0; a < 4; a++) memcpy(corner[a], s->rest[face->corner[a]], sizeof corner[a]);
-        lar_face_closest(s->rest[group->node], (const double(*)[3])corner,
-                         LAR_FACE_TIE * face->size, &point);
-        near = point.distance <= lar_contact_reach(s, &s->node[group->node], face);
+        for (int a = 0; a < 4; a++) place_of(in, face->corner[a], corner[a]);
+        lar_face_closest(x, (const double(*)[3])corner, LAR_FACE_TIE * face->size, &point);
+        near = point.distance <= part * lar_contact_reach(s, &s->node[group->node], face);
     }
     return near;
 }
 
 /* Along the sum of the normals of a node's faces. */
-static void find_ways_out(inside *in, const lar_contact_list *list) {
+static void find_ways_out(inside *in) {
     const lar_contact_surface *s = in->surface;
     lar_mesh_bodies(&in->model->mesh, in->body);
     for (int32_t f = 0; f < s->face_count; f++) {
         double corner[4][3], normal[3];
-        for (int a = 0; a < 4; a++)
-            memcpy(corner[a], s->rest[s->face[f].corner[a]], sizeof corner[a]);
+        for (int a = 0; a < 4; a++) place_of(in, s->face[f].corner[a], corner[a]);
         lar_face_normal((const double(*)[3])corner, normal);
         in->active[in->body[s->node[s->face[f].corner[0]].node]] |= s->face[f].active;
         for (int k = 0; k < 12; k++) in->along[s->face[f].corner[k / 3]][k % 3] += normal[k % 3];
     }
+}
+
+static void find_near(inside *in, const lar_contact_list *list, double part) {
+    const lar_contact_surface *s = in->surface;
     for (int32_t g = 0; g < list->group_count; g++) {
         const lar_contact_group *group = &list->group[g];
         if (group->node < s->node_count &&
             s->face[list->face[group->first]].body != s->node[group->node].body &&
-            is_near(s, list, group))
+            is_near(in, list, group, part))
             in->near[group->node] = true;
     }
 }
 
+/* A ray from a node, beginning `off` of the layer below its faces farther along. */
+static void aim(inside *in, int32_t k, double off) {
+    const int32_t n = in->node[k];
+    const double layer = in->surface->body[in->surface->node[n].body].reach[1];
+    place_of(in, n, in->origin[k]);
+    for (int i = 0; i < 3; i++) in->origin[k][i] += off * layer * in->along[k][i];
+}
+
 /* From a little outside, or they would meet their own faces. */
+static const double OFF = 1e-3;
+
+static lar_status cast(inside *in, lar_error *error) {
+    return lar_model_rays(in->model, in->u, in->count, (const double(*)[3])in->origin,
+                          (const double(*)[3])in->along, INFINITY, in->hit, error);
+}
+
 static void choose_nodes(inside *in) {
-    static const double OUTSIDE = 1e-3; /* of what faces a body has below */
     const lar_contact_surface *s = in->surface;
     for (int32_t n = 0; n < s->node_count; n++) {
         double along[3], length = lar_length(in->along[n]);
         if (in->near[n] || !s->node[n].passes || !(length > 0)) continue;
-        for (int i = 0; i < 3; i++) {
-            along[i] = in->along[n][i] / length;
-            in->origin[in->count][i] =
-                s->rest[n][i] + OUTSIDE * s->body[s->node[n].body].reach[1] * along[i];
-        }
+        for (int i = 0; i < 3; i++) along[i] = in->along[n][i] / length;
         memcpy(in->along[in->count], along, sizeof along);
-        in->node[in->count++] = n;
+        in->node[in->count] = n;
+        aim(in, in->count++, OFF);
     }
 }
 
@@ -130,15 +156,62 @@ lar_status lar_contact_refuse_inside(const lar_model *model, const lar_contact_s
                                      const lar_contact_list *list, lar_error *error) {
     inside in;
     if (surface->body_count < 2) return LAR_OK;
-    lar_status status = inside_create(model, surface, &in, error);
+    lar_status status = inside_create(model, surface, NULL, &in, error);
     if (!status) {
-        find_ways_out(&in, list);
+        find_ways_out(&in);
+        find_near(&in, list, 1);
         choose_nodes(&in);
-        status = lar_model_rays(model, NULL, in.count, (const double(*)[3])in.origin,
-                                (const double(*)[3])in.along, INFINITY, in.hit, error);
+        status = cast(&in, error);
     }
     for (int32_t k = 0; k < in.count && !status; k++)
         if (is_inside(&in, k)) status = refuse(&in, k, error);
+    inside_clear(&in);
+    return status;
+}
+
+/* Finds what is near now: faces that hold a node, and those of a search. */
+static lar_status look_around(inside *in, const lar_contact_tree *tree, const double (*force)[3],
+                              lar_error *error) {
+    static const double TOUCHES = 0.2; /* of the layer below a face */
+    const lar_contact_surface *s = &tree->surface;
+    lar_contact_search search;
+    double(*x)[3] = lar_calloc((size_t)s->point_count, sizeof *x);
+    if (!x) return lar_fail_memory(error, 24 * (size_t)s->point_count, "bodies in each other");
+    lar_status status = lar_contact_search_create(tree, &search, error);
+    for (int32_t n = 0; n < s->node_count; n++) {
+        in->near[n] = lar_length(force[s->node[n].node]) > 0;
+        place_of(in, n, x[n]);
+    }
+    for (int32_t p = 0; p < s->point_count - s->node_count; p++)
+        for (int k = 0; k < s->point[p].count; k++)
+            for (int i = 0; i < 3; i++)
+                x[s->node_count + p][i] += s->point[p].weight[k] * x[s->point[p].node[k]][i];
+    if (!status) {
+        if (lar_contact_search_run(&search, (const double(*)[3])x, 0))
+            find_near(in, &search.list, TOUCHES);
+        lar_contact_search_clear(&search);
+    }
+    free(x);
+    return status;
+}
+
+lar_status lar_contact_count_inside(const lar_model *model, const lar_contact_tree *tree,
+                                    const double (*u)[3], const double (*force)[3], int32_t *count,
+                                    int32_t *node, lar_error *error) {
+    const lar_contact_surface *surface = &tree->surface;
+    inside in;
+    *count = 0;
+    *node = -1;
+    if (surface->body_count < 2) return LAR_OK;
+    lar_status status = inside_create(model, surface, u, &in, error);
+    if (!status) status = look_around(&in, tree, force, error);
+    if (!status) {
+        find_ways_out(&in);
+        choose_nodes(&in);
+        status = cast(&in, error);
+    }
+    for (int32_t k = 0; k < in.count && !status; k++)
+        if (is_inside(&in, k) && !(*count)++) *node = surface->node[in.node[k]].node;
     inside_clear(&in);
     return status;
 }

@@ -267,6 +267,7 @@ static lar_status refuse_overlap(const lar_model *model, const lar_contact_searc
 static lar_status keep_shape(const lar_model *model, lar_contact_search *search,
                              lar_contact_surface *s, lar_error *error) {
     const lar_contact_list *list = &search->list;
+    s->rounding = lar_overlap_rounding(&model->mesh);
     if (!lar_contact_search_run(search, (const double(*)[3])s->rest, 0))
         return lar_fail(
             error, LAR_ERROR_MODEL,
