@@ -260,8 +260,8 @@ static void print_inside(const run_report *report, FILE *out) {
         return;
     fprintf(out,
             "%-17sINSIDE: %d nodes lie inside another body, where contact does not see them, such "
-            "as node %lld: they came in past the end of its faces or from behind; let contact have "
-            "all faces of both bodies, a wider one, or smaller steps\n",
+            "as node %lld: they came in past the end of its faces or from behind, and forces are "
+            "too small; let contact have all faces of both bodies, or take smaller steps\n",
             "", (int)count, (long long)lar_model_node_id(report->model, node));
 }
 

@@ -332,7 +332,7 @@ static double longest_edge(const lar_model *model) {
         for (int a = 0; a < 4; a++) {
             const double *p = model->mesh.position[model->surface.corner[f][a]];
             const double *q = model->mesh.position[model->surface.corner[f][(a + 1) % 4]];
-            longest = fmax(longest, hypot(hypot(p[0] - q[0], p[1] - q[1]), p[2] - q[2]));
+            longest = fmax(longest, distance_of(p, q));
         }
     return longest;
 }
