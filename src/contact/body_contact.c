@@ -21,6 +21,8 @@ typedef struct touching {
     bool rubs;         /* there is friction in `fade`, which is of the one face */
     int32_t border;    /* the face through which the node's edge comes; -1: none */
     double pay[4][3];  /* the same of that */
+    int32_t over;      /* the face that it comes past; -1: none */
+    double pass[4][3]; /* the same of that */
 } touching;
 
 /* ---- one node and one face ------------------------------------------------------------------ */
@@ -104,7 +106,7 @@ static void blend(const lar_body_contact *contact, int32_t g, const lar_face_poi
     double fade = fade_at(closest, s), all = 0;
     bool lone = alone(s, closest, fade);
     if (!(fade > 0) || (lone && !others_near(s, fade))) return;
-    touching blended = {.fading = -1, .border = -1};
+    touching blended = {.fading = -1, .border = -1, .over = -1};
     for (int32_t k = 0; k < s->count; k++) {
         int32_t f = contact->list.face[group->first + s->entry[k]];
         double sum[4] = {0}, far = 0;
@@ -272,15 +274,16 @@ static double press(const lar_body_contact *contact, const meeting *m, const spr
  * behind. What is stored on the way is paid at the border. */
 __attribute__((noinline, cold)) static double come_in(const lar_body_contact *contact, int32_t g,
                                                       const lar_survey *s, const meeting *m,
-                                                      const spring two[2], double together,
-                                                      double energy, double force, touching *t) {
+                                                      const spring two[2], double *energy,
+                                                      double together, double force, touching *t) {
     const spring over[2] = {{two[0].mass, two[0].depth - 2 * two[1].depth}};
     meeting back = *m;
     touching there = {0};
     double stored = 0;
     back.rate = -m->rate;
     const double up = press(contact, &back, over, &stored, &there);
-    double part = lar_edge_part(s, together * (energy - stored), t->pay);
+    double part = lar_edge_part(s, together * (*energy - stored), t->pay);
+    *energy = part * *energy + (1 - part) * stored;
     t->border = contact->list.face[contact->list.group[g].first + s->entry[s->border]];
     for (int i = 0; i < 12; i++)
         t->fade[i / 3][i % 3] =
@@ -288,15 +291,24 @@ __attribute__((noinline, cold)) static double come_in(const lar_body_contact *co
     return part * force - (1 - part) * up;
 }
 
-/* Where the node has come in through a face that it does not see, there is nothing on that yet, and
- * what is stored on the way in is paid there. */
+/* Where the node comes past a face that it does not see, and what is stored is paid there, and at
+ * the edge of the face that it does see. */
 __attribute__((noinline, cold)) static double come_past(const lar_body_contact *contact, int32_t g,
-                                                        const lar_survey *s, double energy,
-                                                        double force, touching *t) {
-    double part = lar_edge_part(s, energy, t->pay);
-    t->border = contact->list.face[contact->list.group[g].first + s->entry[s->hidden]];
-    for (int i = 0; i < 12; i++) t->fade[i / 3][i % 3] *= part;
-    return part * force;
+                                                        const lar_survey *s, const meeting *m,
+                                                        const lar_rim *rim, double together,
+                                                        double energy, double force, touching *t) {
+    double part = lar_edge_over(s, together * energy, t->pass), on[4][3] = {{0}};
+    t->over = contact->list.face[contact->list.group[g].first + s->entry[s->hidden]];
+    if (s->hides.rim > 0) {
+        lar_rim_forces(rim, m->closest, s->hides.rim * lar_edge_slope(s, energy), on);
+        if (t->fading < 0) memset(t->fade, 0, sizeof t->fade);
+        t->fading = m->known->face;
+    }
+    for (int i = 0; i < 12; i++) {
+        t->fade[i / 3][i % 3] = part * t->fade[i / 3][i % 3] + on[i / 3][i % 3];
+        t->pay[i / 3][i % 3] *= part;
+    }
+    return part * force + lar_edge_slope(s, energy) * s->hides.lift;
 }
 
 static bool is_beside(const lar_face_point *closest) {
@@ -344,7 +356,7 @@ static bool push(lar_body_contact *contact, const lar_state *state, int32_t g, i
     known_face known = {.face = face};
     lar_contact_place(contact, state, node, x, v);
     lar_contact_corners(contact, state, face, known.x, known.v);
-    *t = (touching){.count = 1, .face = {face}, .fading = -1, .border = -1};
+    *t = (touching){.count = 1, .face = {face}, .fading = -1, .border = -1, .over = -1};
     memcpy(t->weight[0], closest->weight, sizeof closest->weight);
     bool before = !(closest->height < 0), own = lar_same_body(contact, node, face);
     if ((before || !own) && lar_contact_active(&surface->node[node], f))
@@ -370,10 +382,9 @@ static bool push(lar_body_contact *contact, const lar_state *state, int32_t g, i
     double energy = 0, force = press(contact, &m, two, &energy, t);
     if (spent) memset(t->fade, 0, sizeof t->fade);
     if (spent) force = 0;
-    if (s->border >= 0)
-        force = come_in(contact, g, s, &m, two, together, energy, force, t);
-    else if (s->hidden >= 0)
-        force = come_past(contact, g, s, together * energy, force, t);
+    if (s->border >= 0) force = come_in(contact, g, s, &m, two, &energy, together, force, t);
+    if (s->hidden >= 0)
+        force = come_past(contact, g, s, &m, rim, together, energy, force, t);
     else if (past)
         force = slide_off(rim, closest, face, together * energy, force, t);
     t->depth = fmax(depth, 0);
@@ -405,6 +416,15 @@ static bool touches(const lar_body_contact *contact, const lar_state *state, int
     const lar_contact_surface *surface = contact->surface;
     double away = point->distance;
     rim->part = 0;
+    if (s->hidden >= 0 && s->hides.behind <= -s->within) return false;
+    if (s->hidden >= 0 && s->hides.past > 0) {
+        double corner[4][3];
+        lar_face_point as_is = *point;
+        if (s->over) as_is.height = -as_is.height;
+        lar_contact_corners(contact, state, face, corner, NULL);
+        if (!lar_rim_foot(s->x, (const double(*)[3])corner, &as_is, rim)) return false;
+        rim->part = 1;
+    }
     if (s->flush && !lar_flush_is_straight(point)) {
         double corner[4][3];
         lar_contact_corners(contact, state, face, corner, NULL);
@@ -422,6 +442,7 @@ static bool touches(const lar_body_contact *contact, const lar_state *state, int
 
 /* Contact of group g. */
 static bool in_contact(lar_body_contact *contact, const lar_state *state, int32_t g, touching *t) {
+    const lar_contact_surface *surface = contact->surface;
     const lar_contact_group *group = &contact->list.group[g];
     lar_face_point point;
     lar_survey s;
@@ -433,12 +454,18 @@ static bool in_contact(lar_body_contact *contact, const lar_state *state, int32_
         lar_offset_leave(contact, state, group->node, face);
         return false;
     }
-    lar_offset_out(contact, state, g, face < 0 ? s.gap : INFINITY);
+    const bool past = s.before < INFINITY;
+    const double standoff = lar_contact_standoff(surface, &surface->node[group->node],
+                                                 &surface->face[contact->list.face[group->first]]);
+    if (!(s.before < standoff))
+        lar_offset_out(contact, state, g, face < 0 && !past ? s.gap : INFINITY);
     if (s.flush) {
         lar_offset_stay_flush(contact, state, g, face, &point);
     } else if (face >= 0) {
         double clear = lar_offset_meet(contact, state, g, face, &point);
-        if (!(s.gap > -INFINITY)) return false;
+        if (!(s.gap > -INFINITY) || past) return false;
+        /* Past an edge it touches the plane of the face. */
+        if (s.hidden >= 0) clear = fmin(clear, 0.25 * (point.height - standoff));
         clear = 0.999 * fmin(clear, lar_survey_clear(contact, g, &s, &point)) / LAR_APPROACH;
         if (clear > 0)
             contact->due[g] = fmax(contact->due[g], fmin(contact->travel + clear, s.next));
@@ -490,11 +517,11 @@ static void add_to_face(lar_body_contact *contact, const lar_condition_context *
 
 static const double MAX = 0x1p58; /* of a force in force units */
 
-/* What the border pays, in whole units. False: beyond all reason. */
-__attribute__((noinline, cold)) static bool round_pay(const touching *t, double scale,
+/* What a border pays, in whole units. False: beyond all reason. */
+__attribute__((noinline, cold)) static bool round_pay(const double paid[4][3], double scale,
                                                       int64_t pay[4][3], int64_t sum[3]) {
     for (int i = 0; i < 12; i++) {
-        double along = t->pay[i / 3][i % 3] * scale;
+        double along = paid[i / 3][i % 3] * scale;
         if (!(fabs(along) < MAX)) return false;
         pay[i / 3][i % 3] = -llrint(along);
         sum[i % 3] -= pay[i / 3][i % 3];
@@ -507,7 +534,8 @@ __attribute__((noinline, cold)) static bool round_pay(const touching *t, double 
 static void add_forces(lar_body_contact *contact, const lar_condition_context *context,
                        lar_state *state, int32_t node, const touching *t) {
     lar_body_contact_part *part = &contact->part[contact->part_count];
-    int64_t corner[4 * LAR_CONTACT_FACES][3], slope[4][3] = {{0}}, pay[4][3], sum[3] = {0};
+    int64_t corner[4 * LAR_CONTACT_FACES][3], slope[4][3] = {{0}}, pay[4][3], pass[4][3],
+                                              sum[3] = {0};
     for (int i = 0; i < 3; i++) {
         double force = t->force[i] * context->scale;
         /* Beyond all reason: the speeds that make such a force stop the run. */
@@ -524,13 +552,15 @@ static void add_forces(lar_body_contact *contact, const lar_condition_context *c
             sum[i] -= slope[a][i];
         }
     }
-    if (t->border >= 0 && !round_pay(t, context->scale, pay, sum)) return;
+    if (t->border >= 0 && !round_pay(t->pay, context->scale, pay, sum)) return;
+    if (t->over >= 0 && !round_pay(t->pass, context->scale, pass, sum)) return;
     part->count = 0;
     add_to_node(contact, context, state, node, sum, part);
     for (int32_t f = 0; f < t->count; f++)
         add_to_face(contact, context, state, t->face[f], &corner[4 * f], part);
     if (t->fading >= 0) add_to_face(contact, context, state, t->fading, slope, part);
     if (t->border >= 0) add_to_face(contact, context, state, t->border, pay, part);
+    if (t->over >= 0) add_to_face(contact, context, state, t->over, pass, part);
     if (part->count) contact->part_count++;
 }
 
@@ -563,21 +593,4 @@ void lar_body_contact_add(lar_body_contact *contact, const lar_condition_context
         contact->info.touching += own;
         if (own) contact->info.deepest = fmax(contact->info.deepest, t.depth);
     }
-}
-
-void lar_body_contact_half_work(const lar_body_contact *contact,
-                                const lar_condition_context *context, lar_state *state) {
-    double power = 0, exchanged = 0;
-    for (int32_t p = 0; p < contact->part_count; p++) {
-        const lar_body_contact_part *part = &contact->part[p];
-        for (int k = 0; k < part->count; k++) {
-            double of_node = 0;
-            for (int i = 0; i < 3; i++)
-                of_node += part->force[k][i] * state->v[lar_state_at(state, part->node[k], i)];
-            power += of_node;
-            exchanged += fabs(of_node);
-        }
-    }
-    state->contact -= 0.5 * context->mean_step * power;
-    state->exchanged += 0.5 * context->mean_step * exchanged;
 }

@@ -85,7 +85,7 @@ typedef struct lar_contact_view {
 /* Faces of a body that push a node together, at most, and whom they push. */
 enum {
     LAR_CONTACT_FACES = 4,
-    LAR_CONTACT_PARTS = LAR_CONTACT_PARENTS + 4 * (LAR_CONTACT_FACES + 2)
+    LAR_CONTACT_PARTS = LAR_CONTACT_PARENTS + 4 * (LAR_CONTACT_FACES + 3)
 };
 
 /* What this thread adds in the step under way: forces on its local nodes. */
@@ -225,6 +225,18 @@ static inline void lar_contact_corners(const lar_body_contact *contact, const la
  * be farther away and still count. */
 #define LAR_FADE_BEHIND 0.02
 
+/* How a face that a node does not see takes part in what the closest one that it sees does. */
+typedef struct lar_inset {
+    double behind;   /* how far the node is behind it; negative: past the other's edge [m] */
+    double square;   /* how squarely they meet, from 0 to 1 */
+    double past;     /* past the other's edge, in its plane; 0 where they do not meet so [m] */
+    double way[3];   /* from its closest point, in the other's plane [m] */
+    double steep;    /* how much `behind` changes with the length of that, */
+    double straight; /* with the distance, */
+    double rim;      /* with minus `past`, */
+    double lift;     /* and with the depth behind the other */
+} lar_inset;
+
 /* What is known of a group's faces: distances of those that may matter, at least so much. */
 typedef struct lar_survey {
     double x[3];   /* the node [m] */
@@ -243,19 +255,24 @@ typedef struct lar_survey {
     double gap;     /* by which those looked at are out of reach, at most 0 when one is not [m];
                        -INFINITY: the node is behind some that it does not see */
     bool edge;      /* the node is on a sharp edge, and may not see all faces that it is behind */
-    double within;  /* all faces are looked at that are nearer; 0: as `min` says [m] */
+    double within;  /* so far behind a face that it does not see all is as if that were not, and all
+                       that are nearer are looked at; 0: as `min` says [m] */
+    bool touch;     /* it is, and has no contact distance from the body */
     double across;  /* so far an edge that goes on is led over a border; 0: it is not [m] */
     int32_t border; /* the face through which the node's edge comes, of those above; -1: none */
     double lies;    /* how surely the edge lies on another, from 0, where one on which it does not
                        lie is as near, to 1 */
     bool over;      /* the node comes to that, and is pushed as if it were before the face */
-    int32_t hidden; /* the closest of those that it does not see, within that; -1: none */
-    double inset;   /* how far the node is behind the one or the other [m] */
-    bool inside;    /* it is behind one that it does not see: none that it is before counts */
-    bool beyond;    /* it is in another body still, on the other side of a joint */
-    bool joints;    /* closed joints are not in the way */
-    double beside;  /* how far from an edge those are, at least; INFINITY: there are none [m] */
-    double next;    /* travel at which the first of the others may matter [m] */
+    int32_t hidden; /* the one of those that it does not see that it is least far behind, or past
+                       the edge of; within that; -1: none */
+    double inset;   /* how far the node is behind the border [m] */
+    lar_inset hides; /* how that one takes part */
+    double before;   /* it is so far before one that it does not see; INFINITY: none [m] */
+    bool inside;     /* it is behind one that it does not see: none that it is before counts */
+    bool beyond;     /* it is in another body still, on the other side of a joint */
+    bool joints;     /* closed joints are not in the way */
+    double beside;   /* how far from an edge those are, at least; INFINITY: there are none [m] */
+    double next;     /* travel at which the first of the others may matter [m] */
 } lar_survey;
 
 /* The face that counts of group g, and where; -1: none is within reach. Sets when it is due. */
@@ -301,9 +318,10 @@ typedef struct lar_edge_way {
  * out there the node would be pulled from its own body, for the surface of that goes on beyond the
  * face, with both bodies on one side of it. The face is only nearer than the one that is in the
  * way, as where a block slides over the end of what it lies on.
- * *through, if not NULL: where the edge goes. */
-bool lar_looks_away(const lar_body_contact *contact, const lar_state *state, int32_t node,
-                    const double corner[4][3], lar_edge_way *through);
+ * Returns how surely it does, from 0 to 1; -1: it does not. *through, if not NULL: where the edge
+ * goes. */
+double lar_looks_away(const lar_body_contact *contact, const lar_state *state, int32_t node,
+                      const double corner[4][3], lar_edge_way *through);
 
 /* A face that the node of group g, on a sharp edge, is behind may stand against one of a third body
  * that looks the other way: a joint that is closed, with nothing between. Through that nobody comes
@@ -330,10 +348,17 @@ lar_joint lar_joint_of(const lar_body_contact *contact, const lar_state *state, 
 void lar_edge_enters(const lar_body_contact *contact, const lar_state *state, int32_t g,
                      lar_survey *s);
 
-/* The part of a spring that there is so far behind the border, or a face that is not seen, of one
- * that stores `energy` more than on that: none on it, or it would come from nowhere. on[]: the
- * forces on that face's corners by which it is paid; the node gets minus their sum [N]. */
+/* The part of a spring that there is so far behind the border of one that stores `energy` more than
+ * on that: none on it, or it would come from nowhere. on[]: the forces on that face's corners by
+ * which it is paid; the node gets minus their sum [N]. */
 double lar_edge_part(const lar_survey *s, double energy, double on[4][3]);
+
+/* The same about a face that is not seen: all of it s->within behind it, half of it in its plane,
+ * nothing as far before it. What one body's edge gives up there the other's takes over. */
+double lar_edge_over(const lar_survey *s, double energy, double on[4][3]);
+
+/* What that is less by per metre that s->hides.behind is less [N]. */
+double lar_edge_slope(const lar_survey *s, double energy);
 
 /* The node of group g touches no face of that other body, `gap` out of their reach [m] (INFINITY:
  * it is before one): from now on it is pushed like any other. Who is behind faces that look away

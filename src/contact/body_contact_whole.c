@@ -341,3 +341,22 @@ void lar_body_contact_destroy(lar_body_contact *contact) {
     }
     *contact = (lar_body_contact){0};
 }
+
+/* ---- work ------------------------------------------------------------------------------------ */
+
+void lar_body_contact_half_work(const lar_body_contact *contact,
+                                const lar_condition_context *context, lar_state *state) {
+    double power = 0, exchanged = 0;
+    for (int32_t p = 0; p < contact->part_count; p++) {
+        const lar_body_contact_part *part = &contact->part[p];
+        for (int k = 0; k < part->count; k++) {
+            double of_node = 0;
+            for (int i = 0; i < 3; i++)
+                of_node += part->force[k][i] * state->v[lar_state_at(state, part->node[k], i)];
+            power += of_node;
+            exchanged += fabs(of_node);
+        }
+    }
+    state->contact -= 0.5 * context->mean_step * power;
+    state->exchanged += 0.5 * context->mean_step * exchanged;
+}

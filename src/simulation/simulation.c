@@ -382,6 +382,9 @@ static lar_status advance(lar_simulation *simulation, uint64_t end, lar_step_cal
         status = check_contact(simulation, error);
         if (simulation->fault.kind) goes_on = false;
     }
+    /* What is looked at from here on is what the next step begins with. */
+    uint64_t stop = UINT64_MAX;
+    if (!status && goes_on) status = lar_simulation_follow_paths(simulation, &stop, error);
     return status;
 }
 

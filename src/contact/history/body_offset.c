@@ -1,5 +1,6 @@
 /* What nodes remember of lying in a body (body_contact.h, Offsets). */
 #include <math.h>
+#include <string.h>
 
 #include "base/vector.h"
 #include "contact/body_contact.h"
@@ -124,9 +125,9 @@ double lar_offset_meet(lar_body_contact *contact, const lar_state *state, int32_
 
 /* ---- sharp edges ----------------------------------------------------------------------------- */
 
-bool lar_looks_away(const lar_body_contact *contact, const lar_state *state, int32_t node,
-                    const double corner[4][3], lar_edge_way *through) {
-    static const double AGAINST = 0.3, AWAY = -0.7, SURE = 0.1; /* cosines */
+double lar_looks_away(const lar_body_contact *contact, const lar_state *state, int32_t node,
+                      const double corner[4][3], lar_edge_way *through) {
+    static const double AGAINST = 0.3, AWAY = -0.7, SURE = 0.1, CLEAR = 0.15; /* cosines */
     const lar_contact_surface *s = contact->surface;
     const lar_contact_node *at = &s->node[node];
     int32_t parent[LAR_CONTACT_PARENTS];
@@ -148,13 +149,14 @@ bool lar_looks_away(const lar_body_contact *contact, const lar_state *state, int
             edge.sure = lar_ease((fabs(cosine) + AWAY) / SURE);
             continue;
         }
-        if (!through && cosine > AGAINST) return false;
+        if (!through && cosine > AGAINST) return -1;
         least = fmin(least, cosine);
         most = fmax(most, cosine);
     }
     if (least < -AGAINST && !(edge.deeper > 0)) edge.deeper = -1;
     if (through) *through = edge;
-    return least < AWAY && !(most > AGAINST);
+    if (!(least < AWAY) || most > AGAINST) return -1;
+    return lar_ease((AWAY - least) / CLEAR) * lar_ease((AGAINST - most) / CLEAR);
 }
 
 /* How far within a body's edges a point of one of its faces is; INFINITY: it has none [m]. */
@@ -188,7 +190,7 @@ static lar_joint joint_with(const lar_body_contact *contact, const lar_state *st
     lar_contact_corners(contact, state, f, corner, NULL);
     const double reach = lar_contact_reach(contact->surface, &contact->surface->node[node],
                                            &contact->surface->face[f]);
-    if (lar_face_box_distance(x, (const double(*)[3])corner) > fmin(near - height, reach))
+    if (lar_face_box_distance(x, (const double(*)[3])corner) > fmin(near + fabs(height), reach))
         return LAR_JOINT_NONE;
     lar_face_closest(x, (const double(*)[3])corner, LAR_FACE_TIE * size, &point);
     if (!is_straight(&point) || point.distance > reach || fabs(point.height + height) > near)
@@ -256,23 +258,51 @@ void lar_edge_enters(const lar_body_contact *contact, const lar_state *state, in
     s->lies =
         lar_ease((other - least) / (TURNS * (s->within - least))) * on.sure * way[s->border].sure;
     s->min = least;
-    for (int32_t k = 0; k < s->count; k++)
+    for (int32_t k = 0; k < s->count; k++) {
         if (way[k].deeper > 0) s->distance[k] = INFINITY;
+        if (way[k].deeper > 0 && k != s->border) s->point[k].distance = INFINITY;
+    }
     if (s->point[s->border].height < 0) return;
+    s->point[s->border].distance = INFINITY;
     s->border = -1; /* it is before that still */
     s->over = true;
     s->gap = -INFINITY;
 }
 
 double lar_edge_part(const lar_survey *s, double energy, double on[4][3]) {
-    const int32_t k = s->border < 0 ? s->hidden : s->border;
-    const double *weight = s->point[k].weight, part = s->inset / s->within;
-    const double lies = s->border < 0 ? 1 : s->lies;
+    const double *weight = s->point[s->border].weight, part = s->inset / s->within;
     double at[3], pull = 6 * (1 - part) * energy / (s->within * s->within);
-    lar_face_mean((const double(*)[3])s->corner[k], weight, at);
+    lar_face_mean((const double(*)[3])s->corner[s->border], weight, at);
     for (int i = 0; i < 12; i++)
-        on[i / 3][i % 3] = lies * weight[i / 3] * pull * (s->x[i % 3] - at[i % 3]);
-    return 1 - lies * (1 - lar_ease(part));
+        on[i / 3][i % 3] = s->lies * weight[i / 3] * pull * (s->x[i % 3] - at[i % 3]);
+    return 1 - s->lies * (1 - lar_ease(part));
+}
+
+double lar_edge_slope(const lar_survey *s, double energy) {
+    const double part = fmin(fmax(0.5 * (1 + s->hides.behind / s->within), 0), 1);
+    return 3 * part * (1 - part) * energy / s->within;
+}
+
+double lar_edge_over(const lar_survey *s, double energy, double on[4][3]) {
+    const double part = fmin(fmax(0.5 * (1 + s->hides.behind / s->within), 0), 1);
+    const double(*corner)[3] = (const double(*)[3])s->corner[s->hidden];
+    const lar_face_point *point = &s->point[s->hidden];
+    const double length = lar_length(s->hides.way), pull = lar_edge_slope(s, energy);
+    double at[3], up[3], normal[3], shift[4] = {0};
+    const double sign = point->height < 0 ? 1 : -1;
+    const double along = length > 0 ? sign * s->hides.steep * pull / length : 0;
+    const double straight = point->distance > 0 ? s->hides.straight * pull / point->distance : 0;
+    lar_face_mean(corner, point->weight, at);
+    lar_rim_normal(corner, point->triangle, normal);
+    /* Forces in one line have no moment. */
+    for (int i = 0; i < 3; i++) up[i] = s->x[i] - s->hides.way[i] - at[i];
+    const double out = lar_dot(up, normal);
+    for (int i = 0; i < 3; i++) up[i] -= out * normal[i];
+    if (!lar_rim_shift(corner, point->triangle, up, shift)) memset(shift, 0, sizeof shift);
+    for (int i = 0; i < 12; i++)
+        on[i / 3][i % 3] = along * (point->weight[i / 3] + shift[i / 3]) * s->hides.way[i % 3] +
+                           straight * point->weight[i / 3] * (s->x[i % 3] - at[i % 3]);
+    return lar_ease(part);
 }
 
 /* ---- other bodies ---------------------------------------------------------------------------- */
@@ -385,13 +415,13 @@ void lar_offset_stay_flush(lar_body_contact *contact, const lar_state *state, in
  * that is pushed as hardly. */
 static bool comes_from_behind(lar_body_contact *contact, const lar_state *state, int32_t g,
                               int32_t face, const lar_survey *s, double depth, double rate) {
-    static const double HARDLY = 0.15; /* there is 6 % of what pushes there (lar_edge_part) */
+    static const double HARDLY = -0.7; /* there is 6 % of what pushes there (lar_edge_over) */
     const int32_t node = contact->list.group[g].node;
     if (!(depth > deep_of(contact, node, face)) || depth <= contact->time_step * rate ||
         !(state->past > 0))
         return false;
     closest_face before, now;
-    if (s->hidden >= 0 && s->inset < HARDLY * s->within) s = NULL;
+    if (s->hidden >= 0 && s->hides.behind < HARDLY * s->within) s = NULL;
     closest_ago(contact, state, g, s, state->past, &before);
     if (!is_behind(&before, reach_of(contact, node, face))) return true;
     closest_ago(contact, state, g, s, 0, &now);

@@ -209,17 +209,22 @@ bool lar_flush_hides(const lar_contact_surface *s, int32_t node, int32_t face) {
 
 /* ---- past an edge -------------------------------------------------------------------------- */
 
-/* Whether a hidden face has all corners that the closest point is made of. */
+bool lar_rim_has(const lar_contact_surface *s, int32_t face, int32_t other,
+                 const lar_face_point *closest) {
+    static const double ROUNDING = 1e-9;
+    bool has = s->face[face].body == s->face[other].body;
+    for (int a = 0; a < 4 && has; a++)
+        has = !(closest->weight[a] > ROUNDING) ||
+              has_corner(&s->face[face], s->face[other].corner[a]);
+    return has;
+}
+
 static bool is_on_rim(const lar_contact_surface *s, int32_t node, int32_t face,
                       const lar_face_point *closest) {
-    for (int32_t i = s->flush_first[node]; i < s->flush_first[node + 1]; i++) {
-        const lar_contact_face *hidden = &s->face[s->flush[i]];
-        bool has = hidden->body == s->face[face].body;
-        for (int a = 0; a < 4 && has; a++)
-            has = !(closest->weight[a] > 0) || has_corner(hidden, s->face[face].corner[a]);
-        if (has) return true;
-    }
-    return false;
+    bool on = false;
+    for (int32_t i = s->flush_first[node]; i < s->flush_first[node + 1] && !on; i++)
+        on = lar_rim_has(s, s->flush[i], face, closest);
+    return on;
 }
 
 /* From a corner of a triangle of a face to the next one, and to the middle. */
@@ -231,9 +236,9 @@ static void sides_of(const double corner[4][3], int triangle, double one[3], dou
     lar_minus(middle, corner[triangle], two);
 }
 
-/* What has to be added to the weights of a point in the plane of a triangle to move it by `way`. */
-static bool shift_of(const double one[3], const double two[3], int triangle, const double way[3],
-                     double shift[4]) {
+bool lar_rim_shift(const double corner[4][3], int triangle, const double way[3], double shift[4]) {
+    double one[3], two[3];
+    sides_of(corner, triangle, one, two);
     const int next = (triangle + 1) % 4;
     const double a = lar_dot(one, one), b = lar_dot(one, two), c = lar_dot(two, two);
     const double p = lar_dot(one, way), q = lar_dot(two, way), area = a * c - b * b;
@@ -245,33 +250,54 @@ static bool shift_of(const double one[3], const double two[3], int triangle, con
     return true;
 }
 
+void lar_rim_normal(const double corner[4][3], int triangle, double normal[3]) {
+    double one[3], two[3];
+    sides_of(corner, triangle, one, two);
+    lar_cross(one, two, normal);
+    const double length = lar_length(normal);
+    for (int i = 0; i < 3; i++) normal[i] = length > 0 ? normal[i] / length : 0;
+}
+
+bool lar_rim_foot(const double x[3], const double corner[4][3], const lar_face_point *closest,
+                  lar_rim *rim) {
+    double at[3], normal[3];
+    lar_rim_normal(corner, closest->triangle, normal);
+    lar_face_mean(corner, closest->weight, at);
+    lar_minus(x, at, rim->away);
+    for (int i = 0; i < 3; i++) rim->way[i] = rim->away[i] - closest->height * normal[i];
+    return lar_rim_shift(corner, closest->triangle, rim->way, rim->shift);
+}
+
 bool lar_flush_past(const lar_contact_surface *s, int32_t node, int32_t face, const double x[3],
                     const double corner[4][3], const lar_face_point *closest, lar_rim *rim) {
     static const double HALF = 0.35; /* of the diagonal: what a node on the edge bears for */
-    double at[3], a[3], b[3], normal[3], past = 0, tie = LAR_FACE_TIE * s->face[face].size;
     if (!is_on_rim(s, node, face, closest)) return false;
-    sides_of(corner, closest->triangle, a, b);
-    lar_cross(a, b, normal);
-    const double length = lar_length(normal);
-    lar_face_mean(corner, closest->weight, at);
-    lar_minus(x, at, rim->away);
-    for (int i = 0; i < 3 && length > 0; i++) {
-        rim->way[i] = rim->away[i] - closest->height * normal[i] / length;
-        past += rim->way[i] * rim->way[i];
-    }
-    past = sqrt(past);
+    const bool has_foot = lar_rim_foot(x, corner, closest, rim);
+    const double past = lar_length(rim->way);
     rim->lasts = HALF * s->face[face].size;
     rim->part = fmin(past / rim->lasts, 1);
-    return past > tie && shift_of(a, b, closest->triangle, rim->way, rim->shift);
+    return has_foot && past > LAR_FACE_TIE * s->face[face].size;
+}
+
+bool lar_rim_meets(const lar_contact_surface *s, int32_t one, int32_t other) {
+    bool meets = false;
+    for (int a = 0; a < 4; a++)
+        meets = meets || has_corner(&s->face[one], s->face[other].corner[a]);
+    return meets;
+}
+
+void lar_rim_forces(const lar_rim *rim, const lar_face_point *closest, double pull,
+                    double on[4][3]) {
+    const double per = pull / lar_length(rim->way);
+    for (int a = 0; a < 4; a++)
+        for (int i = 0; i < 3; i++)
+            on[a][i] = per * (rim->away[i] * rim->shift[a] -
+                              rim->way[i] * (closest->weight[a] + rim->shift[a]));
 }
 
 /* e(1 - part) of it; see theory.md, flush bodies. */
 double lar_flush_left(const lar_rim *rim, const lar_face_point *closest, double energy,
                       double on[4][3]) {
-    const double pull = 6 * (1 - rim->part) * energy / (rim->lasts * rim->lasts);
-    for (int a = 0; a < 4; a++)
-        for (int i = 0; i < 3; i++)
-            on[a][i] = pull * (rim->away[i] * rim->shift[a] -
-                               rim->way[i] * (closest->weight[a] + rim->shift[a]));
+    lar_rim_forces(rim, closest, 6 * rim->part * (1 - rim->part) * energy / rim->lasts, on);
     return 1 - lar_ease(rim->part);
 }

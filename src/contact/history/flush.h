@@ -56,6 +56,29 @@ static inline bool lar_flush_is_straight(const lar_face_point *closest) {
     return height * height >= STRAIGHT * (distance * distance);
 }
 
+/* The unit normal of a triangle of a face; 0 where that is crushed to a line. */
+void lar_rim_normal(const double corner[4][3], int triangle, double normal[3]);
+
+/* Fills rim->away, way and shift for a node at x, which `closest` of a face is seen from. False:
+ * the triangle is crushed to a line. */
+bool lar_rim_foot(const double x[3], const double corner[4][3], const lar_face_point *closest,
+                  lar_rim *rim);
+
+/* What has to be added to the weights of a point of a triangle to move it by `way` in its plane.
+ * False: as above. */
+bool lar_rim_shift(const double corner[4][3], int triangle, const double way[3], double shift[4]);
+
+/* Whether two faces of a body have a corner in common. */
+bool lar_rim_meets(const lar_contact_surface *surface, int32_t one, int32_t other);
+
+/* The forces on a face's corners of what changes by `pull` per metre past its edge [N]. */
+void lar_rim_forces(const lar_rim *rim, const lar_face_point *closest, double pull,
+                    double on[4][3]);
+
+/* Whether a face has all corners that the closest point of another one is made of. */
+bool lar_rim_has(const lar_contact_surface *surface, int32_t face, int32_t other,
+                 const lar_face_point *closest);
+
 /* False: the node at x, which `closest` of a face is seen from, is not past an edge. */
 bool lar_flush_past(const lar_contact_surface *surface, int32_t node, int32_t face,
                     const double x[3], const double corner[4][3], const lar_face_point *closest,

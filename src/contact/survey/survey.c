@@ -18,10 +18,20 @@ static double fade_above(const lar_body_contact *contact, int32_t node, int32_t 
     return FADE * lar_contact_standoff(surface, &surface->node[node], &surface->face[face]);
 }
 
+/* Whether a face that the node of group g, on a sharp edge, is before looks away from its body, and
+ * is no joint: that has come over its edge. */
+static bool is_over(const lar_body_contact *contact, const lar_state *state, int32_t g, int32_t f,
+                    const lar_survey *s, const double corner[4][3], const lar_face_point *point) {
+    double beside;
+    return lar_looks_away(contact, state, contact->list.group[g].node, corner, NULL) >= 0 &&
+           !(s->joints && lar_joint_of(contact, state, g, f, s->x, corner, point, &beside));
+}
+
 /* Whether a face that the node of group g, on a sharp edge, is behind is not in its way. */
 static bool passes_by(const lar_body_contact *contact, const lar_state *state, int32_t g, int32_t f,
                       lar_survey *s, const double corner[4][3], lar_face_point *point) {
-    const bool away = lar_looks_away(contact, state, contact->list.group[g].node, corner, NULL);
+    const bool away =
+        lar_looks_away(contact, state, contact->list.group[g].node, corner, NULL) >= 0;
     double beside;
     const lar_joint joint = s->joints
                                 ? lar_joint_of(contact, state, g, f, s->x, corner, point, &beside)
@@ -54,6 +64,12 @@ static double survey_face(lar_body_contact *contact, const lar_state *state, int
         if (s->edge && point->height < -tie && distance <= s->reach &&
             passes_by(contact, state, g, f, s, (const double(*)[3])corner, point)) {
             s->gap = -INFINITY;
+            return INFINITY;
+        }
+        if (s->touch && !(point->height < -tie) && distance <= s->reach &&
+            is_over(contact, state, g, f, s, (const double(*)[3])corner, point)) {
+            s->gap = fmin(s->gap, 0);
+            s->before = fmin(s->before, distance);
             return INFINITY;
         }
         if (s->inside && !(point->height < 0)) return point->distance = INFINITY;
@@ -102,7 +118,11 @@ static void survey_group(lar_body_contact *contact, const lar_state *state, int3
               contact->surface->node[group->node].inward[0] >= 0;
     s->border = -1;
     s->over = s->beyond = false;
+    s->before = INFINITY;
     s->within = s->edge ? ACROSS * s->reach : 0;
+    s->touch =
+        s->edge && !(lar_contact_standoff(contact->surface, &contact->surface->node[group->node],
+                                          &contact->surface->face[face[0]]) > 0);
     s->across = contact->surface->node[group->node].along < 3 ? s->within : 0;
     s->hidden = -1;
     lar_face_point of_first;
@@ -151,15 +171,106 @@ static int32_t choose_face(const lar_body_contact *contact, int32_t g, const lar
     return chosen;
 }
 
-/* An edge that has come past a face must not be pushed all at once by the next one, as deep as it
- * is behind that. */
-static void find_hidden(lar_survey *s) {
-    s->inset = s->within;
+/* From the closest point of a face to the node, in the plane with that normal. */
+static void way_from(const lar_survey *s, int32_t k, const double normal[3], double way[3]) {
+    double at[3];
+    lar_face_mean((const double(*)[3])s->corner[k], s->point[k].weight, at);
+    lar_minus(s->x, at, way);
+    const double up = lar_dot(way, normal);
+    for (int i = 0; i < 3; i++) way[i] -= up * normal[i];
+}
+
+/* The closest face, the node's way past its edge, and how shallow it lies behind it. */
+typedef struct chosen_face {
+    int32_t face;
+    const lar_face_point *point;
+    double normal[3]; /* unit */
+    double past;      /* its edge, in its plane [m] */
+    double window;    /* so far on either side of an edge the one face takes over [m] */
+    double shallow;   /* from 1, half of that behind it, to 0 where it is all of it */
+    double slope;     /* of that with the depth [1/m] */
+} chosen_face;
+
+static void look_at(const lar_body_contact *contact, const lar_state *state, int32_t node,
+                    int32_t face, const lar_face_point *point, const lar_survey *s,
+                    chosen_face *c) {
+    double corner[4][3];
+    lar_rim rim;
+    *c = (chosen_face){.face = face, .point = point};
+    lar_contact_corners(contact, state, face, corner, NULL);
+    lar_rim_normal((const double(*)[3])corner, point->triangle, c->normal);
+    if (lar_rim_foot(s->x, (const double(*)[3])corner, point, &rim)) c->past = lar_length(rim.way);
+    if (!(c->past > tie_of(contact, face))) c->past = 0;
+    /* A body that is thinner than that would be pushed by its far side. */
+    c->window = fmin(s->within,
+                     ACROSS * contact->surface->body[contact->surface->node[node].body].reach[1]);
+    const double part = 2 + 2 * point->height / c->window;
+    c->shallow = lar_ease(part);
+    if (part > 0 && part < 1) c->slope = -12 * part * (1 - part) / c->window;
+}
+
+/* How squarely a face that is not seen meets the one that counts, and how surely it looks away,
+ * from 0 to 1. */
+static double squareness(const lar_body_contact *contact, const lar_state *state, int32_t node,
+                         const lar_survey *s, int32_t k, int32_t face, const chosen_face *c) {
+    static const double SQUARE = 0.2, BLUNT = 0.45; /* cosines of 78 and 63 degrees */
+    const double(*corner)[3] = (const double(*)[3])s->corner[k];
+    double other[3];
+    if (!s->touch || !lar_rim_meets(contact->surface, face, c->face)) return 0;
+    lar_rim_normal(corner, s->point[k].triangle, other);
+    return fmax(lar_looks_away(contact, state, node, corner, NULL), 0) *
+           lar_ease((BLUNT - fabs(lar_dot(c->normal, other))) / (BLUNT - SQUARE));
+}
+
+/* Where face k of a survey, which is not seen, meets the closest one squarely, all that lies not
+ * deep fades from so far behind the one as past the edge of the other; else from where it is behind
+ * the one on. */
+static lar_inset inset_at(const lar_survey *s, int32_t k, double squarely, const chosen_face *c) {
+    const lar_face_point *at = &s->point[k];
+    const bool before = !(at->height < 0);
+    const double square = squarely * c->shallow, times = s->within / c->window;
+    lar_inset inset = {.square = square, .past = square > 0 ? c->past : 0};
+    way_from(s, k, c->normal, inset.way);
+    const double far = lar_length(inset.way);
+    const bool by_far = before && far > c->past;
+    const double over = times * (before ? -fmax(far, c->past) : far - c->past);
+    const double in = before ? -s->within : 2 * at->distance - s->within;
+    inset.behind = square * over + (1 - square) * in;
+    inset.steep = before && !by_far ? 0 : times * square;
+    inset.straight = before ? 0 : 2 * (1 - square);
+    inset.rim = c->past > 0 && !by_far ? times * square : 0;
+    inset.lift = (over - in) * squarely * c->slope;
+    return inset;
+}
+
+/* Who comes past an edge must not be pushed all at once by the next face, as deep as he is behind
+ * that: of the faces that he does not see the one counts that he is least far behind. False: he is
+ * outside, before one that has nothing to do with the closest one that he sees. */
+static bool find_hidden(const lar_body_contact *contact, const lar_state *state, int32_t g,
+                        int32_t chosen, const lar_face_point *point, lar_survey *s) {
+    const lar_contact_group *group = &contact->list.group[g];
+    const int32_t *faces = contact->list.face + group->first;
+    const double tie = tie_of(contact, faces[chosen]);
+    double outside = INFINITY, front = point->distance;
+    chosen_face c;
+    look_at(contact, state, group->node, faces[chosen], point, s, &c);
+    s->hides = (lar_inset){.behind = s->within};
     for (int32_t k = 0; k < s->count; k++) {
-        if (s->distance[k] != INFINITY || !(s->point[k].distance < s->inset)) continue;
-        s->inset = s->point[k].distance;
+        const lar_face_point *at = &s->point[k];
+        const bool before = !(at->height < 0);
+        if (k == s->border || s->distance[k] != INFINITY ||
+            !(before ? at->distance <= point->distance + tie : at->distance < s->within))
+            continue;
+        const double squarely =
+            squareness(contact, state, group->node, s, k, faces[s->entry[k]], &c);
+        const lar_inset inset = inset_at(s, k, squarely, &c);
+        if (before && inset.square > 0) front = fmin(front, at->distance);
+        if (before && !(inset.square > 0)) outside = fmin(outside, at->distance);
+        if (!(inset.behind < s->hides.behind)) continue;
+        s->hides = inset;
         s->hidden = k;
     }
+    return !(outside < front - tie);
 }
 
 /* Of all faces the closest one says on which side the node is, whether it is seen or not. Whether
@@ -168,9 +279,10 @@ static bool is_inside(const lar_body_contact *contact, int32_t g, const lar_surv
     const int32_t *face = contact->list.face + contact->list.group[g].first;
     double unseen = INFINITY, before = INFINITY;
     for (int32_t k = 0; k < s->count; k++) {
-        if (s->distance[k] == INFINITY)
+        if (s->distance[k] == INFINITY && s->point[k].height < 0)
             unseen = fmin(unseen, s->point[k].distance + tie_of(contact, face[s->entry[k]]));
-        else if (s->distance[k] <= s->min + s->fade && !(s->point[k].height < 0))
+        else if (s->distance[k] < INFINITY && s->distance[k] <= s->min + s->fade &&
+                 !(s->point[k].height < 0))
             before = fmin(before, s->distance[k]);
     }
     return before < INFINITY && unseen < before;
@@ -209,7 +321,8 @@ int32_t lar_survey_closest(lar_body_contact *contact, const lar_state *state, in
     s->joints = true;
     survey_group(contact, state, g, s);
     /* Who was farther than a face that is not seen now may be the closest one. */
-    if (s->gap == -INFINITY && s->next < INFINITY) survey_again(contact, state, g, s);
+    if ((s->gap == -INFINITY || s->before < INFINITY) && s->next < INFINITY)
+        survey_again(contact, state, g, s);
     if (s->beside < INFINITY && !is_in_joint(contact, g, s)) {
         s->joints = false;
         survey_again(contact, state, g, s);
@@ -221,12 +334,14 @@ int32_t lar_survey_closest(lar_body_contact *contact, const lar_state *state, in
     if (s->beyond) s->gap = 0;
     if (!(s->min < INFINITY) || s->beyond) return -1;
     if (s->across > 0) lar_edge_enters(contact, state, g, s);
-    if (s->border < 0 && !s->over && s->gap == -INFINITY) {
-        if (is_inside(contact, g, s)) look_inside(contact, state, g, s);
-        find_hidden(s);
-    }
+    const bool hides = s->gap == -INFINITY || s->before < INFINITY;
+    if (s->border < 0 && !s->over && s->gap == -INFINITY && is_inside(contact, g, s))
+        look_inside(contact, state, g, s);
     int32_t chosen = choose_face(contact, g, s, point);
     if (chosen < 0) return -1;
+    if (hides && !find_hidden(contact, state, g, chosen, point, s)) return -1;
+    if (!(s->before < point->distance - tie_of(contact, contact->list.face[group->first + chosen])))
+        s->before = INFINITY;
     if (s->over) point->height = -point->height;
     contact->last[g] = chosen;
     return contact->list.face[group->first + chosen];
