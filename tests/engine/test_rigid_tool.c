@@ -89,6 +89,48 @@ static void it_feels_what_it_moves(void **unused) {
     finish(simulation, model);
 }
 
+/* The end of the bar goes down evenly, on a path of so many rows. */
+static lar_simulation *on_a_path(lar_model **model, int rows) {
+    *model = bar_model();
+    lar_model *plain = bar_model();
+    lar_simulation *simulation = start(plain);
+    const double dt = lar_simulation_time_step(simulation);
+    finish(simulation, plain);
+    lar_tool_script *path = &(*model)->tool[0].path;
+    for (int k = 0; k <= rows; k++) {
+        const double part = (double)k / rows;
+        const lar_tool_script_row row = {1000 * part * dt, pose_at(0, -0.004 * part)};
+        assert_true(lar_tool_script_insert(path, (size_t)k, &row));
+    }
+    return start(*model);
+}
+
+/* What is looked at where a row ends is what the next step begins with. */
+static void rows_of_a_path_do_not_show(void **unused) {
+    (void)unused;
+    lar_model *model[2];
+    lar_simulation *simulation[2] = {on_a_path(&model[0], 1), on_a_path(&model[1], 10)};
+    const size_t nodes = (size_t)model[0]->mesh.node_count;
+    double(*force)[3] = lar_calloc(nodes, sizeof *force);
+    lar_energy e[2];
+    for (int k = 1; k < 10; k++) {
+        double sum[2] = {0};
+        for (int s = 0; s < 2; s++) {
+            advance(simulation[s], 100);
+            lar_simulation_energy(simulation[s], &e[s]);
+            const int status =
+                lar_simulation_nodal_forces(simulation[s], LAR_CAUSE_TOOL, 0, force, NULL);
+            assert_int_equal(status, LAR_OK);
+            for (size_t n = 0; n < nodes; n++) sum[s] += force[n][0];
+        }
+        assert_below(fabs(sum[1] - sum[0]), 1e-6 * fabs(sum[0]));
+        assert_below(fabs(e[1].kinetic - e[0].kinetic), 1e-6 * e[0].kinetic);
+        assert_below(fabs(e[1].external - e[0].external), 1e-6 * e[0].external);
+    }
+    free(force);
+    for (int s = 0; s < 2; s++) finish(simulation[s], model[s]);
+}
+
 /* Forces on nodes: the tool's are minus what it feels, and all causes sum up to mass times
  * acceleration, as lar_simulation_nodal_forces says. */
 static void forces_on_nodes_are_its_own(void **unused) {
@@ -178,6 +220,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(its_nodes_are_where_it_takes_them),
         cmocka_unit_test(it_feels_what_it_moves),
+        cmocka_unit_test(rows_of_a_path_do_not_show),
         cmocka_unit_test(forces_on_nodes_are_its_own),
         cmocka_unit_test(nodes_may_be_let_go),
         cmocka_unit_test(it_is_told_what_it_cannot_do),
