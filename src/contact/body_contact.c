@@ -301,7 +301,6 @@ __attribute__((noinline, cold)) static double come_past(const lar_body_contact *
     t->over = contact->list.face[contact->list.group[g].first + s->entry[s->hidden]];
     if (s->hides.rim > 0) {
         lar_rim_forces(rim, m->closest, s->hides.rim * lar_edge_slope(s, energy), on);
-        if (t->fading < 0) memset(t->fade, 0, sizeof t->fade);
         t->fading = m->known->face;
     }
     for (int i = 0; i < 12; i++) {

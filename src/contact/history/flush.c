@@ -209,8 +209,9 @@ bool lar_flush_hides(const lar_contact_surface *s, int32_t node, int32_t face) {
 
 /* ---- past an edge -------------------------------------------------------------------------- */
 
-bool lar_rim_has(const lar_contact_surface *s, int32_t face, int32_t other,
-                 const lar_face_point *closest) {
+/* Whether a face has all corners that the closest point of another one is made of. */
+static bool has_all(const lar_contact_surface *s, int32_t face, int32_t other,
+                    const lar_face_point *closest) {
     static const double ROUNDING = 1e-9;
     bool has = s->face[face].body == s->face[other].body;
     for (int a = 0; a < 4 && has; a++)
@@ -223,7 +224,7 @@ static bool is_on_rim(const lar_contact_surface *s, int32_t node, int32_t face,
                       const lar_face_point *closest) {
     bool on = false;
     for (int32_t i = s->flush_first[node]; i < s->flush_first[node + 1] && !on; i++)
-        on = lar_rim_has(s, s->flush[i], face, closest);
+        on = has_all(s, s->flush[i], face, closest);
     return on;
 }
 

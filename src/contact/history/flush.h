@@ -75,10 +75,6 @@ bool lar_rim_meets(const lar_contact_surface *surface, int32_t one, int32_t othe
 void lar_rim_forces(const lar_rim *rim, const lar_face_point *closest, double pull,
                     double on[4][3]);
 
-/* Whether a face has all corners that the closest point of another one is made of. */
-bool lar_rim_has(const lar_contact_surface *surface, int32_t face, int32_t other,
-                 const lar_face_point *closest);
-
 /* False: the node at x, which `closest` of a face is seen from, is not past an edge. */
 bool lar_flush_past(const lar_contact_surface *surface, int32_t node, int32_t face,
                     const double x[3], const double corner[4][3], const lar_face_point *closest,
