@@ -54,3 +54,23 @@ bool lar_pose_is_normal(const lar_tool_pose *pose) {
     return good_position(pose->position) && fabs(square_of(pose->orientation) - 1) <= NORMAL &&
            good_opening(pose->opening);
 }
+
+void lar_quaternion_blend(const double a[4], const double b[4], double share, double out[4]) {
+    static const double SMALL = 0.99; /* cosine of half the turn, 16 degrees: even within 1e-4 */
+    double from[4], to[4], dot = 0;
+    for (int i = 0; i < 4; i++) dot += a[i] * b[i];
+    for (int i = 0; i < 4; i++) {
+        from[i] = a[i];
+        to[i] = dot < 0 ? -b[i] : b[i];
+    }
+    for (dot = fabs(dot); dot < SMALL; dot = sqrt(0.5 * (1 + dot))) {
+        double *moved = share < 0.5 ? to : from, half[4];
+        for (int i = 0; i < 4; i++) half[i] = from[i] + to[i];
+        lar_quaternion_normalise(half);
+        for (int i = 0; i < 4; i++) moved[i] = half[i];
+        share = share < 0.5 ? 2 * share : 2 * share - 1;
+    }
+    for (int i = 0; i < 4; i++) out[i] = (1 - share) * from[i] + share * to[i];
+    if (!lar_quaternion_normalise(out))
+        for (int i = 0; i < 4; i++) out[i] = a[i];
+}

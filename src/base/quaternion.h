@@ -30,16 +30,9 @@ static inline bool lar_quaternion_normalise(double q[4]) {
 }
 
 /* Between two turns on the shorter way: share 0 gives a, 1 gives b. Along the chord, brought back
- * to length one: close to even for the small turns between two samples. */
-static inline void lar_quaternion_blend(const double a[4], const double b[4], double share,
-                                        double out[4]) {
-    double dot = 0, mixed[4];
-    for (int i = 0; i < 4; i++) dot += a[i] * b[i];
-    for (int i = 0; i < 4; i++) mixed[i] = (1 - share) * a[i] + (dot < 0 ? -share : share) * b[i];
-    if (!lar_quaternion_normalise(mixed))
-        for (int i = 0; i < 4; i++) mixed[i] = a[i];
-    for (int i = 0; i < 4; i++) out[i] = mixed[i];
-}
+ * to length one, which is even for small turns; of larger ones the half is taken, which is exact,
+ * that has the share in it. */
+void lar_quaternion_blend(const double a[4], const double b[4], double share, double out[4]);
 
 /* The angle between two turns, 0..pi. */
 static inline double lar_quaternion_angle(const double a[4], const double b[4]) {

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/pose.h"
+#include "base/quaternion.h"
 #include "base/vector.h"
 #include "contact/spares.h"
 
@@ -152,18 +153,6 @@ bool lar_hardness_good(const lar_tools *tools, int32_t tool, double radius) {
 /* ---- where they are ----------------------------------------------------------------------------
  */
 
-/* Straight line of unit quaternions, brought back to length one: exact at both ends, and between
- * two ticks the turn is small. */
-static void blend_turn(const double from[4], const double to[4], double share, double out[4]) {
-    double dot = 0, square = 0;
-    for (int i = 0; i < 4; i++) dot += from[i] * to[i];
-    for (int i = 0; i < 4; i++) {
-        out[i] = (1 - share) * from[i] + share * (dot < 0 ? -to[i] : to[i]);
-        square += out[i] * out[i];
-    }
-    for (int i = 0; i < 4; i++) out[i] /= sqrt(square);
-}
-
 void lar_tool_at(const lar_tool_motion *motion, uint64_t step, double time_step,
                  lar_tool_pose *pose, double velocity[3]) {
     lar_tool_within(motion, step, 0, time_step, pose, velocity);
@@ -184,7 +173,8 @@ void lar_tool_within(const lar_tool_motion *motion, uint64_t step, double part, 
     double share = ((double)(step - motion->start) + part) / (double)(motion->end - motion->start);
     for (int i = 0; i < 3; i++)
         pose->position[i] = (1 - share) * motion->from.position[i] + share * motion->to.position[i];
-    blend_turn(motion->from.orientation, motion->to.orientation, share, pose->orientation);
+    lar_quaternion_blend(motion->from.orientation, motion->to.orientation, share,
+                         pose->orientation);
     pose->opening = (1 - share) * motion->from.opening + share * motion->to.opening;
 }
 
