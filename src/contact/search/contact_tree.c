@@ -171,14 +171,19 @@ static void measure_clearance(lar_contact_surface *s, const lar_contact_list *li
 
 /* Whether a face lies over one of another body, in its plane, and looks the same way: with its
  * middle, or with a corner, a little inwards, for bodies that stand side by side have corners on
- * each other's sides. */
+ * each other's sides. How little that is counts where bodies are thin. */
 static bool lies_on(const lar_contact_surface *s, int32_t face, int32_t other, double rounding) {
     static const double INWARDS = 1e-3;
-    double own[4][3], corner[4][3], way[2][3];
+    double own[4][3], corner[4][3], way[2][3], near = rounding;
     bool on = false;
     for (int a = 0; a < 4; a++) {
         memcpy(own[a], s->rest[s->face[face].corner[a]], sizeof own[a]);
         memcpy(corner[a], s->rest[s->face[other].corner[a]], sizeof corner[a]);
+    }
+    for (int a = 0; a < 4; a++) {
+        double side[3];
+        lar_minus(own[(a + 1) % 4], own[a], side);
+        near = lar_lesser(near, 0.25 * INWARDS * lar_length(side));
     }
     for (int p = 0; p < 5 && !on; p++) {
         double weight[4], x[3];
@@ -187,7 +192,7 @@ static bool lies_on(const lar_contact_surface *s, int32_t face, int32_t other, d
         if (p < 4) weight[p] += 1 - INWARDS;
         lar_face_mean((const double(*)[3])own, weight, x);
         lar_face_closest(x, (const double(*)[3])corner, LAR_FACE_TIE * s->face[other].size, &point);
-        on = point.distance <= rounding;
+        on = point.distance <= (p == 4 ? rounding : near);
     }
     lar_face_normal((const double(*)[3])own, way[0]);
     lar_face_normal((const double(*)[3])corner, way[1]);
