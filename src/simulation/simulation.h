@@ -122,6 +122,10 @@ void lar_simulation_settle(lar_simulation *simulation);
 /* Something has been set: what it does is watched, and all processors hear of it. */
 void lar_simulation_set(lar_simulation *simulation);
 
+/* The same of what acts on all of a body, in a state that is whole. Set before the first step it is
+ * what the body starts with: no velocity is left for what it would have started with. */
+lar_status lar_simulation_set_anew(lar_simulation *simulation, lar_error *error);
+
 /* The steps of the whole model, and who looks at it, follow these supports from now on, or
  * nothing has changed: without memory. */
 lar_status lar_simulation_support_here(lar_simulation *simulation, const lar_supports *supports,

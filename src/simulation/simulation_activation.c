@@ -51,8 +51,7 @@ lar_status lar_simulation_activate(lar_simulation *simulation, int32_t material,
         simulation, lar_activation_work(domain, &wanted, &simulation->state, past, next));
     simulation->tools.settings = wanted;
     lar_simulation_settle(simulation);
-    lar_simulation_set(simulation);
-    return LAR_OK;
+    return lar_simulation_set_anew(simulation, error);
 }
 
 double lar_simulation_activation(const lar_simulation *simulation, int32_t material) {

@@ -73,7 +73,7 @@ static void set_initial_velocities(lar_simulation *simulation) {
     }
     lar_fault ignored = {0};
     lar_step_forces(domain, &simulation->scratch->measure.interactions, state, &ignored);
-    lar_gravity_at(model, NULL, 0, gravity);
+    lar_gravity_at(model, &simulation->tools.settings, 0, gravity);
     for (lar_gid g = 0; g < model->mesh.node_count; g++)
         for (int i = 0; i < 3; i++) {
             lar_lid node = domain->layout.local[g];
@@ -86,6 +86,16 @@ static void set_initial_velocities(lar_simulation *simulation) {
     for (int32_t entry = 0; entry < domain->surroundings.planes.count;)
         entry = start_on_planes(domain, entry, gravity, state);
     memset(state->force, 0, 3 * state->stride * sizeof *state->force);
+}
+
+lar_status lar_simulation_set_anew(lar_simulation *simulation, lar_error *error) {
+    lar_state *state = &simulation->state;
+    lar_simulation_set(simulation);
+    if (state->step > 0 || state->part > 0) return LAR_OK;
+    memset(state->v, 0, 3 * state->stride * sizeof *state->v);
+    set_initial_velocities(simulation);
+    state->external = 0;
+    return lar_simulation_take_up(simulation, error);
 }
 
 void lar_simulation_set_start(lar_simulation *simulation) {

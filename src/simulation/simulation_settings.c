@@ -73,8 +73,7 @@ lar_status lar_simulation_set_gravity(lar_simulation *simulation, const double g
     double before = gravity_account(simulation, &simulation->tools.settings);
     lar_simulation_add_external(simulation, gravity_account(simulation, &wanted) - before);
     simulation->tools.settings = wanted;
-    lar_simulation_set(simulation);
-    return LAR_OK;
+    return lar_simulation_set_anew(simulation, error);
 }
 
 void lar_simulation_gravity(const lar_simulation *simulation, double gravity[3]) {

@@ -70,6 +70,40 @@ static void activate(lar_simulation *simulation, int32_t material, double value)
     if (lar_simulation_activate(simulation, material, value, &error)) fail_msg("%s", error.message);
 }
 
+/* A muscle that is set to rest, and gravity that is taken away, before the first step: nothing acts
+ * on the body, and nothing moves it. Velocities are of half a step before the start. */
+static void what_is_set_first_is_what_it_starts_with(void **unused) {
+    (void)unused;
+    static const char *const grid[] = {"1x1x1", "2x1x1"};
+    for (int k = 0; k < 2; k++) {
+        const brick b = {{4, 3, 3}, 0.01, 0, LAR_LAW_neo_hookean, 5e3, 5e4, 1000};
+        lar_model *model = brick_model(&b);
+        model->material[0].fibre = (lar_fibre){.along = 3e4};
+        model->gravity[2] = -9.81;
+        along_x(model);
+        lar_options options = lar_options_default();
+        options.grid = grid[k];
+        lar_simulation *simulation = start_with(model, options);
+        lar_energy e;
+        activate(simulation, -1, 0);
+        assert_int_equal(lar_simulation_set_gravity(simulation, (double[]){0, 0, 0}, NULL), LAR_OK);
+        advance(simulation, 50);
+        double v[80][3];
+        lar_simulation_velocities(simulation, v);
+        for (int32_t n = 0; n < model->mesh.node_count; n++) assert_true(lar_length(v[n]) == 0);
+        lar_simulation_energy(simulation, &e);
+        assert_true(e.kinetic == 0 && e.external == 0);
+        lar_simulation_reset(simulation, NULL);
+        activate(simulation, -1, 0);
+        assert_int_equal(lar_simulation_set_gravity(simulation, (double[]){0, 0, -5}, NULL),
+                         LAR_OK);
+        advance(simulation, 1);
+        lar_simulation_velocities(simulation, v);
+        assert_below(fabs(v[7][2] + 2.5 * lar_simulation_time_step(simulation)), 1e-12);
+        finish(simulation, model);
+    }
+}
+
 /* Another value for something in every tick of about a millisecond. */
 static void live(lar_simulation *simulation, int first, int end) {
     for (int i = first; i < end; i++) {
@@ -386,6 +420,7 @@ int main(void) {
         SAME_BITS_TESTS(body),
         cmocka_unit_test(a_saved_run_goes_on),
         cmocka_unit_test(live_changes_have_the_same_bits),
+        cmocka_unit_test(what_is_set_first_is_what_it_starts_with),
         cmocka_unit_test(what_was_set_is_kept_and_forgotten),
         cmocka_unit_test(forged_files_are_refused),
         cmocka_unit_test(what_cannot_be_set_is_refused),
