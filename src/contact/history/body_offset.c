@@ -226,10 +226,20 @@ lar_joint lar_joint_of(const lar_body_contact *contact, const lar_state *state, 
     return joint;
 }
 
+/* How sure it is that the edge lies along what the node is behind: along the closest face, and
+ * along others the more, the closer they are to being that. */
+static double lies_along(const lar_survey *s, const lar_edge_way *way, double least, double turns) {
+    double sure = 1;
+    for (int32_t k = 0; k < s->count; k++)
+        if (way[k].deeper == 0 && s->distance[k] < s->across && s->point[k].height < 0)
+            sure *= 1 - (1 - way[k].sure) * lar_ease(1 - (s->distance[k] - least) / turns);
+    return sure;
+}
+
 void lar_edge_enters(const lar_body_contact *contact, const lar_state *state, int32_t g,
                      lar_survey *s) {
     static const double TURNS = 0.5;
-    lar_edge_way way[LAR_GROUP_FACES_MAX], on = {0};
+    lar_edge_way way[LAR_GROUP_FACES_MAX];
     double least = s->across - s->fade, longest = 0, other = s->within;
     bool lies = false;
     s->inset = s->across;
@@ -245,7 +255,6 @@ void lar_edge_enters(const lar_body_contact *contact, const lar_state *state, in
         if (!through && s->distance[k] < least) {
             least = s->distance[k];
             lies = along;
-            on = way[k];
         }
         if (through && s->distance[k] < s->inset) {
             s->inset = s->distance[k];
@@ -255,8 +264,9 @@ void lar_edge_enters(const lar_body_contact *contact, const lar_state *state, in
     }
     if (!lies || !(least < longest)) s->border = -1;
     if (s->border < 0) return;
+    const double turns = TURNS * (s->within - least);
     s->lies =
-        lar_ease((other - least) / (TURNS * (s->within - least))) * on.sure * way[s->border].sure;
+        lar_ease((other - least) / turns) * lies_along(s, way, least, turns) * way[s->border].sure;
     s->min = least;
     for (int32_t k = 0; k < s->count; k++) {
         if (way[k].deeper > 0) s->distance[k] = INFINITY;
