@@ -1041,6 +1041,7 @@ typedef struct lar_contact_info {
                           or  over to the other side: bodies lie in each other, or behind */
     double way;        /* the farthest that a node went along an axis in a step, or a part of one
                           that is divided, where bodies may touch; of those on supports what they would go [m] */
+    double deepest_ever; /* the largest `deepest` of all steps since the start [m] */
 } lar_contact_info;
 
 LAR_SIZED void lar_simulation_contact(const lar_simulation *simulation, lar_contact_info *info);

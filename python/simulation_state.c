@@ -127,9 +127,10 @@ static PyObject *contact(PyObject *me, PyObject *nothing) {
     if (!simulation) return NULL;
     lar_contact_info c;
     lar_simulation_contact(simulation, &c);
-    return Py_BuildValue("{s:i,s:d,s:d,s:K,s:d,s:K,s:K}", "touching", (int)c.touching, "deepest",
-                         c.deepest, "distance", lar_simulation_contact_distance(simulation),
-                         "through", (unsigned long long)c.through, "way", c.way, "searches",
+    return Py_BuildValue("{s:i,s:d,s:d,s:d,s:K,s:d,s:K,s:K}", "touching", (int)c.touching,
+                         "deepest", c.deepest, "deepest_ever", c.deepest_ever, "distance",
+                         lar_simulation_contact_distance(simulation), "through",
+                         (unsigned long long)c.through, "way", c.way, "searches",
                          (unsigned long long)c.searches, "tested", (unsigned long long)c.tested);
 }
 
@@ -316,7 +317,8 @@ PyMethodDef python_state_methods[] = {
      "off: they are not finite then."},
     {"contact", contact, METH_NOARGS,
      "contact($self)\n--\n\ndict: touching (nodes in contact with bodies and planes), deepest [m], "
-     "distance (from how far on bodies push each other) [m], "
+     "deepest_ever (the largest of all steps since the start) [m], distance (from how far on "
+     "bodies push each other) [m], "
      "through (times that a node was pressed through a face: bodies lie in each other, or behind), "
      "way (the farthest that a node went in a step, or a part of one) [m], searches, tested."},
     {"contact_springs", contact_springs, METH_NOARGS,

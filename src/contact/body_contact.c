@@ -5,6 +5,7 @@
 
 #include "contact/history/body_friction.h"
 #include "contact/history/flush.h"
+#include "contact/tool_body.h"
 #include "mechanics/face_contact.h"
 
 /* ---- one group ------------------------------------------------------------------------------ */
@@ -165,26 +166,13 @@ typedef struct spring {
     double depth; /* how far it is pressed in [m] */
 } spring;
 
-/* What part of its stiffness a spring has before the face: what it stores while it keeps the
- * contact distance must not throw a light node. But tissue that is as stiff as springs would give
- * way to them then. */
-static double softness(const lar_body_contact *contact, int32_t node, int32_t face,
-                       double standoff) {
-    static const double SPEED = 3; /* [m/s] */
-    const lar_contact_surface *s = contact->surface;
-    double speed = SPEED / standoff, stiffness = contact->law.stiffness;
-    if (!(speed * speed < stiffness)) return 1;
-    double firm = fmin(s->body[s->node[node].body].firm, s->body[s->face[face].body].firm);
-    return fmin(1, fmax(speed * speed, firm) / stiffness);
-}
-
 /* The one acts from the contact distance on, the other, which is all that is left of the stiffness,
  * behind the face. */
 static void springs_of(const lar_body_contact *contact, int32_t node, int32_t face, double mass,
                        double depth, double offset, spring two[2]) {
     const lar_contact_surface *s = contact->surface;
     double standoff = lar_contact_standoff(s, &s->node[node], &s->face[face]);
-    double part = softness(contact, node, face, standoff);
+    double part = lar_contact_softness(s, node, face, standoff, contact->law.stiffness);
     two[0] = (spring){part * mass, depth + (standoff - offset)};
     two[1] = (spring){(1 - part) * mass, depth};
 }
@@ -310,6 +298,20 @@ __attribute__((noinline, cold)) static double come_past(const lar_body_contact *
     return part * force + lar_edge_slope(s, energy) * s->hides.lift;
 }
 
+/* Deep in another body springs are harder, and ask for parts of the steps up to the next decision.
+ * Adds what that stores to *energy [J]. */
+static double harden(lar_body_contact *contact, int32_t node, int32_t face, double mass,
+                     double depth, double rate, double *energy) {
+    const lar_contact_surface *s = contact->surface;
+    const lar_contact_law *law = &contact->law;
+    const double layer =
+        fmin(s->body[s->node[node].body].reach[1], s->body[s->face[face].body].reach[1]);
+    const double soon = depth + LAR_INTERVAL_MAX * law->lead * rate;
+    const double need = lar_contact_deep_need(law, layer, fmax(depth, fmin(soon, layer)));
+    contact->need = fmax(contact->need, need);
+    return lar_contact_deep_force(law, contact->time_step, mass, layer, depth, rate, energy);
+}
+
 static bool is_beside(const lar_face_point *closest) {
     static const double STRAIGHT = 0.7; /* 45 degrees */
     return closest->height < 0 && -closest->height < STRAIGHT * closest->distance;
@@ -379,6 +381,7 @@ static bool push(lar_body_contact *contact, const lar_state *state, int32_t g, i
     const meeting m = {
         x, &known, closest, full_of(contact, node, face), rate, f->fades && !own && !s->flush};
     double energy = 0, force = press(contact, &m, two, &energy, t);
+    if (!own) force += harden(contact, node, face, moved, depth, rate, &energy);
     if (spent) memset(t->fade, 0, sizeof t->fade);
     if (spent) force = 0;
     if (s->border >= 0) force = come_in(contact, g, s, &m, two, &energy, together, force, t);
@@ -578,6 +581,7 @@ void lar_body_contact_add(lar_body_contact *contact, const lar_condition_context
     contact->part_count = contact->offset_count = 0;
     if (contact->friction) lar_body_friction_begin(contact->friction);
     contact->info.touching = 0;
+    contact->info.deepest_ever = fmax(contact->info.deepest_ever, contact->info.deepest);
     contact->info.deepest = 0;
     if (contact->fresh) lar_body_contact_end_offsets(contact, state);
     if (!(contact->travel < contact->horizon)) look_ahead(contact);

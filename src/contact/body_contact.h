@@ -157,6 +157,8 @@ typedef struct lar_body_contact {
     double travel, horizon;           /* [m] */
     double moved; /* since the search, along any axis, by nodes of this thread, at most [m] */
     double way;   /* the same in the last step [m] */
+    double need;  /* of a step, by springs that are harder than the law's (lar_contact_deep_need),
+                     at most since lar_report_stretch */
     int32_t part_count;
     lar_body_contact_part *part; /* [list.group_room] */
     uint8_t *keeps;              /* [contact nodes] those that this thread moves; NULL: all */

@@ -238,6 +238,17 @@ static void take_offset(const lar_penetration_offset *offset, double *level) {
         *level = copysign(offset->depth, *level);
 }
 
+/* Who goes far in a step is deep in what it meets before anybody knows: it finds springs as hard as
+ * they become, and parts of steps for them. */
+static void ask_for_parts(lar_body_contact *contact, double way) {
+    static const double FAR = 0.1; /* of a layer */
+    if (!contact->surface) return;
+    const double layer = 2 * contact->surface->reach,
+                 parts = contact->law.lead / contact->time_step;
+    if (parts * way > FAR * layer)
+        contact->need = fmax(contact->need, lar_contact_deep_need(&contact->law, layer, layer));
+}
+
 void lar_body_contact_moved(lar_body_contact *contact, lar_state *state, double way) {
     for (int32_t i = 0; i < contact->offset_count; i++)
         take_offset(&contact->offset[i], &state->level[contact->offset[i].node]);
@@ -246,6 +257,7 @@ void lar_body_contact_moved(lar_body_contact *contact, lar_state *state, double 
     contact->moved += way;
     contact->way = way;
     contact->info.way = fmax(contact->info.way, way);
+    ask_for_parts(contact, way);
     if (!contact->search_state) return;
     /* Who does not have all nodes hears how fast the others are (contact_exchange.h). */
     contact->travel += way;

@@ -294,10 +294,11 @@ lar_status lar_contact_surface_fit(const lar_model *model, double time_step, dou
     /* What comes at this speed [m/s] is noticed a step before it touches, from no nearer and no
      * farther than these parts of the thinnest element. */
     static const double SPEED = 6, NEAREST = 0.25, FARTHEST = 0.5;
+    s->speed = model->made_up_mass ? 0 : SPEED;
     for (int32_t b = 0; b < s->body_count; b++) {
         lar_contact_body *body = &s->body[b];
         double min = NEAREST * body->reach[1], max = FARTHEST * body->reach[1];
-        double wanted = fmin(fmax(SPEED * time_step, min), max);
+        double wanted = fmin(fmax(s->speed * time_step, min), max);
         body->standoff = fmin(wanted, body->clear);
     }
     return fit_masses(model, time_step, stable_step, s, error);
@@ -467,4 +468,12 @@ void lar_contact_surface_clear(lar_contact_surface *surface) {
     free(surface->flush_first);
     free(surface->flush);
     *surface = (lar_contact_surface){0};
+}
+
+double lar_contact_softness(const lar_contact_surface *s, int32_t node, int32_t face,
+                            double standoff, double stiffness) {
+    double speed = 0.5 * s->speed / standoff;
+    if (!(speed * speed < stiffness)) return 1;
+    double firm = fmin(s->body[s->node[node].body].firm, s->body[s->face[face].body].firm);
+    return fmin(1, fmax(speed * speed, firm) / stiffness);
 }

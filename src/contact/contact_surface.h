@@ -84,6 +84,7 @@ typedef struct lar_contact_surface {
     double reach;             /* the least of all bodies [m] */
     double reach_max;         /* the largest [m] */
     double rounding;          /* so deep bodies may lie in each other at rest [m] */
+    double speed;             /* of bodies that springs before faces are for [m/s]; 0: of none */
     uint64_t possible;        /* pairs of a node and a face that belong together, neighbours too */
     double friction[LAR_CONTACT_PASSES_MAX]; /* Coulomb's coefficient of each pass */
     bool rough;                              /* one of them is not 0 */
@@ -147,6 +148,12 @@ static inline double lar_contact_standoff(const lar_contact_surface *surface,
     double one = surface->body[node->body].standoff, other = surface->body[face->body].standoff;
     return node->body == face->body ? 0 : one < other ? one : other;
 }
+
+/* What part of its stiffness [1/s^2] a spring has before the face: what it stores while it keeps
+ * the contact distance [m] must not throw a light node. But tissue that is as stiff as springs
+ * would give way to them then. */
+double lar_contact_softness(const lar_contact_surface *surface, int32_t node, int32_t face,
+                            double standoff, double stiffness);
 
 /* Coulomb's coefficient of a node and a face: the largest of the passes that have both. */
 static inline double lar_contact_friction(const lar_contact_surface *surface,

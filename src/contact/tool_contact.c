@@ -431,6 +431,7 @@ static void clear_loaded(lar_tool_contact *contact) {
         contact->loaded_at[contact->loaded[i].face] = -1;
     contact->loaded_count = contact->rubbed_count = 0;
     contact->seen.touching = 0;
+    contact->seen.deepest_ever = fmax(contact->seen.deepest_ever, contact->seen.deepest);
     contact->seen.deepest = 0;
 }
 

@@ -55,6 +55,32 @@ double lar_contact_late_force(const lar_contact_law *law, double mass, double fu
     return is_full ? force : steep * force;
 }
 
+/* Of a layer. Organs that press on each other by their weight are not that deep, and their steps
+ * are not divided for it. At a depth of a layer springs push with twelve times their force, for
+ * which steps of four parts have room. */
+static const double DEEP = 1.0 / 3, HARDENS = 0.02;
+
+/* How much a depth more takes of a step [1/m]. */
+static double deep_rate(const lar_contact_law *law, double layer) {
+    return law->stiffness * law->lead * law->lead / (STIFFEST * HARDENS * layer);
+}
+
+double lar_contact_deep_need(const lar_contact_law *law, double layer, double depth) {
+    return fmax(0, depth - DEEP * layer) * deep_rate(law, layer);
+}
+
+double lar_contact_deep_force(const lar_contact_law *law, double part, double mass, double layer,
+                              double depth, double rate, double *stored) {
+    static const double ELEMENTS = 0.9; /* of what a step has room for they may take that */
+    double deep = depth - DEEP * layer, ahead = deep + part * rate, parts = law->lead / part;
+    if (!(deep > 0 && ahead > 0)) return 0;
+    double steepest = ELEMENTS * (parts * parts - 1) / deep_rate(law, layer);
+    double curved = fmin(deep, steepest), soft = fmin(ahead, steepest);
+    double stiffness = law->stiffness * mass / (2 * HARDENS * layer);
+    *stored += stiffness * (deep * curved * (deep - curved) + curved * curved * curved / 3);
+    return stiffness * soft * (2 * ahead - soft);
+}
+
 void lar_face_weights(double r, double s, double weight[4]) {
     weight[0] = 0.25 * (1 - r) * (1 - s);
     weight[1] = 0.25 * (1 + r) * (1 - s);

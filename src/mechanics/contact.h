@@ -58,6 +58,16 @@ static inline double lar_contact_force(const lar_contact_law *law, double mass, 
 double lar_contact_late_force(const lar_contact_law *law, double mass, double full, double depth,
                               double rate, double *stored);
 
+/* Deep in another body springs of the law of bodies, whose lead is the step, are harder, without a
+ * jump: they push with k e^2 / (2 w) more, where e = d - deep + dt d' is above 0. Both lengths are
+ * parts of a layer of elements [m]; dt is `part`, of the step. As undivided steps have no room for
+ * that, it is no steeper than parts bear. Adds what is stored to *stored [J]. */
+double lar_contact_deep_force(const lar_contact_law *law, double part, double mass, double layer,
+                              double depth, double rate, double *stored);
+
+/* What that takes of a step, (omega dt / 2)^2 beside what the law's springs take, at a depth. */
+double lar_contact_deep_need(const lar_contact_law *law, double layer, double depth);
+
 /* Coulomb's law within one step: the part of the velocity along the surface, which a node would
  * have half a step later, that friction takes when it may take `max` of it. All of it is stick
  * (Carpenter, Taylor and Katona 1991: the force that the step needs, cut off at the cone).

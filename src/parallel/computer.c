@@ -184,7 +184,7 @@ static lar_status advance_here(lar_computer *computer, uint64_t until, bool firs
         lar_interactions *interactions =
             &lar_processor_of(computer, i)->worker[i % computer->threads].interactions;
         if (first) lar_report_begin(interactions);
-        lar_tool_contact_forget_depths(&interactions->tool_contact);
+        lar_report_stretch(interactions);
         lar_processor_of(computer, i)->worker[i % computer->threads].state.need = 0;
         lar_needs_clear(&lar_processor_of(computer, i)->worker[i % computer->threads].needs);
     }

@@ -259,7 +259,7 @@ static bool advance_stretch(lar_simulation *simulation, uint64_t end, lar_step_c
     lar_fault *fault = &simulation->fault;
     uint64_t begin = state->step;
     bool goes_on = true;
-    lar_tool_contact_forget_depths(&interactions->tool_contact);
+    lar_report_stretch(interactions);
     state->need = 0;
     lar_needs_clear(&simulation->needs);
     while (state->step < end && goes_on) {

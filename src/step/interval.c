@@ -53,6 +53,16 @@ static void divide_blows(const lar_domain *whole, const lar_needs *needs, lar_he
             larger(list->beyond_need, fmin(needs->of[0].need, whole->room.max * way * way));
 }
 
+/* Bodies that are deep in each other have springs that ask for parts (lar_contact_deep_need),
+ * beside elements that are crushed there. */
+static void divide_deep(const lar_domain *whole, const lar_report *report, int32_t base,
+                        lar_heavy_list *list) {
+    if (!(report->deep > 0)) return;
+    const double strained = report->needs.count > 0 ? report->needs.of[0].need : 0;
+    const double elements = fmax(strained, whole->room.max * base * base);
+    list->beyond_need = larger(list->beyond_need, elements + report->deep);
+}
+
 void lar_interval_harvest(lar_interval *interval, const lar_domain *whole, const lar_report *report,
                           uint64_t steps, lar_tools *tools) {
     int32_t parts = tools->division.parts;
@@ -65,6 +75,7 @@ void lar_interval_harvest(lar_interval *interval, const lar_domain *whole, const
     tools->division.need = larger(tools->division.need, report->need);
     lar_heavier_harvest(&report->needs, &tools->strained);
     divide_blows(whole, &report->needs, &tools->strained);
+    divide_deep(whole, report, tools->division.base, &tools->strained);
     lar_step_division *d = &tools->division;
     if (d->still > 0 && !(report->needs.fastest <= slow(whole, d))) d->still = (int8_t)-d->still;
     if (is_thrown(whole, d->need, report->needs.fastest)) d->due |= LAR_THROWN;

@@ -12,6 +12,7 @@ typedef struct lar_report {
     lar_contact_info contact; /* since the start */
     double moved, way; /* for contact of bodies: since the search, and in the last step [m] */
     double need;       /* of the elements: lar_state.need */
+    double deep;       /* of bodies deep in each other: lar_body_contact.need */
     double taken;      /* by contact, as lar_state.contact: since the start [J] */
     double exchanged;  /* by contact of bodies, as lar_state.exchanged, likewise */
     lar_needs needs;   /* of single elements, where strained ones may be heavier */
@@ -25,6 +26,8 @@ static inline void lar_report_contact(lar_contact_info *sum, const lar_contact_i
     if (other->steps > sum->steps) sum->steps = other->steps;
     sum->touching += other->touching;
     if (other->deepest > sum->deepest) sum->deepest = other->deepest;
+    if (other->deepest_ever > sum->deepest_ever) sum->deepest_ever = other->deepest_ever;
+    if (sum->deepest > sum->deepest_ever) sum->deepest_ever = sum->deepest;
     sum->through += other->through;
     if (other->way > sum->way) sum->way = other->way;
 }
@@ -33,6 +36,12 @@ static inline void lar_report_contact(lar_contact_info *sum, const lar_contact_i
 static inline void lar_report_begin(lar_interactions *interactions) {
     for (int32_t i = 0; i < LAR_TOOLS_MAX; i++)
         interactions->tool_contact.sum[i] = (lar_tool_sum){0};
+}
+
+/* Before a stretch of steps: what is the most of all of them. */
+static inline void lar_report_stretch(lar_interactions *interactions) {
+    lar_tool_contact_forget_depths(&interactions->tool_contact);
+    interactions->body_contact.need = 0;
 }
 
 /* Adds `other` to `sum`. */
@@ -56,6 +65,7 @@ static inline void lar_report_join(lar_report *sum, const lar_report *other) {
     lar_report_contact(&sum->contact, &other->contact);
     sum->moved = lar_larger(sum->moved, other->moved);
     sum->way = lar_larger(sum->way, other->way);
+    sum->deep = lar_larger(sum->deep, other->deep);
     sum->need = lar_larger(sum->need, other->need);
     sum->taken += other->taken;
     sum->exchanged += other->exchanged;
@@ -71,6 +81,7 @@ static inline void lar_report_add(lar_report *sum, const lar_interactions *inter
     lar_report_contact(&own.contact, &interactions->body_contact.info);
     own.moved = interactions->body_contact.moved;
     own.way = interactions->body_contact.way;
+    own.deep = interactions->body_contact.need;
     own.need = state->need;
     own.taken = state->contact;
     own.exchanged = state->exchanged;

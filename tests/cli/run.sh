@@ -52,7 +52,7 @@ has_keys title element grid scheme comm isa state_hash realtime interrupted --nu
     nodes steps time time_step stable_step threads wall_per_step_us.p50 wall_per_step_us.p99 \
     wall_per_step_us.p999 wall_per_step_us.max real_time_factor deadline_misses energy.kinetic \
     energy.strain energy.hourglass energy.external energy.damping energy.contact energy.viscous \
-    contact.touching contact.deepest contact.possible contact.boxed contact.tested \
+    contact.touching contact.deepest contact.deepest_ever contact.possible contact.boxed contact.tested \
     contact.searches wall_time ns_per_element frames
 [ "$(value_of steps)" = 200 ] || fail "$(value_of steps) steps instead of 200"
 value_of state_hash | grep -Eq '^"[0-9a-f]{16}"$' || fail "state_hash is $(value_of state_hash)"

@@ -56,6 +56,7 @@ static void compare(const lar_model *model, const outcome *one, lar_options opti
     assert_int_equal(other.info.touching, one->info.touching);
     assert_int_equal(other.touched, one->touched);
     assert_true(other.info.deepest == one->info.deepest);
+    assert_true(other.info.deepest_ever == one->info.deepest_ever);
     assert_int_equal(other.info.possible, one->info.possible);
     assert_int_equal(other.info.steps, one->info.steps);
     assert_below(fabs(other.contact - one->contact), 1e-9 * fabs(one->external));

@@ -92,6 +92,7 @@ static void check(const scene *s) {
         assert_true(other.contact.searches >= one.contact.searches);
         assert_true(other.contact.touching == one.contact.touching);
         assert_true(other.contact.deepest == one.contact.deepest);
+        assert_true(other.contact.deepest_ever == one.contact.deepest_ever);
     }
     lar_model_destroy(model);
 }

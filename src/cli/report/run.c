@@ -114,6 +114,7 @@ static void write_contact(lar_json *json, const run_report *report) {
     lar_json_open(json, "contact", '{');
     lar_json_integer(json, "touching", info.touching);
     lar_json_number(json, "deepest", info.deepest);
+    lar_json_number(json, "deepest_ever", info.deepest_ever);
     lar_json_number(json, "distance", lar_simulation_contact_distance(report->simulation));
     lar_json_number(json, "springs", stored_by_springs(report, info.deepest));
     lar_json_integer(json, "through", (int64_t)info.through);
@@ -273,14 +274,20 @@ static bool is_nothing(const run_report *report, const lar_energy *energy) {
 }
 
 /* What is let in is missing in the force: contact is as hard as a step bears (docs/theory.md,
- * "Contact"), so a shorter one lets in less. */
-static void print_softness(const run_report *report, const lar_energy *energy, double deepest,
-                           FILE *out) {
+ * "Contact"), so a shorter one lets in less. Of an impact nothing may be left in the last step. */
+static void print_softness(const run_report *report, const lar_energy *energy,
+                           const lar_contact_info *info, FILE *out) {
     static const double MUCH = 0.05,
                         SPRINGS = 0.1; /* of the shortest edge, and of what is stored */
-    const double part = deepest / report->info.shortest_edge;
+    const double edge = report->info.shortest_edge, part = info->deepest / edge;
     const double step = two_digits_of(0.5 * lar_simulation_time_step(report->simulation));
     const double stored = energy->strain + energy->hourglass;
+    if (info->deepest_ever > fmax(MUCH * edge, 1.5 * info->deepest))
+        fprintf(out,
+                "%-17sbefore, up to %.3g mm deep, %.2g of the shortest edge: forces were less then "
+                "than those of bodies that only touch, and peaks of them may be much too low; "
+                "--time-step %.2g lets in a quarter of it\n",
+                "", 1e3 * info->deepest_ever, info->deepest_ever / edge, step);
     if (part > MUCH) {
         fprintf(out,
                 "%-17s%.2g of the shortest edge: forces are less than those of bodies that only "
@@ -290,7 +297,7 @@ static void print_softness(const run_report *report, const lar_energy *energy, d
         return;
     }
     if (!(energy->strain > 0) || is_nothing(report, energy)) return;
-    const double springs = stored_by_springs(report, deepest) / stored;
+    const double springs = stored_by_springs(report, info->deepest) / stored;
     if (springs > SPRINGS)
         fprintf(out,
                 "%-17sits springs store up to %.2g of what the bodies do: where these are moved "
@@ -321,7 +328,7 @@ static void print_contact(const run_report *report, const lar_energy *energy, FI
                 "%-17sbodies push each other from %.2g mm on, before they touch: gaps that matter "
                 "take thinner elements and smaller steps, or bodies that touch at rest\n",
                 "", 1e3 * distance);
-    print_softness(report, energy, info.deepest, out);
+    print_softness(report, energy, &info, out);
     print_through(report, &info, out);
     print_inside(report, out);
 }
