@@ -525,8 +525,9 @@ static lar_status notice_mesh(lar_model *model, lar_error *error) {
     return status;
 }
 
-/* What theory.md says of two laws: of one where it is nearly incompressible, of the other where it
- * is far from that, for the energy of no volume is finite. */
+/* What theory.md says of laws: of one where it is nearly incompressible, of another where it is far
+ * from that, for the energy of no volume is finite, of two where Lame's first constant is negative
+ * and their energy with it. */
 static lar_status notice_materials(lar_model *model, lar_error *error) {
     lar_status status = LAR_OK;
     bool told = false;
@@ -542,6 +543,14 @@ static lar_status notice_materials(lar_model *model, lar_error *error) {
                                       "for foam take coupled-neo-hookean, ogden or holmes-mow",
                                       lar_model_source(model), i + 1);
         }
+        const bool stretched = m->law == LAR_LAW_holmes_mow;
+        if (!status && (stretched || m->law == LAR_LAW_coupled_neo_hookean) && bulk < 0.666 * shear)
+            status =
+                lar_model_notice(model, error,
+                                 "%.300s: material %d: %s with a Poisson's ratio below 0 gives "
+                                 "way when it is %s; take ogden or yeoh",
+                                 lar_model_source(model), i + 1, lar_law_name[m->law],
+                                 stretched ? "stretched" : "pressed");
         if (!status && m->law == LAR_LAW_holmes_mow && bulk > 1.001 * most)
             status = lar_model_notice(model, error,
                                       "%.300s: material %d: holmes-mow with a bulk modulus above "

@@ -441,6 +441,17 @@ static void laws_that_give_way_are_told(void **state) {
         if (i) assert_non_null(strstr(model->notice[0], "above 2667 Pa, 8/3 of the shear modulus"));
         lar_model_destroy(model);
     }
+    for (int i = 0; i < 4; i++) {
+        char text[512];
+        snprintf(text, sizeof text,
+                 HEAD "materials: [{cells: all, law: %s, density: 1, youngs_modulus: 1e3, "
+                      "poisson_ratio: %s}]\n",
+                 i < 2 ? "holmes-mow" : "coupled-neo-hookean", i % 2 ? "-0.1" : "0");
+        lar_model *model = scene(text);
+        assert_int_equal(model->notice_count, i % 2);
+        if (i % 2) assert_non_null(strstr(model->notice[0], i < 2 ? "stretched" : "pressed"));
+        lar_model_destroy(model);
+    }
     for (int i = 0; i < 2; i++) { /* once, however many materials */
         const char *const poisson = i ? "0.29" : "0.3";
         char text[512];
