@@ -229,6 +229,29 @@ static void flat_bodies_in_each_other_are_refused(void **unused) {
     bite(0, -1e-9, NULL);
 }
 
+/* Sides of a layer and of what it lies on, of one outline, are in one plane and look the same way,
+ * and a thousandth of a thin one is less than what places are rounded to. */
+static void a_thin_layer_may_lie_on_a_body(void **unused) {
+    (void)unused;
+    static const double thick[] = {1e-3, 1e-4, 2e-5};
+    for (int k = 0; k < 3; k++) {
+        const brick body = {{6, 6, 1}, 0.01, 0, LAR_LAW_neo_hookean, 2e4, 4e5, 1000};
+        lar_model *model = empty_model(&body);
+        lar_simulation *s = NULL;
+        lar_error error = {0};
+        add_brick(model, &body, (double[]){0, 0, 0});
+        const int32_t split = model->mesh.element_count;
+        const int32_t first = add_brick(model, &body, (double[]){0, 0, 0.01});
+        for (int32_t n = first; n < model->mesh.node_count; n++)
+            if (model->mesh.position[n][2] > 0.015) model->mesh.position[n][2] = 0.01 + thick[k];
+        touch_between(model, split);
+        assert_int_equal(lar_model_check(model, &error), LAR_OK);
+        if (lar_simulation_create(model, NULL, &s, &error)) fail_msg("%s", error.message);
+        lar_simulation_destroy(s);
+        lar_model_destroy(model);
+    }
+}
+
 /* ---- energy --------------------------------------------------------------------------------- */
 
 /* Largest total energy over the first one of a body that is thrown on another. */
@@ -546,6 +569,7 @@ int main(void) {
         cmocka_unit_test(bodies_in_each_other_are_refused),
         cmocka_unit_test(bodies_deep_in_each_other_are_refused),
         cmocka_unit_test(flat_bodies_in_each_other_are_refused),
+        cmocka_unit_test(a_thin_layer_may_lie_on_a_body),
         cmocka_unit_test(what_is_no_number_is_the_most),
         cmocka_unit_test(a_collision_adds_no_energy),
         cmocka_unit_test(what_is_crushed_holds_or_stops_and_says_why),
