@@ -501,9 +501,10 @@ static void triangle_slopes(const double corner[3][3], double slope[3][3]) {
 }
 
 /* How far from its sides the foot of x is within a triangle, and `more`, which goes to nothing as
- * far outside: who passes a side to a triangle beside it counts as much there. */
+ * far outside: who passes a side to a triangle beside it counts as much there. Past the end of a
+ * surface the foot is outside of all, and none of the closest is: they share a side or a corner. */
 static double within(const double x[3], const double corner[4][3], const double middle[3], int t,
-                     const double weight[4], double distance, double more, bool closest) {
+                     const double weight[4], double distance, double more, double closest) {
     int next = (t + 1) % 4, other = (t + 2) % 4;
     double place[3][3], slope[3][3], min = INFINITY;
     double part[3] = {weight[t] - weight[other], weight[next] - weight[other], 4 * weight[other]};
@@ -516,9 +517,8 @@ static double within(const double x[3], const double corner[4][3], const double 
             min = fmin(min, share(part[c], sqrt(lar_dot(slope[c], slope[c]))));
         return more + min;
     }
-    double height = height_over(x, corner, middle, t, weight);
-    double outside = sqrt(fmax(distance * distance - height * height, 0));
-    return closest ? fmax(more, outside) : fmax(more - outside, 0);
+    double from = fmax(fabs(height_over(x, corner, middle, t, weight)), closest);
+    return fmax(more - sqrt(fmax(distance * distance - from * from, 0)), 0);
 }
 
 double lar_face_blend(const double x[3], const double corner[4][3], double min, double fade,
@@ -533,7 +533,7 @@ double lar_face_blend(const double x[3], const double corner[4][3], double min, 
         double distance = parts.distance[t];
         double count = 1 - (distance - min) / fade;
         if (!(count > 0)) continue;
-        count *= within(x, corner, middle, t, weight, distance, MORE * fade, distance <= min);
+        count *= within(x, corner, middle, t, weight, distance, MORE * fade, min);
         if (!(count > 0)) continue;
         for (int a = 0; a < 4; a++) sum[a] += count * weight[a];
         *far += count * distance;
