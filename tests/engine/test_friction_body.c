@@ -105,8 +105,8 @@ static lar_model *flying_model(double friction, double height) {
 /* A soft pad on a firmer one of the same outline, pressed: it widens more, so that corners of both
  * are past the ends of the other's surface, each beside two of its faces that are as close. */
 static lar_model *pads_of_one_outline(void) {
-    const brick firm = {{6, 6, 3}, 0.01, 0, LAR_LAW_neo_hookean, 4.5e5, 4.2e5, 150};
-    const brick soft = {{6, 6, 3}, 0.01, 0, LAR_LAW_neo_hookean, 4.5e4, 4.2e4, 150};
+    const brick firm = {{6, 6, 3}, 0.01, 0, LAR_LAW_coupled_neo_hookean, 4.545e5, 4.167e5, 150};
+    const brick soft = {{6, 6, 3}, 0.01, 0, LAR_LAW_coupled_neo_hookean, 4.545e4, 4.167e4, 150};
     lar_model *model = empty_model(&firm);
     add_brick(model, &firm, (double[]){-0.03, -0.03, 0});
     const int32_t split = model->mesh.element_count, layer = 7 * 7;
@@ -115,13 +115,24 @@ static lar_model *pads_of_one_outline(void) {
         double *z = &model->mesh.position[n][2];
         *z = n < first ? *z / 1.5 : 0.02 + (*z - 0.03) / 3;
     }
+    lar_material *second = LAR_MODEL_APPEND(model, material);
+    second->law = soft.law;
+    second->density = soft.density;
+    lar_material_from_shear_bulk(second, soft.shear, soft.bulk);
+    for (int32_t e = split; e < model->mesh.element_count; e++) model->element_material[e] = 1;
     touch_between(model, split);
     model->contact[0].friction = 0.5;
-    fix_nodes(model, brick_side(&firm, 2, 0), LAR_AXIS_Z);
-    lar_node_list top = {layer, lar_calloc((size_t)layer, sizeof(int32_t))};
-    for (int32_t n = 0; n < layer; n++) top.node[n] = model->mesh.node_count - layer + n;
-    load_nodes(model, top, 0, 0, -18.0 / layer, add_ramp(model, 0.05));
+    fix_nodes(model, brick_side(&firm, 2, 0), LAR_AXIS_ALL);
+    const int ramp = add_ramp(model, 0.05);
+    for (int32_t n = model->mesh.node_count - layer; n < model->mesh.node_count; n++) {
+        const double *x = model->mesh.position[n];
+        const double share = (fabs(x[0]) > 0.029 ? 0.5 : 1) * (fabs(x[1]) > 0.029 ? 0.5 : 1);
+        lar_node_list one = {1, lar_calloc(1, sizeof(int32_t))};
+        one.node[0] = n;
+        load_nodes(model, one, 0, 0, -0.5 * share, ramp);
+    }
     model->damping = 100;
+    model->until_rest = true; /* with the step for that */
     return model;
 }
 
