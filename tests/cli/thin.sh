@@ -22,6 +22,22 @@ strip() {
     }'
 }
 
+# pressed BY NAME: a pad of 2 mm whose top is led down by BY, and slips sideways.
+pressed() {
+    cat >"$2.yaml" <<END
+lariat: 1
+mesh: square.inp
+duration: 0.05
+damping: 100
+materials: [ { cells: all, law: neo-hookean, density: 1000, shear_modulus: 1e4, bulk_modulus: 1e5 } ]
+sets:
+  - { name: low, nodes: { box: [[-1, -1, -1], [1, 1, 1e-6]] } }
+  - { name: high, nodes: { box: [[-1, -1, 1.999e-3], [1, 1, 1]] } }
+fix: [ { nodes: low, axes: xyz } ]
+move: [ { nodes: high, axes: z, by: $1, over: 0.04 } ]
+END
+}
+
 # pad BULK NAME: bonded between plates, pressed by 5 %.
 pad() {
     cat >"$2.yaml" <<END
@@ -82,6 +98,21 @@ awk -v springs="$(value_of contact.springs)" -v strain="$(value_of energy.strain
     -v moving="$moving" 'BEGIN { exit !(springs < 0.2 * strain && strain > 3 * moving) }' ||
     fail "springs of contact at rest store $(value_of contact.springs) J"
 [ "$(value_of contact.distance)" = 0 ] || fail "a contact distance of bodies that touch"
+
+# What is pressed flat is crushed, whatever forces say; by a quarter nothing is.
+strip 4 4 3 4 4 2 0 1 square >square.inp
+pressed -2e-3 crushed
+pressed -5e-4 sound
+expect 0 "$LARIAT" run crushed.yaml
+says '^crushed  *[1-9][0-9]* elements have a corner with less than a fifth .*, [0-9]* of them inside out, down to -'
+expect 0 "$LARIAT" run crushed.yaml --json
+[ "$(value_of crushed.elements)" -gt 12 ] && [ "$(value_of crushed.inside_out)" -gt 0 ] ||
+    fail "crushed elements in JSON"
+expect 0 "$LARIAT" run sound.yaml --json
+[ "$(value_of crushed.elements)" = 0 ] && [ "$(value_of crushed.least)" = 1 ] ||
+    fail "a sound pad has crushed elements"
+expect 0 "$LARIAT" run sound.yaml
+! grep -q '^crushed' "$SCRATCH/out" || fail "a sound pad is said to be crushed"
 
 # Half a millimetre apart they push each other before they touch.
 {

@@ -7,7 +7,7 @@
 
 #include "cli/parallel.h"
 #include "cli/report/mass_scaling.h"
-#include "cli/report/zigzag.h"
+#include "cli/report/elements.h"
 #include "base/json/write.h"
 #include "base/memory.h"
 #include "base/vector.h"
@@ -128,12 +128,21 @@ static void write_contact(lar_json *json, const run_report *report) {
 }
 
 static void write_flat(lar_json *json, const run_report *report) {
-    zigzag found = {0};
+    flat_elements found = {0};
     if (strcmp(report->element, "hex8") == 0)
-        found = zigzag_find(report->simulation, report->model);
+        found = flat_elements_find(report->simulation, report->model);
     lar_json_open(json, "flat", '{');
-    lar_json_integer(json, "elements", found.elements);
+    lar_json_integer(json, "elements", found.count);
     lar_json_number(json, "pressure", found.most);
+    lar_json_close(json);
+}
+
+static void write_crushed(lar_json *json, const run_report *report) {
+    const crushed_elements found = crushed_elements_find(report->simulation, report->model);
+    lar_json_open(json, "crushed", '{');
+    lar_json_integer(json, "elements", found.count);
+    lar_json_integer(json, "inside_out", found.inside_out);
+    lar_json_number(json, "least", found.least);
     lar_json_close(json);
 }
 
@@ -207,6 +216,7 @@ void run_report_json(const run_report *report, FILE *out) {
     write_account(&json, report);
     write_contact(&json, report);
     write_flat(&json, report);
+    write_crushed(&json, report);
     write_tools(&json, simulation);
     write_rest(&json, report);
     lar_json_integer(&json, "divided_steps", (int64_t)divided);
@@ -412,17 +422,17 @@ static void print_open_account(const run_report *report, FILE *out) {
 }
 
 /* Where they may have folded nothing else is to be said: they take few hourglass modes for that. */
-static bool print_zigzag(const run_report *report, const lar_energy *energy, FILE *out) {
+static bool print_flat(const run_report *report, const lar_energy *energy, FILE *out) {
     if (strcmp(report->element, "hex8") != 0 || is_nothing(report, energy)) return false;
-    const zigzag found = zigzag_find(report->simulation, report->model);
-    if (found.elements > 0)
+    const flat_elements found = flat_elements_find(report->simulation, report->model);
+    if (found.count > 0)
         fprintf(out,
                 "%-17s%d of nearly incompressible tissue are under up to %.2g times its shear "
                 "modulus of pressure and more than 5 times as wide as thick: they may fold in a "
                 "zigzag, which bears too little; make them less flat, by fewer through the "
                 "thickness or more along it\n",
-                "flat elements", (int)found.elements, found.most);
-    return found.elements > 0;
+                "flat elements", (int)found.count, found.most);
+    return found.count > 0;
 }
 
 /* Where hourglass modes bear much, the mesh answers and not the tissue. */
@@ -438,6 +448,21 @@ static void print_hourglass(const run_report *report, const lar_energy *energy, 
             "hourglass", 100 * hourglass_share(energy));
 }
 
+/* A corner that has hardly any volume is kept from having none by its barrier, which is no tissue.
+ */
+static void print_crushed(const run_report *report, FILE *out) {
+    static const double MANY = 0.25; /* of all elements */
+    const crushed_elements found = crushed_elements_find(report->simulation, report->model);
+    if (!(found.inside_out > 0 || found.count > MANY * report->info.elements)) return;
+    fprintf(out, "%-17s%d element%s a corner with less than a fifth of its volume at rest", "crushed",
+            (int)found.count, found.count == 1 ? " has" : "s have");
+    if (found.inside_out > 0) fprintf(out, ", %d of them inside out", (int)found.inside_out);
+    fprintf(out,
+            ", down to %.2g near (%.4g, %.4g, %.4g) m: there barriers push back and not the tissue "
+            "alone, so forces are too high; smaller loads, or a finer mesh\n",
+            found.least, found.at[0], found.at[1], found.at[2]);
+}
+
 static void print_body(const run_report *report, FILE *out) {
     lar_energy energy;
     lar_simulation_energy(report->simulation, &energy);
@@ -446,7 +471,8 @@ static void print_body(const run_report *report, FILE *out) {
     if (energy.contact != 0) fprintf(out, ", contact %.4g", energy.contact);
     if (energy.viscous != 0) fprintf(out, ", viscous %.4g", energy.viscous);
     fprintf(out, "; external %.4g\n", energy.external);
-    if (!print_zigzag(report, &energy, out)) print_hourglass(report, &energy, out);
+    if (!print_flat(report, &energy, out)) print_hourglass(report, &energy, out);
+    print_crushed(report, out);
     print_open_account(report, out);
     print_contact(report, &energy, out);
     print_tools(report, &energy, out);
