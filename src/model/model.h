@@ -150,6 +150,8 @@ typedef struct lar_probe {
         LAR_PROBE_TOOL,
         LAR_PROBE_ENERGY
     } what;
+    bool moment;          /* of the forces that are summed, too */
+    double about[3];      /* that point, at rest in space [m] */
     lar_cell_field field; /* of a mean */
     int tool;             /* of the model's, where it is one's */
 } lar_probe;

@@ -64,9 +64,9 @@ static int column_of(const lar_model *model, const lar_probe *probe, int k, char
         *unit = "J";
         return 7;
     default:
-        snprintf(what, 32, "%s", axis[k]);
-        *unit = probe->what == LAR_PROBE_DISPLACEMENT ? "m" : "N";
-        return 3;
+        snprintf(what, 32, "%s%s", k < 3 ? "" : "moment ", axis[k % 3]);
+        *unit = probe->what == LAR_PROBE_DISPLACEMENT ? "m" : k < 3 ? "N" : "N m";
+        return probe->moment ? 6 : 3;
     }
 }
 
@@ -119,16 +119,18 @@ static lar_status forces_of(const lar_simulation *simulation, lar_cause cause, i
                                     &simulation->state, cause, tool, force, error);
 }
 
-/* What a cause does to some nodes is added to the sum. */
+/* What a cause does to some nodes is added to the sum, and its moments. */
 static lar_status add_forces(const lar_simulation *simulation, lar_cause cause,
-                             const lar_node_list *nodes, double sum[3], lar_error *error) {
+                             const lar_probe *probe, double sum[6], lar_error *error) {
+    const lar_node_list *nodes = &probe->nodes;
     const lar_gid count = simulation->domain.model->mesh.node_count;
     double(*force)[3] = lar_calloc((size_t)count, sizeof *force);
     if (!force)
         return lar_fail_memory(error, (size_t)count * sizeof *force, "the forces of a probe");
     lar_status status = forces_of(simulation, cause, 0, force, error);
     for (int32_t i = 0; !status && i < nodes->count; i++)
-        for (int axis = 0; axis < 3; axis++) sum[axis] += force[nodes->node[i]][axis];
+        lar_measure_add(&simulation->domain, &simulation->state, nodes->node[i],
+                        force[nodes->node[i]], probe->about, sum);
     free(force);
     return status;
 }
@@ -145,14 +147,10 @@ static lar_status measure_tool(const lar_simulation *simulation, int tool, doubl
     lar_status status = lar_simulation_tool_pose(simulation, tool, &pose, error);
     if (!status) status = forces_of(simulation, LAR_CAUSE_TOOL, tool, force, error);
     for (int axis = 0; !status && axis < 3; axis++) value[axis] = pose.position[axis];
-    for (lar_gid n = 0; n < mesh->node_count && !status; n++) {
-        double arm[3], turn[3];
-        lar_state_displacement(&simulation->state, simulation->domain.layout.local[n], arm);
-        for (int i = 0; i < 3; i++) arm[i] += mesh->position[n][i] - pose.position[i];
-        lar_cross(arm, force[n], turn);
-        for (int i = 0; i < 3; i++) value[3 + i] -= force[n][i];
-        for (int i = 0; i < 3; i++) value[6 + i] -= turn[i];
-    }
+    for (lar_gid n = 0; n < mesh->node_count && !status; n++)
+        lar_measure_add(&simulation->domain, &simulation->state, n, force[n], pose.position,
+                        value + 3);
+    for (int i = 3; i < 9; i++) value[i] = 0.0 - value[i]; /* on the tool; never -0 */
     free(force);
     return status;
 }
@@ -171,13 +169,12 @@ static lar_status measure(const lar_simulation *simulation, const lar_probe *pro
     memset(value, 0, COLUMNS * sizeof *value);
     switch (probe->what) {
     case LAR_PROBE_REACTION: /* a deck that has no mass has none that is stopped at its end */
-        return lar_measure_reaction(&simulation->domain, &simulation->scratch->measure,
-                                    &simulation->state, &probe->nodes,
-                                    simulation->domain.model->by_material_time, value, error);
+        return lar_measure_reaction(
+            &simulation->domain, &simulation->scratch->measure, &simulation->state, &probe->nodes,
+            simulation->domain.model->by_material_time, probe->about, value, error);
     case LAR_PROBE_CONTACT:
-        status = add_forces(simulation, LAR_CAUSE_BODIES, &probe->nodes, value, error);
-        return status ? status
-                      : add_forces(simulation, LAR_CAUSE_PLANES, &probe->nodes, value, error);
+        status = add_forces(simulation, LAR_CAUSE_BODIES, probe, value, error);
+        return status ? status : add_forces(simulation, LAR_CAUSE_PLANES, probe, value, error);
     case LAR_PROBE_TOOL:
         return measure_tool(simulation, probe->tool, value, error);
     case LAR_PROBE_MEAN:

@@ -348,9 +348,20 @@ double lar_measure_stress(const lar_domain *domain, const lar_state *state, lar_
     return lar_material_energy(material, fibre, F);
 }
 
+void lar_measure_add(const lar_domain *domain, const lar_state *state, lar_gid node,
+                     const double force[3], const double about[3], double *sum) {
+    double arm[3], turn[3];
+    for (int i = 0; i < 3; i++) sum[i] += force[i];
+    if (!about) return;
+    lar_state_displacement(state, domain->layout.local[node], arm);
+    for (int i = 0; i < 3; i++) arm[i] += domain->model->mesh.position[node][i] - about[i];
+    lar_cross(arm, force, turn);
+    for (int i = 0; i < 3; i++) sum[3 + i] += turn[i];
+}
+
 lar_status lar_measure_reaction(const lar_domain *domain, lar_measure_scratch *scratch,
                                 const lar_state *state, const lar_node_list *nodes, bool arriving,
-                                double sum[3], lar_error *error) {
+                                const double about[3], double *sum, lar_error *error) {
     const lar_condition_notes *supports = &scratch->interactions.notes;
     const lar_conditions *springs = &domain->surroundings.conditions;
     size_t count = (size_t)domain->layout.node_padded;
@@ -359,18 +370,23 @@ lar_status lar_measure_reaction(const lar_domain *domain, lar_measure_scratch *s
     for (int32_t i = 0; i < nodes->count; i++) wanted[domain->layout.local[nodes->node[i]]] = true;
     look l;
     begin_look(domain, scratch, state, &l);
-    memset(sum, 0, 3 * sizeof *sum);
+    memset(sum, 0, (about ? 6 : 3) * sizeof *sum);
     arriving = arriving || state->step == 0;
     for (int32_t i = 0; i < supports->constraint_count; i++) {
         const lar_constraint *c = &supports->constraint[i];
         if (!wanted[c->node]) continue;
         double ahead = arriving ? state->v[lar_constraint_at(state, c)] : supported_velocity(&l, c);
-        sum[c->axis] += support_force(&l, c, ahead);
+        double force[3] = {0};
+        force[c->axis] = support_force(&l, c, ahead);
+        lar_measure_add(domain, state, domain->layout.global[c->node], force, about, sum);
     }
     for (int32_t i = 0; i < springs->spring_count; i++) {
         const lar_point_spring *s = &springs->spring[i];
-        for (int axis = 0; wanted[s->node] && axis < 3; axis++)
-            sum[axis] -= s->stiffness * state->u[lar_state_at(state, s->node, axis)];
+        if (!wanted[s->node]) continue;
+        double force[3];
+        lar_state_displacement(state, s->node, force);
+        for (int axis = 0; axis < 3; axis++) force[axis] *= -s->stiffness;
+        lar_measure_add(domain, state, domain->layout.global[s->node], force, about, sum);
     }
     end_look(&l);
     free(wanted);

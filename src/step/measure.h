@@ -45,13 +45,18 @@ double lar_measure_remembered(const lar_domain *domain, const lar_state *state, 
 double lar_measure_stress(const lar_domain *domain, const lar_state *state, lar_gid e,
                           double cauchy[6]);
 
-/* Sum over some global nodes of the forces that their supports exert on them [N]; axes without a
- * support add nothing. `arriving`: those that bring them here at the speed that they have, whatever
- * the supports do next; else what the next step takes, which throws them from one speed to the next
- * where a curve has a kink. At step 0 nothing has moved, and nothing is thrown. Fails only for want
- * of memory. */
+/* Sum over some global nodes of the forces that their supports exert on them [N], and, of nodes
+ * where they are now, of the moments about a point, NULL: not these, sum[3..5] [N m]; axes without
+ * a support add nothing. `arriving`: those that bring them here at the speed that they have,
+ * whatever the supports do next; else what the next step takes, which throws them from one speed to
+ * the next where a curve has a kink. At step 0 nothing has moved, and nothing is thrown. Fails only
+ * for want of memory. */
 lar_status lar_measure_reaction(const lar_domain *domain, lar_measure_scratch *scratch,
                                 const lar_state *state, const lar_node_list *nodes, bool arriving,
-                                double sum[3], lar_error *error);
+                                const double about[3], double *sum, lar_error *error);
+
+/* Adds a force on a global node [N], and its moment about a point, NULL: not this [N m]. */
+void lar_measure_add(const lar_domain *domain, const lar_state *state, lar_gid node,
+                     const double force[3], const double about[3], double *sum);
 
 #endif

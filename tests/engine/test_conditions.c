@@ -193,7 +193,25 @@ static void a_heavy_body_swings_for_ever(void **unused) {
     finish(simulation, model);
 }
 
-/* Reactions of a body at rest carry its weight and its loads. */
+/* Of forces of a cause on all nodes, where these are now, about a point. */
+static void moment_of(const lar_simulation *simulation, lar_cause cause, const double about[3],
+                      double moment[3]) {
+    enum { NODES = 512 };
+    double force[NODES][3], u[NODES][3], sum[6] = {0};
+    const lar_mesh *mesh = &simulation->domain.model->mesh;
+    assert_true(mesh->node_count <= NODES);
+    lar_simulation_displacements(simulation, u);
+    assert_int_equal(lar_simulation_nodal_forces(simulation, cause, 0, force, NULL), LAR_OK);
+    for (int n = 0; n < mesh->node_count; n++)
+        for (int i = 0; i < 3; i++) {
+            const int j = (i + 1) % 3, k = (i + 2) % 3;
+            sum[i] += (mesh->position[n][j] + u[n][j] - about[j]) * force[n][k] -
+                      (mesh->position[n][k] + u[n][k] - about[k]) * force[n][j];
+        }
+    memcpy(moment, sum, 3 * sizeof *moment);
+}
+
+/* Reactions of a body at rest carry its weight and its loads, and what these turn it with. */
 static void reactions_carry_the_weight(void **unused) {
     (void)unused;
     for (int kind = LAR_ELEMENT_HEX8; kind <= LAR_ELEMENT_HEX8_FULL; kind++) {
@@ -212,9 +230,15 @@ static void reactions_carry_the_weight(void **unused) {
         lar_model_info info;
         assert_int_equal(lar_model_inspect(model, &info, NULL), LAR_OK);
         lar_node_list bottom = brick_side(&b, 2, 0);
-        double reaction[3], load = (double)bottom.count;
+        const double about[3] = {0.3, -0.2, 0.1};
+        double reaction[6], weight[3], loads[3], load = (double)bottom.count;
         lar_measure_reaction(&simulation->domain, &simulation->scratch->measure, &simulation->state,
-                             &bottom, false, reaction, NULL);
+                             &bottom, false, about, reaction, NULL);
+        moment_of(simulation, LAR_CAUSE_GRAVITY, about, weight);
+        moment_of(simulation, LAR_CAUSE_LOADS, about, loads);
+        for (int i = 0; i < 3; i++)
+            assert_below(fabs(reaction[3 + i] + weight[i] + loads[i]), 1e-8);
+        assert_true(fabs(reaction[3]) > 1e-4 && fabs(reaction[4]) > 1e-4);
         assert_below(fabs(reaction[0] + 0.002 * load), 1e-8);
         assert_below(fabs(reaction[1] + 1.5 * info.mass), 1e-8);
         assert_below(fabs(reaction[2] - 9.81 * info.mass + 0.001 * load), 1e-8);
@@ -238,7 +262,7 @@ static void nothing_pulls_before_it_moves(void **unused) {
     double reaction[3];
     for (int i = 0; i < 2; i++) {
         lar_measure_reaction(&simulation->domain, &simulation->scratch->measure, &simulation->state,
-                             &top, false, reaction, NULL);
+                             &top, false, NULL, reaction, NULL);
         if (i == 0) assert_true(reaction[0] == 0 && reaction[1] == 0 && reaction[2] == 0);
         if (i == 1) assert_true(reaction[2] > 0);
         advance(simulation, 1);
@@ -296,7 +320,7 @@ static void a_pressurised_cube_shrinks_by_its_bulk_modulus(void **unused) {
     double reaction[3];
     lar_node_list left = brick_side(&b, 0, 0);
     lar_measure_reaction(&simulation->domain, &simulation->scratch->measure, &simulation->state,
-                         &left, false, reaction, NULL);
+                         &left, false, NULL, reaction, NULL);
     /* the pressure on the held face itself and the support share nothing: all of it is balanced */
     assert_below(fabs(reaction[0]), 1e-6 * 4000 * 4e-4);
     free(left.node);

@@ -171,7 +171,7 @@ static void looking_does_not_change_the_run(void **unused) {
         lar_simulation_energy(simulation, &energy);
         lar_measure_stress(&simulation->domain, &simulation->state, i, stress);
         lar_measure_reaction(&simulation->domain, &simulation->scratch->measure, &simulation->state,
-                             &model->fix[0].nodes, false, reaction, NULL);
+                             &model->fix[0].nodes, false, NULL, reaction, NULL);
     }
     assert_true(lar_simulation_hash(simulation) == run(model, LAR_ISA_AUTO, STEPS, &name));
     finish(simulation, model);

@@ -410,11 +410,12 @@ static void test_output(void **state) {
     assert_int_equal(model->output.probe[0].field, LAR_CELL_STRESS);
     assert_int_equal(model->output.probe[0].nodes.count, model->mesh.element_count);
     lar_model_destroy(model);
-    model = scene(HEAD MATERIAL
-                  "tools: [{name: rod, shape: sphere, radius: 1, at: [0, 0, 9]},\n"
-                  "        {name: ball, shape: sphere, radius: 1, at: [0, 0, 9]}]\n"
-                  "output: {probes: [{tool: ball}, {energy: all}, {set: bottom, sum: contact},\n"
-                  "                  {energy: all, name: joules}]}\n");
+    model =
+        scene(HEAD MATERIAL
+              "tools: [{name: rod, shape: sphere, radius: 1, at: [0, 0, 9]},\n"
+              "        {name: ball, shape: sphere, radius: 1, at: [0, 0, 9]}]\n"
+              "output: {probes: [{tool: ball}, {energy: all},\n"
+              "    {set: bottom, sum: contact, about: [1, 2, 3]}, {energy: all, name: joules}]}\n");
     const char *const called[] = {"ball", "energy", "bottom contact", "joules"};
     const int what[] = {LAR_PROBE_TOOL, LAR_PROBE_ENERGY, LAR_PROBE_CONTACT, LAR_PROBE_ENERGY};
     assert_int_equal(model->notice_count, 0);
@@ -424,6 +425,7 @@ static void test_output(void **state) {
     }
     assert_int_equal(model->output.probe[0].tool, 1);
     assert_int_equal(model->output.probe[2].nodes.count, 9);
+    assert_true(model->output.probe[2].moment && model->output.probe[2].about[2] == 3);
     lar_model_destroy(model);
 }
 

@@ -401,6 +401,7 @@ static void test_loads_and_output(void **state) {
         {"output: {probes: [{node: 99}]}\n", "4:26", "there is no node 99"},
         {"output: {probes: [{set: bottom, sum: force}]}\n", "4:38", "expected reaction"},
         {"output: {probes: [{energy: all, sum: contact}]}\n", "4:33", "neither sum nor mean"},
+        {"output: {probes: [{node: 1, about: [0, 0, 0]}]}\n", "4:29", "add sum: reaction"},
         {"output: {probes: [{energy: 1}]}\n", "4:28", "expected all"},
         {"output: {probes: [{energy: all}, {energy: all}]}\n", "4:34",
          "two probes would be called"},

@@ -17,7 +17,7 @@ static lar_model *material_model(const char *mesh, int poisson) {
 
 static void sum_reactions(lar_simulation *simulation, lar_node_list nodes, double sum[3]) {
     lar_measure_reaction(&simulation->domain, &simulation->scratch->measure, &simulation->state,
-                         &nodes, false, sum, NULL);
+                         &nodes, false, NULL, sum, NULL);
 }
 
 /* ---- a cube stretched to 1.5, sides free --------------------------------------------------- */

@@ -247,9 +247,22 @@ static void print_division(const lar_parallel *parallel, FILE *out) {
             local ? parallel->channels : "", parallel->comm);
 }
 
+/* Lengths of a body in metres are told in millimetres; those of a deck in its own unit, which is
+ * called metre here, where its elements are larger than a finger. */
+typedef struct length_unit {
+    double per_metre;
+    const char *name;
+} length_unit;
+
+static length_unit unit_of(const run_report *report) {
+    static const double FINGER = 0.1; /* [m] */
+    return report->info.shortest_edge > FINGER ? (length_unit){1, "m"} : (length_unit){1e3, "mm"};
+}
+
 /* Nothing where all went well. */
 static void print_through(const run_report *report, const lar_contact_info *info, FILE *out) {
     static const double FAR = 0.5; /* of the shortest edge */
+    const length_unit unit = unit_of(report);
     double step = lar_simulation_time_step(report->simulation);
     if (info->through > 0)
         fprintf(out,
@@ -258,9 +271,10 @@ static void print_through(const run_report *report, const lar_contact_info *info
                 "", info->through, two_digits_of(0.5 * step));
     if (info->way > FAR * report->info.shortest_edge)
         fprintf(out,
-                "%-17sa node went %.3g mm in a step, where the shortest edge is %.3g mm: contact "
+                "%-17sa node went %.3g %s in a step, where the shortest edge is %.3g %s: contact "
                 "may not see it in time; --time-step %.2g would\n",
-                "", 1e3 * info->way, 1e3 * report->info.shortest_edge,
+                "", unit.per_metre * info->way, unit.name,
+                unit.per_metre * report->info.shortest_edge, unit.name,
                 two_digits_of(0.25 * step * report->info.shortest_edge / info->way));
 }
 
@@ -289,15 +303,17 @@ static void print_softness(const run_report *report, const lar_energy *energy,
                            const lar_contact_info *info, FILE *out) {
     static const double MUCH = 0.05,
                         SPRINGS = 0.1; /* of the shortest edge, and of what is stored */
+    const length_unit unit = unit_of(report);
     const double edge = report->info.shortest_edge, part = info->deepest / edge;
     const double step = two_digits_of(0.5 * lar_simulation_time_step(report->simulation));
     const double stored = energy->strain + energy->hourglass;
     if (info->deepest_ever > fmax(MUCH * edge, 1.5 * info->deepest))
         fprintf(out,
-                "%-17sbefore, up to %.3g mm deep, %.2g of the shortest edge: forces were less then "
+                "%-17sbefore, up to %.3g %s deep, %.2g of the shortest edge: forces were less then "
                 "than those of bodies that only touch, and peaks of them may be much too low; "
                 "--time-step %.2g lets in a quarter of it\n",
-                "", 1e3 * info->deepest_ever, info->deepest_ever / edge, step);
+                "", unit.per_metre * info->deepest_ever, unit.name, info->deepest_ever / edge,
+                step);
     if (part > MUCH) {
         fprintf(out,
                 "%-17s%.2g of the shortest edge: forces are less than those of bodies that only "
@@ -320,6 +336,7 @@ static void print_softness(const run_report *report, const lar_energy *energy,
  * own. */
 static void print_contact(const run_report *report, const lar_energy *energy, FILE *out) {
     const lar_simulation *simulation = report->simulation;
+    const length_unit unit = unit_of(report);
     lar_contact_info info;
     lar_simulation_contact(simulation, &info);
     if (info.tested == 0 || lar_model_contact_count(report->model) == 0) {
@@ -328,16 +345,16 @@ static void print_contact(const run_report *report, const lar_energy *energy, FI
     }
     double steps = fmax(1, (double)info.steps);
     fprintf(out,
-            "%-17s%d nodes touch, at most %.3g mm deep; %" PRIu64
+            "%-17s%d nodes touch, at most %.3g %s deep; %" PRIu64
             " searches, %.3g of %.3g pairs looked at in a step\n",
-            "contact", (int)info.touching, 1e3 * info.deepest, info.searches,
+            "contact", (int)info.touching, unit.per_metre * info.deepest, unit.name, info.searches,
             (double)info.tested / steps, (double)info.possible / steps);
     const double distance = lar_simulation_contact_distance(simulation);
     if (distance > 0)
         fprintf(out,
-                "%-17sbodies push each other from %.2g mm on, before they touch: gaps that matter "
+                "%-17sbodies push each other from %.2g %s on, before they touch: gaps that matter "
                 "take thinner elements and smaller steps, or bodies that touch at rest\n",
-                "", 1e3 * distance);
+                "", unit.per_metre * distance, unit.name);
     print_softness(report, energy, &info, out);
     print_through(report, &info, out);
     print_inside(report, out);
@@ -348,13 +365,14 @@ static void print_contact(const run_report *report, const lar_energy *energy, FI
 static void print_depth(const run_report *report, const lar_tool_info *info,
                         const lar_tool_force *force, const lar_energy *energy, FILE *out) {
     static const double MUCH = 0.1; /* radii, and of what is stored in the bodies */
+    const length_unit unit = unit_of(report);
     const double *f = force->force, deep = force->depth / info->radius;
     double springs = 0.5 * sqrt(f[0] * f[0] + f[1] * f[1] + f[2] * f[2]) * force->depth;
     if (!(deep > MUCH || springs > MUCH * (energy->strain + energy->hourglass))) return;
     fprintf(out,
-            "%-17stissue is %.2g mm deep in it, %.2g of its radius: the force is less than that "
+            "%-17stissue is %.2g %s deep in it, %.2g of its radius: the force is less than that "
             "of a hard tool; half the step, --time-step %.2g, shows how much\n",
-            "", 1e3 * force->depth, deep,
+            "", unit.per_metre * force->depth, unit.name, deep,
             two_digits_of(0.5 * lar_simulation_time_step(report->simulation)));
 }
 
@@ -454,8 +472,8 @@ static void print_crushed(const run_report *report, FILE *out) {
     static const double MANY = 0.25; /* of all elements */
     const crushed_elements found = crushed_elements_find(report->simulation, report->model);
     if (!(found.inside_out > 0 || found.count > MANY * report->info.elements)) return;
-    fprintf(out, "%-17s%d element%s a corner with less than a fifth of its volume at rest", "crushed",
-            (int)found.count, found.count == 1 ? " has" : "s have");
+    fprintf(out, "%-17s%d element%s a corner with less than a fifth of its volume at rest",
+            "crushed", (int)found.count, found.count == 1 ? " has" : "s have");
     if (found.inside_out > 0) fprintf(out, ", %d of them inside out", (int)found.inside_out);
     fprintf(out,
             ", down to %.2g near (%.4g, %.4g, %.4g) m: there barriers push back and not the tissue "

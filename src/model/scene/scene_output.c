@@ -122,7 +122,12 @@ static lar_status read_tool(lar_scene *scene, const lar_yaml *node, lar_probe *p
 }
 
 /* What a probe of nodes sums up, or the mean displacement. */
-static lar_status read_sum(lar_scene *scene, const lar_yaml *sum, lar_probe *probe) {
+static lar_status read_sum(lar_scene *scene, const lar_yaml *sum, const lar_yaml *about,
+                           lar_probe *probe) {
+    probe->moment = about != NULL;
+    lar_status status =
+        about ? lar_scene_vector(scene, about, LAR_IN_POSITION, probe->about) : LAR_OK;
+    if (status) return status;
     const bool contact = sum && lar_scene_is_word(sum, "contact");
     probe->what = contact ? LAR_PROBE_CONTACT : sum ? LAR_PROBE_REACTION : LAR_PROBE_DISPLACEMENT;
     if (!sum || contact || lar_scene_is_word(sum, "reaction")) return LAR_OK;
@@ -142,8 +147,8 @@ static lar_status read_energy(lar_scene *scene, const lar_yaml *node, lar_probe 
 
 /* Which key says what is probed, and whether the others go with it. */
 static lar_status find_place(lar_scene *scene, const lar_yaml *entry, const lar_yaml **where) {
-    static const char *const keys[] = {"node",   "nodes", "set",  "cells", "tool",
-                                       "energy", "sum",   "mean", "name",  NULL};
+    static const char *const keys[] = {"node", "nodes", "set",  "cells", "tool", "energy",
+                                       "sum",  "mean",  "name", "about", NULL};
     enum { PLACES = 6 };
     lar_status status = lar_scene_keys(scene, entry, "a probe", keys);
     const lar_yaml *sum = lar_yaml_get(entry, "sum"), *mean = lar_yaml_get(entry, "mean");
@@ -172,6 +177,11 @@ static lar_status find_place(lar_scene *scene, const lar_yaml *entry, const lar_
         return lar_scene_fail(scene, mean ? mean->key : (*where)->key, LAR_ERROR_FORMAT,
                               "cells and mean belong together, for example {cells: all, mean: "
                               "von_mises}; a probe of nodes has neither");
+    const lar_yaml *about = lar_yaml_get(entry, "about");
+    if (about && !sum)
+        return lar_scene_fail(scene, about->key, LAR_ERROR_FORMAT,
+                              "about: moments are of forces that are summed; add sum: reaction or "
+                              "sum: contact");
     int64_t ignored;
     if (strcmp(key, "node") == 0)
         status =
@@ -194,10 +204,11 @@ static lar_status read_probe(lar_scene *scene, const lar_yaml *entry) {
     const char *key = where->key->text;
     const bool cells = strcmp(key, "cells") == 0;
     const bool tool = strcmp(key, "tool") == 0, energy = strcmp(key, "energy") == 0;
-    status = cells    ? read_mean(scene, lar_yaml_get(entry, "mean"), probe)
-             : tool   ? read_tool(scene, where, probe)
-             : energy ? read_energy(scene, where, probe)
-                      : read_sum(scene, lar_yaml_get(entry, "sum"), probe);
+    status = cells  ? read_mean(scene, lar_yaml_get(entry, "mean"), probe)
+             : tool ? read_tool(scene, where, probe)
+             : energy
+                 ? read_energy(scene, where, probe)
+                 : read_sum(scene, lar_yaml_get(entry, "sum"), lar_yaml_get(entry, "about"), probe);
     if (!status) status = name_probe(scene, entry, where, probe);
     if (!status && !tool && !energy)
         status = lar_scene_select(scene, where, cells ? LAR_SET_ELEMENTS : LAR_SET_NODES, cells,

@@ -142,7 +142,7 @@ static lar_status support_force(forward *f, double *force) {
     const bool arriving = f->e->along != NULL;
     lar_status status =
         lar_measure_reaction(&s->domain, &s->scratch->measure, lar_simulation_state(s),
-                             &move->nodes, arriving, sum, f->error);
+                             &move->nodes, arriving, NULL, sum, f->error);
     int axis = move->axes == LAR_AXIS_X ? 0 : move->axes == LAR_AXIS_Y ? 1 : 2;
     *force = f->e->way * sum[axis];
     return status;
