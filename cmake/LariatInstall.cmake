@@ -21,9 +21,14 @@ target_link_libraries(liblariat PRIVATE lariat_core)
 if(NOT LARIAT_SANITIZE)
   target_link_options(liblariat PRIVATE -Wl,--no-undefined -Wl,--as-needed -Wl,--gc-sections
     -Wl,-Bsymbolic-functions)
-  # Addresses in tables as bits instead of 24 bytes each (DT_RELR), where the loader knows them.
   include(CheckCSourceCompiles)
   include(CheckLinkerFlag)
+  # Code begins and ends within pages of read-only data instead of pages of its own: 2 kB.
+  check_linker_flag(C -Wl,-z,noseparate-code LARIAT_LINKER_HAS_NOSEPARATE_CODE)
+  if(LARIAT_LINKER_HAS_NOSEPARATE_CODE)
+    target_link_options(liblariat PRIVATE -Wl,-z,noseparate-code)
+  endif()
+  # Addresses in tables as bits instead of 24 bytes each (DT_RELR), where the loader knows them.
   check_linker_flag(C -Wl,-z,pack-relative-relocs LARIAT_LINKER_HAS_RELR)
   check_c_source_compiles("#include <features.h>
 #if !defined(__GLIBC_PREREQ) || !__GLIBC_PREREQ(2, 36)

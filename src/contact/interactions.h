@@ -13,6 +13,8 @@ typedef struct lar_interactions {
     lar_tool_contact tool_contact; /* tools and planes */
     lar_body_contact body_contact; /* bodies */
     lar_planes planes;             /* where supports were set; in place of the surroundings' */
+    lar_tools *leads;              /* free bodies go where these say that they do; NULL: others see
+                                      to that (step/rigid/free_body.h) */
 } lar_interactions;
 
 /* Notes, and contact of tools and planes; bodies are left to the caller (lar_body_contact_create,

@@ -94,13 +94,17 @@ typedef struct lar_contact {
 /* Tools of a model and bytes of their names. A simulation takes four hands besides. */
 enum { LAR_MODEL_TOOLS_MAX = 12, LAR_TOOL_NAME_MAX = 63 };
 
+enum { LAR_FREE_TURNS = 8 }; /* beside LAR_AXIS_X and so on; alone: about `point` */
+
 /* A tool: something hard that a device moves. */
 typedef struct lar_tool {
     char *name;
     lar_tool_shape shape;
-    double radius, length; /* [m] */
-    double spread;         /* [rad] between open jaws */
-    double friction;       /* Coulomb's coefficient */
+    double radius, length;    /* [m] */
+    double spread;            /* [rad] between open jaws */
+    double friction;          /* Coulomb's coefficient */
+    unsigned free;            /* axes along which forces take a rigid one, and LAR_FREE_TURNS */
+    double point[3], axis[3]; /* about which it turns then; no axis: any [m] */
     lar_tool_pose rest;
     lar_tool_script
         path; /* begins at time 0 with `rest`; no rows: stays there; owned by the model */

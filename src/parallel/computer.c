@@ -285,6 +285,11 @@ lar_status lar_computer_advance(lar_computer *computer, uint64_t steps, bool fir
         if (status || full.kind) break;
         if (state->part == 0 && lar_interval_decide(computer->whole, begin, computer->tools))
             computer->tools_sent = false;
+        if (computer->lead && state->part == 0) {
+            status = computer->lead(computer->leader, error);
+            computer->tools_sent = false;
+            if (status) break;
+        }
         status = advance_all(computer, next_stop(computer, end, over), first, fault, error);
         lar_interval_harvest(&computer->interval, computer->whole, &computer->report, *step - begin,
                              computer->tools);

@@ -143,9 +143,11 @@ lar_status lar_simulation_create_state(lar_simulation *simulation, bool search_a
                                          &interactions->body_contact, error);
     if (!status && !(simulation->scratch = lar_calloc(1, sizeof *simulation->scratch)))
         status = lar_fail_memory(error, sizeof *simulation->scratch, "the simulation");
-    return status ? status
-                  : lar_measure_scratch_create(domain, &simulation->tools,
-                                               &simulation->scratch->measure, error);
+    if (!status)
+        status = lar_measure_scratch_create(domain, &simulation->tools,
+                                            &simulation->scratch->measure, error);
+    if (!status && simulation->scratch->measure.ahead) interactions->leads = &simulation->tools;
+    return status;
 }
 
 static lar_status compile(const lar_model *model, const lar_options *options,
@@ -354,6 +356,8 @@ static lar_status advance_portion(lar_simulation *simulation, uint64_t end, bool
         if (first && lar_computer_redivide(&simulation->computer, &simulation->domain))
             note_division(simulation);
         computer = simulation->computer;
+        computer->lead = simulation->interactions.leads ? lar_simulation_lead : NULL;
+        computer->leader = simulation;
         status = lar_computer_advance(computer, steps, first, callback, context, &simulation->fault,
                                       error);
         simulation->report = computer->report;
@@ -376,6 +380,7 @@ static lar_status advance(lar_simulation *simulation, uint64_t end, lar_step_cal
         uint64_t stop = look < end ? look : end;
         status = lar_simulation_follow_paths(simulation, &stop, error);
         if (status) break;
+        if (simulation->interactions.leads && simulation->computer) stop = step + 1;
         status = advance_portion(simulation, stop, first, callback, context, &goes_on, error);
         step = lar_simulation_steps(simulation);
         if (status || simulation->fault.kind || step % STEPS_BETWEEN_LOOKS != 0) continue;

@@ -108,6 +108,10 @@ lar_status lar_simulation_check_paths(const lar_simulation *simulation, lar_erro
 lar_status lar_simulation_follow_paths(lar_simulation *simulation, uint64_t *stop,
                                        lar_error *error);
 
+/* Processors have parts of the nodes of free bodies: these set out before each step, when all that
+ * is decided is. `context` is the simulation. */
+lar_status lar_simulation_lead(void *context, lar_error *error);
+
 /* The start as lar_simulation_create makes it, into state and tools, also again. */
 void lar_simulation_set_start(lar_simulation *simulation);
 

@@ -81,8 +81,11 @@ static void set_initial_velocities(lar_simulation *simulation) {
             double push = first_push(domain, state, node, i, gravity);
             state->v[value] = (2 * state->v[value] - push) / (1 + keep);
         }
-    for (int32_t i = 0; i < domain->surroundings.conditions.constraint_count; i++)
-        state->v[lar_constraint_at(state, &domain->surroundings.conditions.constraint[i])] = 0;
+    for (int32_t i = 0; i < domain->surroundings.conditions.constraint_count; i++) {
+        const lar_constraint *c = &domain->surroundings.conditions.constraint[i];
+        if (c->curve != LAR_CURVE_TOOL || !model->tool[c->rigid].free)
+            state->v[lar_constraint_at(state, c)] = 0;
+    }
     for (int32_t entry = 0; entry < domain->surroundings.planes.count;)
         entry = start_on_planes(domain, entry, gravity, state);
     memset(state->force, 0, 3 * state->stride * sizeof *state->force);

@@ -279,6 +279,16 @@ lar_status lar_simulation_follow_paths(lar_simulation *simulation, uint64_t *sto
     return status;
 }
 
+lar_status lar_simulation_lead(void *context, lar_error *error) {
+    lar_simulation *simulation = context;
+    lar_status status = lar_simulation_gather(simulation, error);
+    if (status) return status;
+    lar_burden_take(&simulation->domain, &simulation->tools.heavier, NULL);
+    lar_measure_ahead(&simulation->domain, &simulation->scratch->measure, &simulation->state,
+                      &simulation->tools);
+    return LAR_OK;
+}
+
 /* ---- taking hold --------------------------------------------------------------------------- */
 
 lar_status lar_tool_check_grasp(const lar_tool *tool, const double point[3], lar_error *error) {

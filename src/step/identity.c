@@ -163,6 +163,12 @@ static uint64_t hash_screw(uint64_t hash, const lar_screw *screw) {
     return lar_hash_word(hash, (uint32_t)screw->curve);
 }
 
+/* What moves nodes as one body. */
+static uint64_t hash_led(uint64_t hash, uint32_t number, const lar_tool *tool) {
+    hash = lar_hash_word(hash, number | tool->free << 8);
+    return tool->free ? hash_doubles(hash_doubles(hash, tool->point, 3), tool->axis, 3) : hash;
+}
+
 static uint64_t hash_model_conditions(const lar_model *model) {
     uint64_t hash = hash_motion(3, model);
     for (int i = 0; i < model->fix_count; i++)
@@ -172,7 +178,7 @@ static uint64_t hash_model_conditions(const lar_model *model) {
         hash = lar_hash_word(hash_nodes(hash, &m->nodes), m->axes);
         hash = lar_hash_word(lar_hash_double(hash, m->by), (uint32_t)m->curve);
         for (int k = 0; k < m->screw_count; k++) hash = hash_screw(hash, &m->screw[k]);
-        if (m->tool) hash = lar_hash_word(hash, (uint32_t)m->tool);
+        if (m->tool) hash = hash_led(hash, (uint32_t)m->tool, &model->tool[m->tool - 1]);
     }
     for (int i = 0; i < model->load_count; i++) {
         const lar_nodal_load *l = &model->load[i];

@@ -6,6 +6,7 @@
 #include "step/activation.h"
 #include "step/folds.h"
 #include "step/guard.h"
+#include "step/rigid/free_body.h"
 #include "step/viscous_history.h"
 #include "mechanics/hex8_full.h"
 
@@ -94,6 +95,11 @@ lar_status lar_measure_scratch_create(const lar_domain *domain, const lar_tools 
                                     domain->stable_step, false, &interactions->body_contact, error);
     if (status) return status;
     scratch->force = lar_calloc_aligned(values, sizeof *scratch->force);
+    scratch->tools = tools;
+    if (tools && lar_free_bodies_any(domain->model)) {
+        scratch->ahead = lar_calloc(1, sizeof *scratch->ahead);
+        if (!scratch->ahead) return lar_fail_memory(error, sizeof *scratch->ahead, "free bodies");
+    }
     if (scratch->force) return LAR_OK;
     return lar_fail_memory(error, values * sizeof *scratch->force, "force sums for energies");
 }
@@ -101,6 +107,7 @@ lar_status lar_measure_scratch_create(const lar_domain *domain, const lar_tools 
 void lar_measure_scratch_destroy(lar_measure_scratch *scratch) {
     lar_interactions_destroy(&scratch->interactions);
     free(scratch->force);
+    free(scratch->ahead);
     *scratch = (lar_measure_scratch){0};
 }
 
@@ -125,12 +132,16 @@ static void enter_look(const lar_domain *domain, lar_measure_scratch *scratch,
     lar_step_enter(domain, l->interactions, &l->context, &l->state);
 }
 
-/* Loads and internal forces stand in look->state.force. */
+/* Loads and internal forces stand in look->state.force; free bodies set out. */
 static void begin_look(const lar_domain *domain, lar_measure_scratch *scratch,
                        const lar_state *state, look *l) {
     lar_fault ignored = {0};
     enter_look(domain, scratch, state, l);
     lar_step_forces(domain, l->interactions, &l->state, &ignored);
+    if (!scratch->ahead) return;
+    *scratch->ahead = *scratch->tools;
+    lar_free_bodies_go(domain, &l->interactions->notes, &l->state, scratch->ahead);
+    l->context.tools = scratch->ahead;
 }
 
 static void end_look(look *l) {
@@ -275,6 +286,14 @@ static void add_contact(look *l, lar_energy *energy) {
     if (l->domain->kind == LAR_ELEMENT_HEX8) lar_guard_half_work(l->domain, &l->state);
     energy->external += l->state.external - external;
     energy->contact += l->state.contact - contact;
+}
+
+void lar_measure_ahead(const lar_domain *domain, lar_measure_scratch *scratch,
+                       const lar_state *state, lar_tools *tools) {
+    look l;
+    begin_look(domain, scratch, state, &l);
+    *tools = *scratch->ahead;
+    end_look(&l);
 }
 
 void lar_measure_energy(const lar_domain *domain, lar_measure_scratch *scratch,

@@ -9,7 +9,9 @@
  * who looks at a state changes nothing of it, nor of what its steps know. */
 typedef struct lar_measure_scratch {
     lar_interactions interactions;
-    int64_t *force; /* [3][stride of the state] force units, zero between two looks */
+    int64_t *force;         /* [3][stride of the state] force units, zero between two looks */
+    const lar_tools *tools; /* NULL: none */
+    lar_tools *ahead;       /* these, and where free bodies will have gone; NULL: there are none */
 } lar_measure_scratch;
 
 /* `tools` may be NULL. What cannot be made is cleared by lar_measure_scratch_destroy. */
@@ -22,6 +24,11 @@ void lar_measure_scratch_destroy(lar_measure_scratch *scratch); /* idempotent */
  * asked for. */
 void lar_measure_energy(const lar_domain *domain, lar_measure_scratch *scratch,
                         const lar_state *state, lar_energy *energy);
+
+/* Tells tools where free bodies go in the step that follows (step/rigid/free_body.h), for those
+ * that move their nodes. No memory is asked for. */
+void lar_measure_ahead(const lar_domain *domain, lar_measure_scratch *scratch,
+                       const lar_state *state, lar_tools *tools);
 
 /* Where the list's tool touches at the time of the state, and with which force the step that
  * follows begins; corners of faces are not filled in. No memory is asked for. */

@@ -8,6 +8,7 @@
 #include "step/activation.h"
 #include "step/guard.h"
 #include "step/mass/pressed.h"
+#include "step/rigid/free_body.h"
 #include "step/viscous_history.h"
 #include "mechanics/hex8_full.h"
 #include "mechanics/hex8_matrix.h"
@@ -390,6 +391,13 @@ static void add_friction(const lar_domain *domain, lar_interactions *interaction
     lar_tool_friction_add(contact, context, &leapfrog, domain->push, state);
 }
 
+/* What comes when all other forces are there. */
+static void add_last(const lar_domain *domain, lar_interactions *interactions,
+                     const lar_condition_context *context, lar_state *state) {
+    hold_up_added(domain, interactions, context, state);
+    add_friction(domain, interactions, context, state);
+}
+
 /* Elements of a state that is looked at: no step follows. */
 static void recover_seen(const lar_domain *domain, lar_state *state, lar_fault *fault) {
     if (domain->kind != LAR_ELEMENT_HEX8) {
@@ -423,8 +431,7 @@ void lar_step_forces(const lar_domain *domain, lar_interactions *scratch, lar_st
     act(domain, scratch, &context, state, fault);
     add_body_contact(&scratch->body_contact, &context, state, fault);
     recover_seen(domain, state, fault);
-    hold_up_added(domain, scratch, &context, state);
-    add_friction(domain, scratch, &context, state);
+    add_last(domain, scratch, &context, state);
 }
 
 void lar_step_begin(const lar_domain *domain, lar_interactions *interactions,
@@ -437,8 +444,9 @@ void lar_step_begin(const lar_domain *domain, lar_interactions *interactions,
 void lar_step_move(const lar_domain *domain, lar_interactions *interactions,
                    const lar_condition_context *context, lar_state *state, lar_fault *fault) {
     double time = lar_state_time(domain, state);
-    hold_up_added(domain, interactions, context, state);
-    add_friction(domain, interactions, context, state);
+    add_last(domain, interactions, context, state);
+    if (interactions->leads && state->part == 0)
+        lar_free_bodies_go(domain, &interactions->notes, state, interactions->leads);
     lar_tool_friction_half_work(&interactions->tool_contact, context, state);
     lar_tool_contact_carry(&interactions->tool_contact, context, &interactions->notes, state);
     lar_conditions_observe(context, &interactions->notes, state);

@@ -111,6 +111,8 @@ lar_status lar_scene_vector(const lar_scene *scene, const lar_yaml *node, const 
                             double value[3]);
 /* The same, brought to length one. */
 lar_status lar_scene_direction(const lar_scene *scene, const lar_yaml *node, double unit[3]);
+/* Some of x, y and z, as bits. */
+lar_status lar_scene_axes(const lar_scene *scene, const lar_yaml *node, unsigned *axes);
 lar_status lar_scene_integer(const lar_scene *scene, const lar_yaml *node, const char *expected,
                              int64_t *value);
 /* True when the node is written like an integer. */

@@ -130,7 +130,7 @@ lar_status lar_scene_read_course(const lar_scene *scene, const lar_yaml *entry, 
 
 /* ---- supports ----------------------------------------------------------------------------- */
 
-static lar_status read_axes(const lar_scene *scene, const lar_yaml *node, unsigned *axes) {
+lar_status lar_scene_axes(const lar_scene *scene, const lar_yaml *node, unsigned *axes) {
     unsigned found = 0;
     bool good = node->kind == LAR_YAML_SCALAR && node->text[0] != '\0';
     for (const char *c = good ? node->text : ""; *c; c++) {
@@ -141,9 +141,9 @@ static lar_status read_axes(const lar_scene *scene, const lar_yaml *node, unsign
     char shown[LAR_YAML_SHOWN];
     if (!good)
         return lar_scene_fail(scene, node, LAR_ERROR_FORMAT,
-                              "axes: expected some of the letters x, y, z, each once, for example "
+                              "%s: expected some of the letters x, y, z, each once, for example "
                               "xyz, but found %s",
-                              lar_yaml_show(node, shown));
+                              node->key->text, lar_yaml_show(node, shown));
     *axes = found;
     return LAR_OK;
 }
@@ -180,7 +180,7 @@ static lar_status read_fix_entry(lar_scene *scene, const lar_yaml *entry) {
     if (status) return status;
     lar_fix *fix = LAR_MODEL_APPEND(scene->model, fix);
     if (!fix) return lar_scene_no_memory(scene, sizeof *fix);
-    status = read_axes(scene, axes, &fix->axes);
+    status = lar_scene_axes(scene, axes, &fix->axes);
     if (!status) status = lar_scene_select_nodes(scene, nodes, &fix->nodes);
     return status ? status : lar_scene_claim_axes(scene, entry, &fix->nodes, fix->axes, false);
 }
@@ -262,7 +262,7 @@ static lar_status read_move_entry(lar_scene *scene, const lar_yaml *entry) {
     if (status) return status;
     lar_move *move = LAR_MODEL_APPEND(scene->model, move);
     if (!move) return lar_scene_no_memory(scene, sizeof *move);
-    status = read_axes(scene, axes, &move->axes);
+    status = lar_scene_axes(scene, axes, &move->axes);
     if (!status) status = lar_scene_number(scene, by, LAR_IN_METRES, &move->by);
     if (!status) status = lar_scene_read_course(scene, entry, true, &move->curve);
     if (!status) status = lar_scene_select_nodes(scene, nodes, &move->nodes);

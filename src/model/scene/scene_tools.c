@@ -41,7 +41,7 @@ static const shape_keys known[] = {
      LAR_TOOL_RIGID,
      false,
      false,
-     {"name", "shape", "nodes", "at", "path", NULL}}};
+     {"name", "shape", "nodes", "at", "path", "free", NULL}}};
 enum { SHAPES = sizeof known / sizeof known[0] };
 
 static lar_status read_shape(const lar_scene *scene, const lar_yaml *node,
@@ -274,6 +274,51 @@ static void find_reach(const lar_model *model, lar_tool *tool) {
                             distance_of(model->mesh.position[nodes->node[k]], tool->rest.position));
 }
 
+/* Planes stop nodes one by one, and nobody asks the body. */
+static lar_status notice_planes(lar_scene *scene, const lar_yaml *entry, const lar_tool *tool) {
+    lar_model *model = scene->model;
+    for (int i = 0; i < model->contact_count; i++) {
+        const lar_contact *contact = &model->contact[i];
+        for (int32_t k = 0; contact->kind == LAR_CONTACT_PLANE && k < 4 * contact->face_count;
+             k++) {
+            const int32_t face = contact->face[k / 4];
+            const int32_t node = model->mesh.element[face / 6][lar_face_node[face % 6][k % 4]];
+            if (scene->axis_line[3 * (size_t)node] == entry->line)
+                return lar_model_notice(model, scene->error,
+                                        "%s: planes do not stop \"%s\": let it fall on elements "
+                                        "that are fixed, by contact between the two",
+                                        scene->path, tool->name);
+        }
+    }
+    return LAR_OK;
+}
+
+/* A point of space about which it turns, and an axis through it. */
+static lar_status read_joint(const lar_scene *scene, const lar_yaml *node, lar_tool *tool) {
+    static const char *const keys[] = {"point", "axis", NULL};
+    const lar_yaml *point = NULL, *axis = lar_yaml_get(node, "axis");
+    tool->free = LAR_FREE_TURNS;
+    lar_status status = lar_scene_keys(scene, node, "a joint", keys);
+    if (!status)
+        status = lar_scene_need(scene, node, "a joint", "point", "point: [0, 0, 0.1]", &point);
+    if (!status) status = lar_scene_vector(scene, point, LAR_IN_POSITION, tool->point);
+    return status || !axis ? status : lar_scene_direction(scene, axis, tool->axis);
+}
+
+/* Along which axes forces take it; with all of them it turns as well. */
+static lar_status read_free(lar_scene *scene, const lar_yaml *entry, lar_tool *tool) {
+    const lar_yaml *node = lar_yaml_get(entry, "free");
+    if (!node) return LAR_OK;
+    if (tool->path.count > 0)
+        return lar_scene_fail(scene, node, LAR_ERROR_MODEL,
+                              "free: a body that has a path is led; leave one of them out");
+    lar_status status = notice_planes(scene, entry, tool);
+    if (status) return status;
+    tool->free = LAR_AXIS_ALL | LAR_FREE_TURNS;
+    if (node->kind == LAR_YAML_MAPPING) return read_joint(scene, node, tool);
+    return lar_scene_is_word(node, "all") ? LAR_OK : lar_scene_axes(scene, node, &tool->free);
+}
+
 static lar_status read_size(lar_scene *scene, const lar_yaml *entry, const shape_keys *shape,
                             lar_tool *tool) {
     const lar_yaml *radius = NULL, *length = NULL, *spread = lar_yaml_get(entry, "spread");
@@ -297,8 +342,9 @@ static lar_status read_size(lar_scene *scene, const lar_yaml *entry, const shape
 }
 
 static lar_status read_tool(lar_scene *scene, const lar_yaml *entry) {
-    static const char *const keys[] = {"name",    "shape", "radius", "length",   "spread", "at",
-                                       "towards", "turn",  "path",   "friction", "nodes",  NULL};
+    static const char *const keys[] = {"name",  "shape",   "radius", "length", "spread",
+                                       "at",    "towards", "turn",   "path",   "friction",
+                                       "nodes", "free",    NULL};
     const char *const what = "a tool";
     const lar_yaml *name = NULL, *word = NULL;
     const shape_keys *shape = NULL;
@@ -320,6 +366,7 @@ static lar_status read_tool(lar_scene *scene, const lar_yaml *entry) {
     if (!status) status = read_pose(scene, entry, shape, tool);
     if (!status && shape->shape == LAR_TOOL_RIGID) find_reach(scene->model, tool);
     if (!status) status = lar_scene_friction(scene, entry, &tool->friction);
+    if (!status) status = read_free(scene, entry, tool);
     char problem[LAR_PROBLEM_SIZE];
     if (!status && lar_tool_problem(scene->model, tool, problem))
         status = lar_scene_fail(scene, entry, LAR_ERROR_MODEL, "%s", problem);

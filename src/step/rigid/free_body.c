@@ -1,0 +1,180 @@
+#include "step/rigid/free_body.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/quaternion.h"
+#include "base/vector.h"
+#include "contact/tool_body.h"
+
+bool lar_free_bodies_any(const lar_model *model) {
+    bool any = false;
+    for (int i = 0; i < model->tool_count; i++) any = any || model->tool[i].free;
+    return any;
+}
+
+/* ---- what the nodes would do ----------------------------------------------------------------- */
+
+/* How a node that nothing holds moves in a whole step, also where that is divided: bodies go evenly
+ * through its parts. */
+typedef struct whole_step {
+    double keep, push, drift[3];
+} whole_step;
+
+static whole_step whole_step_of(const lar_domain *domain, const lar_state *state,
+                                const lar_settings *settings) {
+    const double dt = domain->time_step, made = 0.5 * domain->model->damping * dt;
+    const double half = 0.5 * lar_damping_of(domain->model, settings) * dt;
+    whole_step step = {(1 - half) / (1 + half), (1 + made) / (1 + half), {0}};
+    lar_gravity_at(domain->model, settings, lar_state_time(domain, state), step.drift);
+    for (int i = 0; i < 3; i++) step.drift[i] *= dt / (1 + half);
+    return step;
+}
+
+/* Where a node is now, seen from a point. Returns its mass. */
+static double arm_of(const lar_domain *domain, const lar_state *state, lar_lid node,
+                     const double from[3], double arm[3]) {
+    const double *rest = domain->model->mesh.position[domain->layout.global[node]];
+    lar_state_displacement(state, node, arm);
+    for (int i = 0; i < 3; i++) arm[i] += rest[i] - from[i];
+    return domain->mass[node];
+}
+
+/* The nodes that a tool has: some may have been let go. From one constraint to the next along x. */
+static int32_t next_of(const lar_condition_notes *notes, int tool, int32_t i) {
+    while (i < notes->constraint_count &&
+           (notes->constraint[i].curve != LAR_CURVE_TOOL || notes->constraint[i].rigid != tool ||
+            notes->constraint[i].axis != 0))
+        i++;
+    return i;
+}
+
+/* The centre of mass, or the point that the body turns about. */
+static void find_centre(const lar_domain *domain, const lar_condition_notes *notes,
+                        const lar_state *state, int tool, lar_rigid_sum *sum) {
+    static const double origin[3];
+    const lar_tool *body = &domain->model->tool[tool];
+    double x[3], all[3] = {0};
+    for (int32_t k = 0; (k = next_of(notes, tool, k)) < notes->constraint_count; k++) {
+        const double mass = arm_of(domain, state, notes->constraint[k].node, origin, x);
+        sum->mass += mass;
+        for (int i = 0; i < 3; i++) all[i] += mass * x[i];
+    }
+    for (int i = 0; i < 3; i++)
+        sum->centre[i] = body->free & LAR_AXIS_ALL ? all[i] / sum->mass : body->point[i];
+}
+
+static void sum_nodes(const lar_domain *domain, const lar_condition_notes *notes,
+                      const lar_state *state, const whole_step *step, int tool,
+                      lar_rigid_sum *sum) {
+    *sum = (lar_rigid_sum){0};
+    find_centre(domain, notes, state, tool, sum);
+    for (int32_t k = 0; (k = next_of(notes, tool, k)) < notes->constraint_count; k++) {
+        const lar_lid n = notes->constraint[k].node;
+        double r[3], p[3], turn[3];
+        const double mass = arm_of(domain, state, n, sum->centre, r);
+        for (int i = 0; i < 3; i++) {
+            const size_t at = lar_state_at(state, n, i);
+            p[i] = mass * (step->keep * state->v[at] + step->drift[i] -
+                           step->push * domain->push[n] * (double)state->force[at]);
+        }
+        lar_cross(r, p, turn);
+        for (int i = 0; i < 3; i++) {
+            sum->momentum[i] += p[i];
+            sum->spin[i] += turn[i];
+            sum->inertia[i] += mass * (lar_dot(r, r) - r[i] * r[i]);
+            sum->inertia[3 + i] -= mass * r[i] * r[(i + 1) % 3];
+        }
+    }
+}
+
+/* ---- what the body does ---------------------------------------------------------------------- */
+
+static void product(const double inertia[6], const double v[3], double out[3]) {
+    for (int i = 0; i < 3; i++) {
+        const int j = (i + 1) % 3, k = (i + 2) % 3;
+        out[i] = inertia[i] * v[i] + inertia[3 + i] * v[j] + inertia[3 + k] * v[k];
+    }
+}
+
+/* A body whose inertia about an axis is less of that about the others lies in that axis. */
+static const double LINE = 1e-9;
+
+static double mean_of(const double inertia[6]) {
+    return (inertia[0] + inertia[1] + inertia[2]) / 3;
+}
+
+/* Symmetric as well; false: of nodes that lie in a line, or nearly. */
+static bool invert(const double a[6], double out[6]) {
+    double det = 0, mean = mean_of(a);
+    for (int i = 0; i < 3; i++) {
+        const int j = (i + 1) % 3, k = (i + 2) % 3;
+        out[i] = a[j] * a[k] - a[3 + j] * a[3 + j];
+        out[3 + i] = a[3 + j] * a[3 + k] - a[3 + i] * a[k];
+    }
+    det = a[0] * out[0] + a[3] * out[3] + a[5] * out[5];
+    for (int i = 0; i < 6; i++) out[i] /= det;
+    return det > LINE * mean * mean * mean;
+}
+
+/* What is left of the inverse where a body turns about an axis. */
+static bool invert_along(const double inertia[6], const double axis[3], double out[6]) {
+    double carried[3];
+    product(inertia, axis, carried);
+    const double about = lar_dot(axis, carried);
+    for (int i = 0; i < 3; i++) {
+        out[i] = axis[i] * axis[i] / about;
+        out[3 + i] = axis[i] * axis[(i + 1) % 3] / about;
+    }
+    return about > LINE * mean_of(inertia);
+}
+
+void lar_free_body_turn(const lar_rigid_sum *sum, const double axis[3], double dt, double v[3]) {
+    enum { TIMES = 12 }; /* each brings it closer by a factor of |v| or more */
+    double inverse[6], carried[3], across[3];
+    memset(v, 0, 3 * sizeof *v);
+    if (lar_dot(axis, axis) > 0 ? !invert_along(sum->inertia, axis, inverse)
+                                : !invert(sum->inertia, inverse))
+        return;
+    for (int n = 0; n < TIMES; n++) {
+        product(sum->inertia, v, carried);
+        lar_cross(v, carried, across);
+        for (int i = 0; i < 3; i++)
+            across[i] = (1 + 0.25 * lar_dot(v, v)) * dt * sum->spin[i] - 0.5 * across[i];
+        product(inverse, across, v);
+    }
+}
+
+/* Where the body is after the step, from where it is. */
+static void next_pose(const lar_tool *tool, const lar_rigid_sum *sum, double dt,
+                      const lar_tool_pose *now, lar_tool_pose *next) {
+    double turn[4] = {1}, v[3] = {0}, arm[3], swung[3];
+    *next = *now;
+    if (tool->free & LAR_FREE_TURNS) lar_free_body_turn(sum, tool->axis, dt, v);
+    for (int i = 0; i < 3; i++) turn[1 + i] = 0.5 * v[i];
+    lar_quaternion_normalise(turn);
+    lar_quaternion_product(turn, now->orientation, next->orientation);
+    lar_quaternion_normalise(next->orientation);
+    lar_minus(now->position, sum->centre, arm);
+    lar_turn(turn, arm, swung);
+    for (int i = 0; i < 3; i++) {
+        if (tool->free >> i & 1) next->position[i] += dt * sum->momentum[i] / sum->mass;
+        next->position[i] += swung[i] - arm[i];
+    }
+}
+
+void lar_free_bodies_go(const lar_domain *domain, const lar_condition_notes *notes,
+                        const lar_state *state, lar_tools *tools) {
+    const lar_model *model = domain->model;
+    const whole_step step = whole_step_of(domain, state, &tools->settings);
+    for (int tool = 0; tool < model->tool_count; tool++) {
+        if (!model->tool[tool].free || tools->motion[tool].end > state->step) continue;
+        lar_tool_motion way = {.start = state->step, .end = state->step + 1};
+        lar_rigid_sum sum;
+        sum_nodes(domain, notes, state, &step, tool, &sum);
+        if (!(sum.mass > 0)) continue;
+        lar_tool_at(&tools->motion[tool], state->step, domain->time_step, &way.from, NULL);
+        next_pose(&model->tool[tool], &sum, domain->time_step, &way.from, &way.to);
+        lar_tool_ask(tools, tool, &way);
+    }
+}

@@ -1,0 +1,47 @@
+/* Rigid bodies that nothing leads: tools that move nodes (LAR_TOOL_RIGID), with the key `free`.
+ *
+ * When all forces of a step are there, each node of a body has the velocity that it would have next
+ * if nothing held them together. The body takes the rigid motion that has their momentum, and their
+ * angular momentum about the centre of mass: that is the projection onto rigid motions in the
+ * metric of masses, so what holds it together does no work. Gravity, damping, initial velocities
+ * and all forces are in these velocities, and no state beside that of the nodes is needed: bits do
+ * not depend on where a run was saved.
+ *
+ * Turns are those of SHAKE (Ryckaert, Ciccotti and Berendsen 1977) for a body of all its nodes:
+ * with the Cayley vector v of the turn within the step, 2 tan(angle / 2) along its axis, I the
+ * inertia and L the angular momentum,
+ *
+ *     I v + v x (I v) / 2 = (1 + v.v / 4) dt L,
+ *
+ * which keeps the angular momentum of the nodes' ways exactly, also of what spins freely.
+ *
+ * What turns about a point or an axis is the same about that point.
+ *
+ * One thread must have all nodes: lar_step does it itself; for processors it is done between steps,
+ * by a look at the forces (lar_measure_ahead), with the same bits.
+ */
+#ifndef LAR_STEP_RIGID_FREE_BODY_H
+#define LAR_STEP_RIGID_FREE_BODY_H
+
+#include "step/step.h"
+
+/* Sums over the nodes of a body where they are now, with their masses and those velocities. */
+typedef struct lar_rigid_sum {
+    double mass, centre[3]; /* [kg]; of mass, or where the body is held [m] */
+    double momentum[3];     /* [kg m/s] */
+    double spin[3];         /* angular momentum about `centre` [kg m^2/s] */
+    double inertia[6];      /* about `centre`: xx yy zz xy yz zx [kg m^2] */
+} lar_rigid_sum;
+
+bool lar_free_bodies_any(const lar_model *model);
+
+/* All forces stand in state->force: tells `tools` where free bodies go in the step, those that
+ * nobody leads. */
+void lar_free_bodies_go(const lar_domain *domain, const lar_condition_notes *notes,
+                        const lar_state *state, lar_tools *tools);
+
+/* The Cayley vector of the turn of a body within dt, about `axis` where that is not zero. What is
+ * as thin as a line turns about an axis only. */
+void lar_free_body_turn(const lar_rigid_sum *sum, const double axis[3], double dt, double v[3]);
+
+#endif

@@ -1,0 +1,342 @@
+/* Rigid bodies that nothing leads: they fly, spin, swing and lie as mechanics says, their account
+ * closes, and the bits are the same everywhere. */
+#include "engine/engine_test.h"
+
+#include "engine/body_contact_test.h"
+#include "engine/tools_test.h"
+#include "step/rigid/free_body.h"
+
+/* All nodes of a body become one rigid body, with all freedom. */
+static lar_tool *bind(lar_model *model, int32_t first, int32_t end) {
+    lar_node_list nodes = {end - first, lar_calloc((size_t)(end - first), 4)};
+    double x[3] = {0};
+    for (int32_t n = first; n < end; n++) {
+        nodes.node[n - first] = n;
+        for (int i = 0; i < 3; i++) x[i] += model->mesh.position[n][i] / (end - first);
+    }
+    add_tool(model, "stone", LAR_TOOL_RIGID, x[0], x[1], x[2]);
+    *(lar_move *)LAR_MODEL_APPEND(model, move) =
+        (lar_move){.nodes = nodes, .axes = LAR_AXIS_ALL, .tool = model->tool_count};
+    lar_tool *tool = &model->tool[model->tool_count - 1];
+    tool->free = LAR_AXIS_ALL | LAR_FREE_TURNS;
+    return tool;
+}
+
+static const brick stone = {{2, 3, 5}, 0.01, 0.1, LAR_LAW_neo_hookean, 2e3, 2e4, 1000};
+enum { STONE_NODES = 3 * 4 * 6 };
+
+static lar_model *stone_model(void) {
+    lar_model *model = empty_model(&stone);
+    add_brick(model, &stone, (double[]){0, 0, 0});
+    bind(model, 0, model->mesh.node_count);
+    return model;
+}
+
+static double sum_of(const lar_energy *e) {
+    return e->kinetic + e->strain + e->hourglass + e->damping + e->contact + e->viscous;
+}
+
+/* Kinetic energy; the account is what was there at the start as long as it closes. */
+static double energy_of(const lar_simulation *simulation, double *account) {
+    lar_energy e;
+    lar_simulation_energy(simulation, &e);
+    *account = sum_of(&e) - e.external;
+    return e.kinetic;
+}
+
+/* Thrown, it flies as its nodes would fly alone: x0 + v0 t + g t^2 / 2, to the last digits. */
+static void it_flies(void **unused) {
+    (void)unused;
+    lar_model *model = stone_model();
+    const double v[3] = {0.3, -0.2, 0.5};
+    throw_nodes(model, 0, STONE_NODES, v);
+    model->gravity[2] = -9.81;
+    lar_simulation *simulation = start(model);
+    double first, account;
+    const double began = energy_of(simulation, &first);
+    advance(simulation, 2000);
+    const double t = lar_simulation_time(simulation);
+    for (int32_t n = 0; n < STONE_NODES; n += 7)
+        for (int i = 0; i < 3; i++) {
+            const double want = v[i] * t - (i == 2 ? 0.5 * 9.81 * t * t : 0);
+            assert_below(fabs(node_u(simulation, n)[i] - want), 1e-9 * t);
+        }
+    assert_true(energy_of(simulation, &account) > 2 * began);
+    assert_below(fabs(account - first), 1e-9 * began);
+    finish(simulation, model);
+}
+
+static const double centre_of_stone[3] = {0.01, 0.015, 0.025};
+
+/* About the centre of the model, w x r. */
+static void spin_nodes(lar_model *model, const double w[3]) {
+    for (int32_t n = 0; n < model->mesh.node_count; n++) {
+        double r[3], v[3];
+        lar_minus(model->mesh.position[n], centre_of_stone, r);
+        lar_cross(w, r, v);
+        throw_nodes(model, n, n + 1, v);
+    }
+}
+
+/* Angular momentum about the centre of mass, by the nodes' ways in the last step. */
+static void spin_of(const lar_simulation *simulation, double spin[3]) {
+    const lar_domain *domain = &simulation->domain;
+    double v[STONE_NODES][3], u[STONE_NODES][3], x[3], c[3] = {0}, turn[3], mass = 0;
+    lar_simulation_velocities(simulation, v);
+    lar_simulation_displacements(simulation, u);
+    memset(spin, 0, 3 * sizeof *spin);
+    for (int pass = 0; pass < 2; pass++)
+        for (int32_t n = 0; n < STONE_NODES; n++) {
+            const double m = domain->mass[domain->layout.local[n]];
+            for (int i = 0; i < 3; i++) x[i] = domain->model->mesh.position[n][i] + u[n][i];
+            mass += pass == 0 ? m : 0;
+            for (int i = 0; i < 3 && pass == 0; i++) c[i] += m * x[i];
+            for (int i = 0; i < 3 && pass == 1; i++) x[i] -= c[i] / mass;
+            lar_cross(x, v[n], turn);
+            for (int i = 0; i < 3 && pass == 1; i++) spin[i] += m * turn[i];
+        }
+}
+
+/* About the axis of the middle inertia a spin turns over, again and again (Euler); angular momentum
+ * and energy stay all the while. The start is half a step before and after; the middle is measured
+ * against the first step. */
+static void it_spins_as_euler_says(void **unused) {
+    (void)unused;
+    lar_model *model = stone_model();
+    spin_nodes(model, (double[]){0.02, 20, 0.02});
+    lar_simulation *simulation = start(model);
+    double before[3], now[3], account;
+    advance(simulation, 1);
+    spin_of(simulation, before);
+    const double began = energy_of(simulation, &account);
+    bool over = false;
+    for (int k = 0; k < 300; k++) {
+        advance(simulation, 10);
+        spin_of(simulation, now);
+        for (int i = 0; i < 3; i++)
+            assert_below(fabs(now[i] - before[i]), 1e-9 * lar_length(before));
+        assert_below(fabs(energy_of(simulation, &account) / began - 1), 2e-3);
+        lar_tool_pose pose;
+        assert_int_equal(lar_simulation_tool_pose(simulation, 0, &pose, NULL), LAR_OK);
+        const double *q = pose.orientation; /* the own y axis, along y: -1 turned over */
+        over = over || 1 - 2 * (q[1] * q[1] + q[3] * q[3]) < -0.9;
+    }
+    assert_true(over);
+    finish(simulation, model);
+}
+
+/* I v + v x (I v) / 2 = (1 + v.v / 4) dt L, also for large turns; about an axis the same along it;
+ * what lies in a line does not turn. */
+static void turns_solve_their_equation(void **unused) {
+    (void)unused;
+    lar_rigid_sum sum = {.mass = 1, .spin = {0.7, -0.4, 0.9}, .inertia = {2, 3, 4, 0.3, -0.2, 0.5}};
+    const double I[3][3] = {{2, 0.3, 0.5}, {0.3, 3, -0.2}, {0.5, -0.2, 4}}, any[3] = {0};
+    double v[3], carried[3], across[3];
+    for (double dt = 1e-3; dt < 2; dt *= 10) {
+        lar_free_body_turn(&sum, any, dt, v);
+        for (int i = 0; i < 3; i++) carried[i] = lar_dot(I[i], v);
+        lar_cross(v, carried, across);
+        const double far = lar_dot(v, v);
+        for (int i = 0; i < 3; i++)
+            assert_below(fabs(carried[i] + 0.5 * across[i] - (1 + far / 4) * dt * sum.spin[i]),
+                         1e-6 * dt * far + 1e-15);
+    }
+    const double axis[3] = {0.6, 0, 0.8};
+    lar_free_body_turn(&sum, axis, 0.01, v);
+    for (int i = 0; i < 3; i++) carried[i] = lar_dot(I[i], v);
+    assert_below(fabs(v[1]) + fabs(v[0] / 0.6 - v[2] / 0.8), 1e-15);
+    assert_below(fabs(lar_dot(axis, carried) - (1 + lar_dot(v, v) / 4) * 0.01 * 1.14), 1e-12);
+    const lar_rigid_sum line = {.mass = 1, .spin = {0, 1, 0}, .inertia = {0, 1, 1}};
+    lar_free_body_turn(&line, any, 0.01, v);
+    assert_true(v[0] == 0 && v[1] == 0 && v[2] == 0);
+    lar_free_body_turn(&line, (double[]){1, 0, 0}, 0.01, v);
+    assert_true(v[0] == 0 && v[1] == 0 && v[2] == 0);
+}
+
+/* The arithmetic-geometric mean has the period of a large swing. */
+static double period_of(double angle, double small) {
+    double a = 1, b = cos(angle / 2);
+    for (int i = 0; i < 8; i++) {
+        const double mean = (a + b) / 2;
+        b = sqrt(a * b);
+        a = mean;
+    }
+    return small / a;
+}
+
+/* A bar that is let go from the horizontal, on an axis at its end, is back after one period, and so
+ * it is on a point. */
+static void it_swings_on_a_hinge(void **unused) {
+    (void)unused;
+    static const brick rod = {{10, 2, 2}, 0.03, 0, LAR_LAW_neo_hookean, 2e5, 2e6, 1000};
+    for (int hinge = 0; hinge < 2; hinge++) {
+        lar_model *model = empty_model(&rod);
+        add_brick(model, &rod, (double[]){0, -0.03, -0.03});
+        lar_tool *tool = bind(model, 0, model->mesh.node_count);
+        tool->free = LAR_FREE_TURNS;
+        if (hinge) tool->axis[1] = 1;
+        model->gravity[2] = -9.81;
+        lar_simulation *simulation = start(model);
+        const lar_domain *domain = &simulation->domain;
+        double inertia = 0, moment = 0, account;
+        for (int32_t n = 0; n < model->mesh.node_count; n++) {
+            const double *x = model->mesh.position[n], m = domain->mass[domain->layout.local[n]];
+            inertia += m * (x[0] * x[0] + x[2] * x[2]);
+            moment += m * x[0] * 9.81;
+        }
+        const double period = period_of(LAR_PI / 2, 2 * LAR_PI * sqrt(inertia / moment));
+        const int32_t end = brick_node(&rod, 10, 1, 1);
+        double highest = -1, back = 0;
+        while (lar_simulation_time(simulation) < 1.2 * period) {
+            advance(simulation, 1);
+            const double t = lar_simulation_time(simulation), z = node_u(simulation, end)[2];
+            if (t > 0.7 * period && z > highest) highest = z, back = t;
+        }
+        assert_below(fabs(back / period - 1), 5e-4);
+        assert_below(fabs(highest), 1e-6);
+        assert_below(fabs(node_u(simulation, end)[1]), 1e-12);
+        energy_of(simulation, &account);
+        assert_below(fabs(account), 1e-5 * moment * 0.15);
+        finish(simulation, model);
+    }
+}
+
+static const brick cushion = {{8, 8, 3}, 0.01, 0, LAR_LAW_coupled_neo_hookean, 1e4, 1e4, 200},
+                   block = {{3, 3, 3}, 0.01, 0, LAR_LAW_coupled_neo_hookean, 1e4, 1e4, 200};
+
+/* A heavy block above a cushion on the ground. */
+static lar_model *cushion_model(double gap) {
+    lar_model *model = two_bricks(&cushion, &block, gap, true);
+    bind(model, 9 * 9 * 4, model->mesh.node_count);
+    lar_material *heavy = LAR_MODEL_APPEND(model, material);
+    *heavy = model->material[0];
+    heavy->density = 4000;
+    for (int32_t e = 8 * 8 * 3; e < model->mesh.element_count; e++) model->element_material[e] = 1;
+    model->gravity[2] = -9.81;
+    return model;
+}
+
+/* It comes to rest where the cushion bears its weight, and nothing turns it. */
+static void it_lies_on_what_bears_it(void **unused) {
+    (void)unused;
+    lar_model *model = cushion_model(0);
+    model->damping = 60;
+    model->contact[0].friction = 0.5; /* or it slides off */
+    lar_simulation *simulation = start(model);
+    lar_tool_force felt;
+    while (lar_simulation_time(simulation) < 2.5) advance(simulation, 100);
+    assert_int_equal(lar_simulation_tool_force(simulation, 0, &felt, NULL), LAR_OK);
+    assert_below(fabs(felt.force[2] / (4000 * 27e-6 * 9.81) - 1), 1e-5);
+    assert_true(node_u(simulation, 9 * 9 * 4)[2] < -3e-4);
+    finish(simulation, model);
+}
+
+/* Thrown down it is thrown back; contact and what holds it together give nothing. */
+static void it_bounces_and_gains_nothing(void **unused) {
+    (void)unused;
+    lar_model *model = cushion_model(0.001);
+    throw_nodes(model, 9 * 9 * 4, model->mesh.node_count, (double[]){0.1, 0, -0.6});
+    lar_simulation *simulation = start(model);
+    double first, account, most = 0, highest = -1;
+    const double began = energy_of(simulation, &first);
+    while (lar_simulation_time(simulation) < 0.12) {
+        advance(simulation, 20);
+        most = fmax(most, energy_of(simulation, &account));
+        assert_below(fabs(account - first), 1e-4 * began);
+        highest = fmax(highest, node_u(simulation, 9 * 9 * 4)[2]);
+    }
+    assert_true(highest > 0);
+    assert_below(most / began, 1.2); /* it fell on by what it sank in */
+    finish(simulation, model);
+}
+
+/* A stone within a body that swings beside a cushion on which a block falls, and what both come to
+ * in 100 steps; `looks`: somebody asks for energies all the while. */
+static uint64_t hash_with(lar_options options, bool looks, bool saves) {
+    lar_model *model = cushion_model(0);
+    throw_nodes(model, 9 * 9 * 4, model->mesh.node_count, (double[]){0.2, 0.1, -1});
+    lar_node_list core = {5, lar_calloc(5, 4)};
+    for (int32_t n = 0; n < 5; n++) core.node[n] = brick_node(&cushion, 1 + n % 2, 1 + n / 2, 2);
+    add_tool(model, "core", LAR_TOOL_RIGID, 0.012, 0.012, 0.02);
+    model->tool[1].free = LAR_AXIS_ALL | LAR_FREE_TURNS;
+    *(lar_move *)LAR_MODEL_APPEND(model, move) =
+        (lar_move){.nodes = core, .axes = LAR_AXIS_ALL, .tool = 2};
+    lar_simulation *simulation = start_with(model, options);
+    for (int k = 0; k < 10; k++) {
+        double account;
+        advance(simulation, looks ? 7 : 10);
+        if (looks) energy_of(simulation, &account);
+        if (looks) advance(simulation, 3);
+        if (!saves || k != 4) continue;
+        const char *path = LAR_TEST_BUILD "/free_body.checkpoint";
+        assert_int_equal(lar_simulation_save(simulation, path, NULL), LAR_OK);
+        lar_simulation_destroy(simulation);
+        simulation = start_with(model, options);
+        assert_int_equal(lar_simulation_load(simulation, path, NULL), LAR_OK);
+    }
+    const uint64_t hash = lar_simulation_hash(simulation);
+    finish(simulation, model);
+    return hash;
+}
+
+/* Who looks, and how often, changes nothing; nor does a grid, nor where a run was saved, nor a set
+ * of instructions. */
+static void bits_are_the_same_everywhere(void **unused) {
+    (void)unused;
+    static const char *const grids[] = {"1x1x1", "2x1x1", "1x3x1", "2x2x3"};
+    static const lar_isa sets[] = {LAR_ISA_C, LAR_ISA_NEON, LAR_ISA_AVX2, LAR_ISA_AVX512};
+    const uint64_t golden = 0x297538c9b9cc709c;
+    const lar_kernels *kernels;
+    lar_options options = lar_options_default();
+    assert_true(hash_with(options, true, false) == hash_with(options, false, true));
+    for (int i = 0; i < 4; i++) {
+        if (lar_kernels_find(sets[i], &kernels, NULL)) continue;
+        options.isa = sets[i];
+        const uint64_t hash = hash_with(options, false, false);
+        if (hash != golden) fail_msg("%s: 0x%016llx", kernels->name, (unsigned long long)hash);
+    }
+    options = lar_options_default();
+    for (int g = 0; g < 4; g++) {
+        options.grid = grids[g];
+        assert_true(hash_with(options, g == 1, g == 2) == golden);
+    }
+}
+
+/* Along its axes alone; and what is led goes on as it was led. */
+static void it_goes_where_it_may(void **unused) {
+    (void)unused;
+    lar_model *model = stone_model();
+    model->tool[0].free = LAR_AXIS_X;
+    memcpy(model->gravity, (double[]){1, 2, 3}, sizeof model->gravity);
+    lar_simulation *simulation = start(model);
+    advance(simulation, 200);
+    const double t = lar_simulation_time(simulation);
+    for (int32_t n = 0; n < STONE_NODES; n += 5) {
+        const double *u = node_u(simulation, n);
+        assert_below(fabs(u[0] - 0.5 * t * t), 1e-9);
+        assert_true(u[1] == 0 && u[2] == 0);
+    }
+    finish(simulation, model);
+    model = stone_model();
+    simulation = start(model);
+    lar_tool_pose pose = model->tool[0].rest;
+    pose.position[1] += 0.01;
+    assert_int_equal(lar_simulation_tool_move(simulation, 0, &pose, 100, NULL), LAR_OK);
+    advance(simulation, 300);
+    assert_below(fabs(node_u(simulation, 0)[1] - 0.03), 1e-12);
+    finish(simulation, model);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(it_flies),
+        cmocka_unit_test(it_spins_as_euler_says),
+        cmocka_unit_test(turns_solve_their_equation),
+        cmocka_unit_test(it_swings_on_a_hinge),
+        cmocka_unit_test(it_lies_on_what_bears_it),
+        cmocka_unit_test(it_bounces_and_gains_nothing),
+        cmocka_unit_test(bits_are_the_same_everywhere),
+        cmocka_unit_test(it_goes_where_it_may),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
