@@ -298,18 +298,21 @@ __attribute__((noinline, cold)) static double come_past(const lar_body_contact *
     return part * force + lar_edge_slope(s, energy) * s->hides.lift;
 }
 
-/* Deep in another body springs are harder, and ask for parts of the steps up to the next decision.
- * Adds what that stores to *energy [J]. */
-static double harden(lar_body_contact *contact, int32_t node, int32_t face, double mass,
-                     double depth, double rate, double *energy) {
+/* Deep in another body springs are harder, and ask for parts of the steps up to the next decision;
+ * not those of points, which may come from where they are not pushed any more. What goes out is
+ * pushed less (lar_contact_let_go), nodes beyond what is hard later. */
+static double press_deep(lar_body_contact *contact, int32_t node, int32_t face, double mass,
+                         double depth, double rate, double force, double *energy) {
     const lar_contact_surface *s = contact->surface;
     const lar_contact_law *law = &contact->law;
-    const double layer =
-        fmin(s->body[s->node[node].body].reach[1], s->body[s->face[face].body].reach[1]);
-    const double soon = depth + LAR_INTERVAL_MAX * law->lead * rate;
-    const double need = lar_contact_deep_need(law, layer, fmax(depth, fmin(soon, layer)));
-    contact->need = fmax(contact->need, need);
-    return lar_contact_deep_force(law, contact->time_step, mass, layer, depth, rate, energy);
+    const lar_contact_body *own = &s->body[s->node[node].body];
+    const double layer = fmin(own->reach[1], s->body[s->face[face].body].reach[1]);
+    if (node >= s->node_count) return lar_contact_let_go(law, layer, depth, rate) * force;
+    const double soon = fmin(depth + LAR_INTERVAL_MAX * law->lead * rate, layer);
+    contact->need = fmax(contact->need, lar_contact_deep_need(law, layer, fmax(depth, soon)));
+    return lar_contact_let_go(law, layer, depth - layer / 3, rate) * force +
+           lar_contact_let_go(law, layer, depth, rate) *
+               lar_contact_deep_force(law, contact->time_step, mass, layer, depth, rate, energy);
 }
 
 static bool is_beside(const lar_face_point *closest) {
@@ -381,7 +384,7 @@ static bool push(lar_body_contact *contact, const lar_state *state, int32_t g, i
     const meeting m = {
         x, &known, closest, full_of(contact, node, face), rate, f->fades && !own && !s->flush};
     double energy = 0, force = press(contact, &m, two, &energy, t);
-    if (!own) force += harden(contact, node, face, moved, depth, rate, &energy);
+    if (!own) force = press_deep(contact, node, face, moved, depth, rate, force, &energy);
     if (spent) memset(t->fade, 0, sizeof t->fade);
     if (spent) force = 0;
     if (s->border >= 0) force = come_in(contact, g, s, &m, two, &energy, together, force, t);

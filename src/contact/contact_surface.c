@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "contact/search/symmetry.h"
 #include "divide/incidence.h"
 #include "mechanics/contact.h"
 #include "mechanics/hex8.h"
@@ -21,6 +22,7 @@ typedef struct workspace {
     int32_t *index_of; /* [nodes of the model] contact node, -1: none */
     int32_t *face_of;  /* [faces of the model's surface] contact face, -1: none */
     int32_t *seen;     /* [elements] the last node, plus 1, that went by */
+    lar_symmetry symmetry;
 } workspace;
 
 static void clear_workspace(workspace *d) {
@@ -159,7 +161,10 @@ static lar_status list_faces(workspace *d, lar_error *error) {
     const lar_surface *surface = &d->model->surface;
     lar_contact_surface *s = d->surface;
     for (int32_t f = 0; f < surface->face_count; f++)
-        d->face_of[f] = d->active[f] | touched_by(d, f) ? s->face_count++ : -1;
+        d->face_of[f] =
+            (d->active[f] | touched_by(d, f)) && !lar_symmetry_cuts(&d->symmetry, d->model, f)
+                ? s->face_count++
+                : -1;
     s->face = lar_calloc((size_t)s->face_count, sizeof *s->face);
     if (!s->face)
         return lar_fail_memory(error, (size_t)s->face_count * sizeof *s->face,
@@ -445,6 +450,7 @@ lar_status lar_contact_surface_create(const lar_model *model, const double *mass
     if (!asked_for(model)) return LAR_OK;
     workspace d = {.model = model, .surface = surface};
     lar_status status = allocate_workspace(&d, error);
+    if (!status) status = lar_symmetry_find(model, &d.symmetry, error);
     if (!status) lar_mesh_bodies(&model->mesh, d.body);
     if (!status) status = add_passes(&d, error);
     if (!status) status = list_all(&d, mass, local, error);

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/vector.h"
+#include "contact/search/symmetry.h"
 #include "contact/tool_contact_face.h"
 #include "contact/tool_friction.h"
 #include "contact/touch_list.h"
@@ -25,14 +26,18 @@ static double lets_go(const lar_material *material) {
     return fmax(HANDS, WAVES * sqrt(modulus / material->density));
 }
 
+/* What lies in a plane of symmetry takes next to nothing from its corners: only tools that are
+ * behind that plane meet it. */
+static const double CUT_SHARE = 1.0 / 64;
+
 static void add_face(const lar_model *model, const int32_t *local, const uint8_t *faces_at,
-                     int32_t face, lar_tool_faces *faces) {
+                     int32_t face, bool cut, lar_tool_faces *faces) {
     lar_tool_contact_face *f = &faces->face[faces->face_count++];
     *f = (lar_tool_contact_face){.of = face};
     for (int a = 0; a < 4; a++) {
         int32_t node = model->surface.corner[face][a];
         f->node[a] = local[node];
-        f->share[a] = 1.0 / faces_at[node];
+        f->share[a] = cut ? CUT_SHARE : 1.0 / faces_at[node];
         memcpy(f->rest[a], model->mesh.position[node], sizeof f->rest[a]);
     }
     for (int a = 0; a < 4; a++) {
@@ -78,12 +83,16 @@ LAR_SETUP lar_status lar_tool_faces_create(const lar_model *model, const int32_t
     for (int32_t f = 0; f < surface->face_count; f++) count += mine(model, share, f);
     uint8_t *marked = lar_calloc((size_t)model->mesh.node_count, sizeof *marked);
     if (!marked) return lar_fail_memory(error, (size_t)model->mesh.node_count, "the surface");
+    lar_symmetry symmetry;
     lar_status status = allocate_faces(model, count, faces, error);
+    if (!status) status = lar_symmetry_find(model, &symmetry, error);
     if (!status) {
         for (int32_t f = 0; f < surface->face_count; f++)
-            for (int a = 0; a < 4; a++) marked[surface->corner[f][a]]++;
+            for (int a = 0; a < 4 && !lar_symmetry_cuts(&symmetry, model, f); a++)
+                marked[surface->corner[f][a]]++;
         for (int32_t f = 0; f < surface->face_count; f++)
-            if (mine(model, share, f)) add_face(model, local, marked, f, faces);
+            if (mine(model, share, f))
+                add_face(model, local, marked, f, lar_symmetry_cuts(&symmetry, model, f), faces);
         for (int n = 2; n <= LAR_POINTS_ALONG_EDGE; n++)
             lar_tool_contact_grid(n, &faces->weights->of[n]);
         status = lar_tool_faces_group(faces, error);

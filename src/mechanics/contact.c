@@ -72,13 +72,22 @@ double lar_contact_deep_need(const lar_contact_law *law, double layer, double de
 double lar_contact_deep_force(const lar_contact_law *law, double part, double mass, double layer,
                               double depth, double rate, double *stored) {
     static const double ELEMENTS = 0.9; /* of what a step has room for they may take that */
-    double deep = depth - DEEP * layer, ahead = deep + part * rate, parts = law->lead / part;
-    if (!(deep > 0 && ahead > 0)) return 0;
+    const double end = (1 - DEEP) * layer, left = fmin(1, 2 - depth / layer);
+    double deep = fmin(depth - DEEP * layer, end), ahead = fmin(deep + part * rate, end);
+    double parts = law->lead / part;
+    if (!(deep > 0 && ahead > 0 && left > 0)) return 0;
     double steepest = ELEMENTS * (parts * parts - 1) / deep_rate(law, layer);
     double curved = fmin(deep, steepest), soft = fmin(ahead, steepest);
-    double stiffness = law->stiffness * mass / (2 * HARDENS * layer);
+    double stiffness = left * law->stiffness * mass / (2 * HARDENS * layer);
     *stored += stiffness * (deep * curved * (deep - curved) + curved * curved * curved / 3);
     return stiffness * soft * (2 * ahead - soft);
+}
+
+double lar_contact_let_go(const lar_contact_law *law, double layer, double depth, double rate) {
+    static const double ENDS = 2.0 / 3, LEADS = 100; /* thirty steps */
+    const double slow = fmax(0, 1 + rate * LEADS * law->lead / layer);
+    if (!(rate < 0 && depth > DEEP * layer)) return 1;
+    return 1 - lar_ease((depth / layer - DEEP) / (ENDS - DEEP)) * (1 - slow);
 }
 
 void lar_face_weights(double r, double s, double weight[4]) {

@@ -61,12 +61,20 @@ double lar_contact_late_force(const lar_contact_law *law, double mass, double fu
 /* Deep in another body springs of the law of bodies, whose lead is the step, are harder, without a
  * jump: they push with k e^2 / (2 w) more, where e = d - deep + dt d' is above 0. Both lengths are
  * parts of a layer of elements [m]; dt is `part`, of the step. As undivided steps have no room for
- * that, it is no steeper than parts bear. Adds what is stored to *stored [J]. */
+ * that, it is no steeper than parts bear. It goes no farther than at a layer, and is gone at two:
+ * who is as deep as that has come another way. Adds what is stored to *stored [J]. */
 double lar_contact_deep_force(const lar_contact_law *law, double part, double mass, double layer,
                               double depth, double rate, double *stored);
 
 /* What that takes of a step, (omega dt / 2)^2 beside what the law's springs take, at a depth. */
 double lar_contact_deep_need(const lar_contact_law *law, double layer, double depth);
+
+/* What part of its force pushes what goes out of another body, `rate` [m/s] below zero: all of it
+ * up to a third of the thinner layer deep, and the less the deeper and faster, from two thirds on
+ * nothing at a layer in thirty steps. What comes to be so deep where nothing pushed it, past
+ * an edge, or through a thin body as it bends, would be thrown out with what pushing it in would
+ * have taken. */
+double lar_contact_let_go(const lar_contact_law *law, double layer, double depth, double rate);
 
 /* Coulomb's law within one step: the part of the velocity along the surface, which a node would
  * have half a step later, that friction takes when it may take `max` of it. All of it is stick

@@ -138,6 +138,27 @@ static bool is_inside(const inside *in, int32_t k) {
     return body != in->body[node->node] && (node->passes & in->active[body]) != 0;
 }
 
+/* in->near[n] becomes whether node n lies inside another body. A ray that meets an edge from
+ * outside may name the face that looks away there: another one, which goes a little askew, must say
+ * the same. (No direction of a mesh's edges and diagonals is near that.) */
+static lar_status find_inside(inside *in, lar_error *error) {
+    static const double ASKEW[3] = {0.031, -0.019, 0.047};
+    bool any = true;
+    lar_status status = LAR_OK;
+    for (int ray = 0; ray < 2 && any && !status; ray++) {
+        for (int32_t k = 0; k < in->count && ray == 1; k++)
+            for (int i = 0; i < 3; i++) in->along[k][i] += ASKEW[i];
+        status = cast(in, error);
+        any = false;
+        for (int32_t k = 0; k < in->count; k++) {
+            bool *found = &in->near[in->node[k]];
+            *found = (ray == 0 || *found) && is_inside(in, k);
+            any = any || *found;
+        }
+    }
+    return status;
+}
+
 static lar_status refuse(const inside *in, int32_t k, lar_error *error) {
     const lar_mesh *mesh = &in->model->mesh;
     const int32_t node = in->node[k];
@@ -161,10 +182,10 @@ lar_status lar_contact_refuse_inside(const lar_model *model, const lar_contact_s
         find_ways_out(&in);
         find_near(&in, list, 1);
         choose_nodes(&in);
-        status = cast(&in, error);
+        status = find_inside(&in, error);
     }
     for (int32_t k = 0; k < in.count && !status; k++)
-        if (is_inside(&in, k)) status = refuse(&in, k, error);
+        if (in.near[in.node[k]]) status = refuse(&in, k, error);
     inside_clear(&in);
     return status;
 }
@@ -208,10 +229,10 @@ lar_status lar_contact_count_inside(const lar_model *model, const lar_contact_tr
     if (!status) {
         find_ways_out(&in);
         choose_nodes(&in);
-        status = cast(&in, error);
+        status = find_inside(&in, error);
     }
     for (int32_t k = 0; k < in.count && !status; k++)
-        if (is_inside(&in, k) && !(*count)++) *node = surface->node[in.node[k]].node;
+        if (in.near[in.node[k]] && !(*count)++) *node = surface->node[in.node[k]].node;
     inside_clear(&in);
     return status;
 }
