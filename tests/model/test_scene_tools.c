@@ -123,6 +123,60 @@ static void test_tools(void **state) {
     lar_model_destroy(model);
 }
 
+static void free_scene(const char *free, const char *contact, lar_model **model, lar_error *error) {
+    char text[900];
+    snprintf(text, sizeof text,
+             HEAD MATERIAL
+             "contact: [{faces: %s, plane: {through: [0, 0, -1], normal: [0, 0, 1]}}]\n"
+             "tools: [{name: base, shape: rigid,\n"
+             "  nodes: {box: [[-1, -1, -1], [1, 1, 0.001]]}, free: %s}]\n",
+             contact, free);
+    lar_bytes bytes = {(unsigned char *)lar_strdup(text), strlen(text)};
+    *model = NULL;
+    lar_scene_parse_with("s.yaml", &bytes, brick_read, model, error);
+    lar_bytes_free(&bytes);
+}
+
+/* What nobody leads: along axes, about a point, about an axis; planes do not stop it. */
+static void test_free_bodies(void **state) {
+    (void)state;
+    static const struct {
+        const char *free;
+        unsigned bits;
+    } known[] = {{"all", LAR_AXIS_ALL | LAR_FREE_TURNS},
+                 {"z", LAR_AXIS_Z},
+                 {"xyz", LAR_AXIS_ALL},
+                 {"{point: [1, 2, 3]}", LAR_FREE_TURNS},
+                 {"{point: [1, 2, 3], axis: [0, 2, 0]}", LAR_FREE_TURNS}};
+    static const char *const wrong[][2] = {
+        {"true", "free: expected some of the letters x, y, z"},
+        {"{axis: [0, 0, 1]}", "a joint needs the key \"point\""},
+        {"{point: 1}", "point"},
+        {"{point: [0, 0, 0], axis: [0, 0, 0]}", "axis"},
+        {"all, path: [[0, 0, 0, 0], [1, 0, 0, 0.1]]", "a body that has a path is led"}};
+    lar_model *model;
+    lar_error error;
+    for (size_t i = 0; i < sizeof known / sizeof known[0]; i++) {
+        free_scene(known[i].free, "lid", &model, &error);
+        if (!model) fail_msg("%s", error.message);
+        const lar_tool *tool = model->tool;
+        assert_int_equal(tool->free, known[i].bits);
+        assert_int_equal(model->notice_count, 0);
+        if (known[i].bits == LAR_FREE_TURNS) same(tool->point[2], 3);
+        same(tool->axis[1], i == 4 ? 1 : 0);
+        lar_model_destroy(model);
+    }
+    free_scene("all", "bottom", &model, &error);
+    assert_int_equal(model->notice_count, 1);
+    assert_non_null(strstr(model->notice[0], "planes do not stop \"base\""));
+    lar_model_destroy(model);
+    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+        free_scene(wrong[i][0], "lid", &model, &error);
+        assert_null(model);
+        if (!strstr(error.message, wrong[i][1])) fail_msg("%s", error.message);
+    }
+}
+
 /* Tools that just touch, at faces, edges and corners, and in between jaws, are outside. */
 static void test_tools_beside_the_body(void **state) {
     (void)state;
@@ -160,7 +214,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_contact),     cmocka_unit_test(test_tools),
         cmocka_unit_test(test_rigid_tools), cmocka_unit_test(test_tools_beside_the_body),
-        cmocka_unit_test(test_thin_tools),
+        cmocka_unit_test(test_thin_tools),  cmocka_unit_test(test_free_bodies),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
