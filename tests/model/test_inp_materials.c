@@ -228,7 +228,7 @@ static void test_viscosity_in_steps(void **state) {
         near(lar_material_bulk(material), steps[i].bulk);
         assert_int_equal(lar_model_until_rest(model), 1);
         assert_int_equal(notices_with(model, strstr(steps[i].deck, "LONG")
-                                                 ? "*STATIC takes its moduli in the end"
+                                                 ? "*STATIC, LONG TERM takes its moduli in the end"
                                                  : "deck.inp:34: material 'a': *STATIC takes its "
                                                    "moduli at once; *STATIC, LONG TERM takes"),
                          1);

@@ -1,5 +1,6 @@
 #include "model/scene/scene.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 #include "model/mesh/faces.h"
@@ -97,7 +98,9 @@ static lar_status check_no_jump(const lar_scene *scene, const lar_yaml *node,
         if (curve->shape == LAR_CURVE_HOLD && curve->count > 1)
             why = "the curve of a motion cannot have the shape step: a sudden displacement is not "
                   "physical, write shape: linear, smooth or spline";
-        if (curve->repeats && curve->point[curve->count - 1][1] != 0.0)
+        double most = 0; /* what programs write for the sine of a whole turn is no jump */
+        for (int i = 0; i < curve->count; i++) most = fmax(most, fabs(curve->point[i][1]));
+        if (curve->repeats && !(fabs(curve->point[curve->count - 1][1]) <= 1e-12 * most))
             why = "the curve of a motion that repeats must end with 0, as it begins: a sudden "
                   "displacement is not physical";
         for (int i = 1; i < curve->count; i++)

@@ -100,14 +100,15 @@ lar_status inp_read_viscoelastic(inp_deck *deck, const inp_card *card) {
 
 /* In Abaqus too nothing relaxes in a static step. */
 static lar_status freeze(inp_deck *deck, const inp_material *from, lar_material *material) {
+    static const char *const long_term = ", LONG TERM";
     const bool at_once = !deck->step.long_term;
     lar_material_freeze(material, at_once);
     return inp_notice(
         deck, material->viscosity.line,
-        "material '%.60s': *STATIC takes its moduli %s; *STATIC%s takes those %s, and "
+        "material '%.60s': *STATIC%s takes its moduli %s; *STATIC%s takes those %s, and "
         "*VISCO follows what relaxes",
-        from->name, at_once ? "at once" : "in the end", at_once ? ", LONG TERM" : "",
-        at_once ? "in the end" : "at once");
+        from->name, at_once ? "" : long_term, at_once ? "at once" : "in the end",
+        at_once ? long_term : "", at_once ? "in the end" : "at once");
 }
 
 lar_status inp_finish_viscosity(inp_deck *deck, const inp_material *from, lar_material *material) {
