@@ -298,15 +298,13 @@ __attribute__((noinline, cold)) static double come_past(const lar_body_contact *
     return part * force + lar_edge_slope(s, energy) * s->hides.lift;
 }
 
-/* Deep in another body springs are harder, and ask for parts of the steps up to the next decision;
- * not those of points, which may come from where they are not pushed any more. What goes out is
- * pushed less (lar_contact_let_go), nodes beyond what is hard later. */
+/* Springs of nodes are harder there, and ask for parts of steps; what goes out is pushed less. */
 static double press_deep(lar_body_contact *contact, int32_t node, int32_t face, double mass,
                          double depth, double rate, double force, double *energy) {
     const lar_contact_surface *s = contact->surface;
     const lar_contact_law *law = &contact->law;
-    const lar_contact_body *own = &s->body[s->node[node].body];
-    const double layer = fmin(own->reach[1], s->body[s->face[face].body].reach[1]);
+    const lar_contact_body *body[] = {&s->body[s->node[node].body], &s->body[s->face[face].body]};
+    const double layer = fmin(body[0]->reach[1], body[1]->reach[1]);
     if (node >= s->node_count) return lar_contact_let_go(law, layer, depth, rate) * force;
     const double soon = fmin(depth + LAR_INTERVAL_MAX * law->lead * rate, layer);
     contact->need = fmax(contact->need, lar_contact_deep_need(law, layer, fmax(depth, soon)));

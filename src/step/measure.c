@@ -140,7 +140,8 @@ static void begin_look(const lar_domain *domain, lar_measure_scratch *scratch,
     lar_step_forces(domain, l->interactions, &l->state, &ignored);
     if (!scratch->ahead) return;
     *scratch->ahead = *scratch->tools;
-    lar_free_bodies_go(domain, &l->interactions->notes, &l->state, scratch->ahead);
+    lar_free_bodies_go(domain, &l->interactions->notes, &l->state,
+                       lar_state_time(domain, &l->state), scratch->ahead);
     l->context.tools = scratch->ahead;
 }
 

@@ -446,7 +446,7 @@ void lar_step_move(const lar_domain *domain, lar_interactions *interactions,
     double time = lar_state_time(domain, state);
     add_last(domain, interactions, context, state);
     if (interactions->leads && state->part == 0)
-        lar_free_bodies_go(domain, &interactions->notes, state, interactions->leads);
+        lar_free_bodies_go(domain, &interactions->notes, state, time, interactions->leads);
     lar_tool_friction_half_work(&interactions->tool_contact, context, state);
     lar_tool_contact_carry(&interactions->tool_contact, context, &interactions->notes, state);
     lar_conditions_observe(context, &interactions->notes, state);

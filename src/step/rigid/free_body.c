@@ -21,12 +21,12 @@ typedef struct whole_step {
     double keep, push, drift[3];
 } whole_step;
 
-static whole_step whole_step_of(const lar_domain *domain, const lar_state *state,
+static whole_step whole_step_of(const lar_domain *domain, double time,
                                 const lar_settings *settings) {
     const double dt = domain->time_step, made = 0.5 * domain->model->damping * dt;
     const double half = 0.5 * lar_damping_of(domain->model, settings) * dt;
     whole_step step = {(1 - half) / (1 + half), (1 + made) / (1 + half), {0}};
-    lar_gravity_at(domain->model, settings, lar_state_time(domain, state), step.drift);
+    lar_gravity_at(domain->model, settings, time, step.drift);
     for (int i = 0; i < 3; i++) step.drift[i] *= dt / (1 + half);
     return step;
 }
@@ -164,9 +164,9 @@ static void next_pose(const lar_tool *tool, const lar_rigid_sum *sum, double dt,
 }
 
 void lar_free_bodies_go(const lar_domain *domain, const lar_condition_notes *notes,
-                        const lar_state *state, lar_tools *tools) {
+                        const lar_state *state, double time, lar_tools *tools) {
     const lar_model *model = domain->model;
-    const whole_step step = whole_step_of(domain, state, &tools->settings);
+    const whole_step step = whole_step_of(domain, time, &tools->settings);
     for (int tool = 0; tool < model->tool_count; tool++) {
         if (!model->tool[tool].free || tools->motion[tool].end > state->step) continue;
         lar_tool_motion way = {.start = state->step, .end = state->step + 1};

@@ -23,7 +23,8 @@
 #ifndef LAR_STEP_RIGID_FREE_BODY_H
 #define LAR_STEP_RIGID_FREE_BODY_H
 
-#include "step/step.h"
+#include "contact/tools.h"
+#include "step/domain.h"
 
 /* Sums over the nodes of a body where they are now, with their masses and those velocities. */
 typedef struct lar_rigid_sum {
@@ -35,10 +36,10 @@ typedef struct lar_rigid_sum {
 
 bool lar_free_bodies_any(const lar_model *model);
 
-/* All forces stand in state->force: tells `tools` where free bodies go in the step, those that
- * nobody leads. */
+/* All forces stand in state->force, which is that of the time `time` [s]: tells `tools` where free
+ * bodies go in the step, those that nobody leads. */
 void lar_free_bodies_go(const lar_domain *domain, const lar_condition_notes *notes,
-                        const lar_state *state, lar_tools *tools);
+                        const lar_state *state, double time, lar_tools *tools);
 
 /* The Cayley vector of the turn of a body within dt, about `axis` where that is not zero. What is
  * as thin as a line turns about an axis only. */
