@@ -299,7 +299,7 @@ lar_status lar_contact_surface_fit(const lar_model *model, double time_step, dou
     /* What comes at this speed [m/s] is noticed a step before it touches, from no nearer and no
      * farther than these parts of the thinnest element. */
     static const double SPEED = 6, NEAREST = 0.25, FARTHEST = 0.5;
-    s->speed = model->made_up_mass ? 0 : SPEED;
+    s->speed = model->own_units ? 0 : SPEED;
     for (int32_t b = 0; b < s->body_count; b++) {
         lar_contact_body *body = &s->body[b];
         double min = NEAREST * body->reach[1], max = FARTHEST * body->reach[1];

@@ -19,11 +19,12 @@ static bool mine(const lar_model *model, const lar_condition_share *share, int32
 /* Faster than any hand moves; and, in stiff or light bodies, than their nodes go to and fro before
  * a tool that presses them, from step to step: by depth over time step, which goes with that of
  * pressure waves. Without the second the spring would push in every other step, for ever. */
-static double lets_go(const lar_material *material) {
+static double lets_go(const lar_model *model, const lar_material *material) {
     static const double HANDS = 0.5, WAVES = 0.02; /* [m/s]; of their speed */
     double modulus =
         lar_material_instant_bulk(material) + 4.0 / 3 * lar_material_instant_shear(material);
-    return fmax(HANDS, WAVES * sqrt(modulus / material->density));
+    double waves = WAVES * sqrt(modulus / material->density);
+    return model->own_units ? waves : fmax(HANDS, waves);
 }
 
 /* What lies in a plane of symmetry takes next to nothing from its corners: only tools that are
@@ -48,7 +49,7 @@ static void add_face(const lar_model *model, const int32_t *local, const uint8_t
         }
         f->edge = fmax(f->edge, sqrt(square));
     }
-    f->lets_go = lets_go(lar_model_material_of(model, model->surface.element[face]));
+    f->lets_go = lets_go(model, lar_model_material_of(model, model->surface.element[face]));
 }
 
 /* Corners of own faces that other threads move. */

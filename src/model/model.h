@@ -208,8 +208,8 @@ struct lar_model {
     bool until_rest;       /* a run goes on until the body is at rest, see model/rest.h */
     bool by_material_time; /* mass only serves to find the states of rest on the way that viscous
                               materials take: no step may be longer than their times */
-    bool made_up_mass;     /* of a static deck, whose seconds are no seconds either: no speed means
-                              anything */
+    bool own_units;        /* of a deck: it may count in millimetres and tonnes, so that no length
+                              or speed in SI units means anything */
 
     int fix_count, move_count, spring_count, load_count, pressure_count, initial_count;
     lar_fix *fix;

@@ -75,7 +75,6 @@ lar_rest_words lar_model_follow_static(lar_model *model, const char *what) {
     lar_rest_words words;
     for (int i = 0; i < model->curve_count; i++)
         fastest = fmin(fastest, fastest_of(&model->curve[i], end));
-    model->made_up_mass = true;
     model->by_material_time = end > 0 && lar_model_viscous(model);
     model->until_rest = !model->by_material_time;
     if (model->until_rest) period = fmin(fmax(lar_model_slow_period(model), end / MANY), end / FEW);

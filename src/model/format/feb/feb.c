@@ -269,6 +269,7 @@ lar_status lar_feb_parse(const char *path, const lar_bytes *bytes, lar_model **m
     lar_model *fresh = status ? NULL : lar_model_create();
     if (!status && fresh) {
         fresh->source = lar_strdup(path);
+        fresh->own_units = true;
         feb.model = fresh;
         feb.mesh = &fresh->mesh;
         status = fresh->source ? read_model(&feb) : lar_feb_no_memory(&feb, "the model");

@@ -375,6 +375,7 @@ lar_status lar_inp_deck_parse(const char *path, const lar_bytes *bytes, lar_mode
                      .constant = -1,
                      .ramp = -1};
     fresh->source = lar_strdup(path);
+    fresh->own_units = true;
     lar_status status =
         fresh->source ? read_model(&deck, bytes) : inp_no_memory(&deck, "the model");
     clear(&deck);
