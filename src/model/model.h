@@ -92,7 +92,7 @@ typedef struct lar_contact {
 } lar_contact;
 
 /* Tools of a model and bytes of their names. A simulation takes four hands besides. */
-enum { LAR_MODEL_TOOLS_MAX = 12, LAR_TOOL_NAME_MAX = 63 };
+enum { LAR_MODEL_TOOLS_MAX = 12, LAR_TOOL_PLANES_MAX = 12, LAR_TOOL_NAME_MAX = 63 };
 
 enum { LAR_FREE_TURNS = 8 }; /* beside LAR_AXIS_X and so on; alone: about `point` */
 
@@ -105,6 +105,7 @@ typedef struct lar_tool {
     double friction;          /* Coulomb's coefficient */
     unsigned free;            /* axes along which forces take a rigid one, and LAR_FREE_TURNS */
     double point[3], axis[3]; /* about which it turns then; no axis: any [m] */
+    uint32_t planes;          /* bits of the entries of contact that stop it then */
     lar_tool_pose rest;
     lar_tool_script
         path; /* begins at time 0 with `rest`; no rows: stays there; owned by the model */

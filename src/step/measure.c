@@ -395,7 +395,9 @@ lar_status lar_measure_reaction(const lar_domain *domain, lar_measure_scratch *s
     for (int32_t i = 0; i < supports->constraint_count; i++) {
         const lar_constraint *c = &supports->constraint[i];
         if (!wanted[c->node]) continue;
-        double ahead = arriving ? state->v[lar_constraint_at(state, c)] : supported_velocity(&l, c);
+        const bool free = c->curve == LAR_CURVE_TOOL && domain->model->tool[c->rigid].free;
+        const double ahead =
+            arriving && !free ? state->v[lar_constraint_at(state, c)] : supported_velocity(&l, c);
         double force[3] = {0};
         force[c->axis] = support_force(&l, c, ahead);
         lar_measure_add(domain, state, domain->layout.global[c->node], force, about, sum);

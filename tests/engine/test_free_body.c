@@ -4,6 +4,7 @@
 
 #include "engine/body_contact_test.h"
 #include "engine/tools_test.h"
+#include "base/quaternion.h"
 #include "step/rigid/free_body.h"
 
 /* All nodes of a body become one rigid body, with all freedom. */
@@ -327,6 +328,97 @@ static void it_goes_where_it_may(void **unused) {
     finish(simulation, model);
 }
 
+/* ---- planes ---------------------------------------------------------------------------------- */
+
+static void stand_before(lar_model *model, const double through[3], const double normal[3],
+                         double friction) {
+    lar_contact *plane = LAR_MODEL_APPEND(model, contact);
+    *plane = (lar_contact){.kind = LAR_CONTACT_PLANE, .friction = friction};
+    plane->face = outer_faces(model, 0, model->mesh.element_count, &plane->face_count);
+    memcpy(plane->through, through, sizeof plane->through);
+    memcpy(plane->normal, normal, sizeof plane->normal);
+    model->tool[0].planes |= 1u << (model->contact_count - 1);
+}
+
+/* On a slope whose angle has the tangent `slope`, for half a second: how far it went, and may go.
+ */
+static void slide_down(double slope, double friction, double *way, double *law) {
+    const double down = 9.81 * slope / sqrt(1 + slope * slope), on = 9.81 / sqrt(1 + slope * slope);
+    lar_model *model = empty_model(&stone);
+    add_brick(model, &stone, (double[]){0, 0, 0});
+    for (int32_t n = 0; n < STONE_NODES; n++) { /* the irregular brick lies on a flat side */
+        double *x = model->mesh.position[n];
+        if (x[0] < 0.005) x[0] = 0;
+    }
+    bind(model, 0, STONE_NODES);
+    stand_before(model, (double[]){0, 0, 0}, (double[]){1, 0, 0}, friction);
+    memcpy(model->gravity, (double[]){-on, 0, -down}, sizeof model->gravity);
+    lar_simulation *simulation = start(model);
+    while (lar_simulation_time(simulation) < 0.5) advance(simulation, 10);
+    const double t = lar_simulation_time(simulation);
+    *way = -node_u(simulation, 0)[2];
+    *law = 0.5 * fmax(down - friction * on, 0) * t * t;
+    assert_below(fabs(node_u(simulation, 0)[0]), 1e-6);
+    finish(simulation, model);
+}
+
+static void planes_rub_as_coulomb_says(void **unused) {
+    (void)unused;
+    static const double of[][2] = {{0.1, 0}, {0.29, 0.3}, {0.31, 0.3}, {0.49, 0.5}, {0.6, 0.5}};
+    for (int k = 0; k < 5; k++) {
+        double way, law;
+        slide_down(of[k][0], of[k][1], &way, &law);
+        print_message("slope %g, friction %g: %.6f mm, by the law %.6f\n", of[k][0], of[k][1],
+                      1e3 * way, 1e3 * law);
+        assert_below(fabs(way - law), 1e-3 * law + 2e-5);
+    }
+}
+
+/* Thrown into a corner of three planes, a tilted stone comes to rest there, with all of its weight
+ * on them; it is below them by what turns have of the second order, and gains nothing. */
+static void three_planes_stop_it(void **unused) {
+    (void)unused;
+    static const double centre[3] = {0.2, 0.2, 0.3};
+    lar_model *model = stone_model();
+    for (int32_t n = 0; n < STONE_NODES; n++) {
+        double r[3], *x = model->mesh.position[n];
+        lar_minus(x, centre_of_stone, r);
+        lar_turn((double[]){0.8, 0.6 / sqrt(3), 0.6 / sqrt(3), 0.6 / sqrt(3)}, r, x);
+        for (int i = 0; i < 3; i++) x[i] += centre[i];
+    }
+    memcpy(model->tool[0].rest.position, centre, sizeof centre);
+    for (int i = 0; i < 3; i++) {
+        double normal[3] = {0};
+        normal[i] = 1;
+        stand_before(model, (double[]){0, 0, 0}, normal, 0.2);
+    }
+    throw_nodes(model, 0, STONE_NODES, (double[]){-2, -1, 0.5});
+    model->gravity[2] = -9.81;
+    lar_simulation *simulation = start(model);
+    double first, account, most = INFINITY, lowest = 0;
+    energy_of(simulation, &first);
+    while (lar_simulation_time(simulation) < 1.5) {
+        advance(simulation, 20);
+        double height = 0;
+        for (int32_t n = 0; n < STONE_NODES; n++)
+            for (int i = 0; i < 3; i++) {
+                const double x = model->mesh.position[n][i] + node_u(simulation, n)[i];
+                lowest = fmin(lowest, x);
+                if (i == 2)
+                    height +=
+                        9.81 * x * simulation->domain.mass[simulation->domain.layout.local[n]];
+            }
+        const double all = height + energy_of(simulation, &account);
+        assert_true(all < most + 1e-5 * height);
+        most = fmin(most, all);
+    }
+    print_message("lowest %.3g m, kinetic energy %.3g J at the end, account off by %.3g J\n",
+                  lowest, energy_of(simulation, &account), account - first);
+    assert_true(lowest > -5e-5);
+    assert_below(energy_of(simulation, &account), 1e-10);
+    finish(simulation, model);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(it_flies),
@@ -337,6 +429,8 @@ int main(void) {
         cmocka_unit_test(it_bounces_and_gains_nothing),
         cmocka_unit_test(bits_are_the_same_everywhere),
         cmocka_unit_test(it_goes_where_it_may),
+        cmocka_unit_test(planes_rub_as_coulomb_says),
+        cmocka_unit_test(three_planes_stop_it),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -274,21 +274,31 @@ static void find_reach(const lar_model *model, lar_tool *tool) {
                             distance_of(model->mesh.position[nodes->node[k]], tool->rest.position));
 }
 
-/* Planes stop nodes one by one, and nobody asks the body. */
-static lar_status notice_planes(lar_scene *scene, const lar_yaml *entry, const lar_tool *tool) {
-    lar_model *model = scene->model;
+static bool is_before(const lar_scene *scene, const lar_yaml *entry, const lar_contact *plane) {
+    const lar_mesh *mesh = &scene->model->mesh;
+    for (int32_t k = 0; k < 4 * plane->face_count; k++) {
+        const int32_t face = plane->face[k / 4];
+        const int32_t node = mesh->element[face / 6][lar_face_node[face % 6][k % 4]];
+        if (scene->axis_line[3 * (size_t)node] == entry->line) return true;
+    }
+    return false;
+}
+
+/* Planes stop a body, and not its nodes one by one. */
+static lar_status find_planes(lar_scene *scene, const lar_yaml *entry, lar_tool *tool) {
+    enum { BITS = 32 };
+    const lar_model *model = scene->model;
+    int count = 0;
     for (int i = 0; i < model->contact_count; i++) {
-        const lar_contact *contact = &model->contact[i];
-        for (int32_t k = 0; contact->kind == LAR_CONTACT_PLANE && k < 4 * contact->face_count;
-             k++) {
-            const int32_t face = contact->face[k / 4];
-            const int32_t node = model->mesh.element[face / 6][lar_face_node[face % 6][k % 4]];
-            if (scene->axis_line[3 * (size_t)node] == entry->line)
-                return lar_model_notice(model, scene->error,
-                                        "%s: planes do not stop \"%s\": let it fall on elements "
-                                        "that are fixed, by contact between the two",
-                                        scene->path, tool->name);
-        }
+        const lar_contact *plane = &model->contact[i];
+        if (plane->kind != LAR_CONTACT_PLANE || !is_before(scene, entry, plane)) continue;
+        if (++count > LAR_TOOL_PLANES_MAX || i >= BITS)
+            return lar_scene_fail(scene, entry, LAR_ERROR_UNSUPPORTED,
+                                  "\"%s\" is before more than %d planes, or behind %d other "
+                                  "entries of contact; name only its own surface with those that "
+                                  "stop it, and put their entries first",
+                                  tool->name, LAR_TOOL_PLANES_MAX, BITS);
+        tool->planes |= 1u << i;
     }
     return LAR_OK;
 }
@@ -312,7 +322,7 @@ static lar_status read_free(lar_scene *scene, const lar_yaml *entry, lar_tool *t
     if (tool->path.count > 0)
         return lar_scene_fail(scene, node, LAR_ERROR_MODEL,
                               "free: a body that has a path is led; leave one of them out");
-    lar_status status = notice_planes(scene, entry, tool);
+    lar_status status = find_planes(scene, entry, tool);
     if (status) return status;
     tool->free = LAR_AXIS_ALL | LAR_FREE_TURNS;
     if (node->kind == LAR_YAML_MAPPING) return read_joint(scene, node, tool);

@@ -6,6 +6,7 @@
 #include "base/quaternion.h"
 #include "base/vector.h"
 #include "contact/tool_body.h"
+#include "step/rigid/landing.h"
 
 bool lar_free_bodies_any(const lar_model *model) {
     bool any = false;
@@ -90,58 +91,17 @@ static void sum_nodes(const lar_domain *domain, const lar_condition_notes *notes
 
 /* ---- what the body does ---------------------------------------------------------------------- */
 
-static void product(const double inertia[6], const double v[3], double out[3]) {
-    for (int i = 0; i < 3; i++) {
-        const int j = (i + 1) % 3, k = (i + 2) % 3;
-        out[i] = inertia[i] * v[i] + inertia[3 + i] * v[j] + inertia[3 + k] * v[k];
-    }
-}
-
-/* A body whose inertia about an axis is less of that about the others lies in that axis. */
-static const double LINE = 1e-9;
-
-static double mean_of(const double inertia[6]) {
-    return (inertia[0] + inertia[1] + inertia[2]) / 3;
-}
-
-/* Symmetric as well; false: of nodes that lie in a line, or nearly. */
-static bool invert(const double a[6], double out[6]) {
-    double det = 0, mean = mean_of(a);
-    for (int i = 0; i < 3; i++) {
-        const int j = (i + 1) % 3, k = (i + 2) % 3;
-        out[i] = a[j] * a[k] - a[3 + j] * a[3 + j];
-        out[3 + i] = a[3 + j] * a[3 + k] - a[3 + i] * a[k];
-    }
-    det = a[0] * out[0] + a[3] * out[3] + a[5] * out[5];
-    for (int i = 0; i < 6; i++) out[i] /= det;
-    return det > LINE * mean * mean * mean;
-}
-
-/* What is left of the inverse where a body turns about an axis. */
-static bool invert_along(const double inertia[6], const double axis[3], double out[6]) {
-    double carried[3];
-    product(inertia, axis, carried);
-    const double about = lar_dot(axis, carried);
-    for (int i = 0; i < 3; i++) {
-        out[i] = axis[i] * axis[i] / about;
-        out[3 + i] = axis[i] * axis[(i + 1) % 3] / about;
-    }
-    return about > LINE * mean_of(inertia);
-}
-
 void lar_free_body_turn(const lar_rigid_sum *sum, const double axis[3], double dt, double v[3]) {
     enum { TIMES = 12 }; /* each brings it closer by a factor of |v| or more */
     double inverse[6], carried[3], across[3];
     memset(v, 0, 3 * sizeof *v);
-    if (lar_dot(axis, axis) > 0 ? !invert_along(sum->inertia, axis, inverse)
-                                : !invert(sum->inertia, inverse))
-        return;
+    if (!lar_inertia_invert(sum->inertia, axis, inverse)) return;
     for (int n = 0; n < TIMES; n++) {
-        product(sum->inertia, v, carried);
+        lar_symmetric_product(sum->inertia, v, carried);
         lar_cross(v, carried, across);
         for (int i = 0; i < 3; i++)
             across[i] = (1 + 0.25 * lar_dot(v, v)) * dt * sum->spin[i] - 0.5 * across[i];
-        product(inverse, across, v);
+        lar_symmetric_product(inverse, across, v);
     }
 }
 
@@ -163,6 +123,20 @@ static void next_pose(const lar_tool *tool, const lar_rigid_sum *sum, double dt,
     }
 }
 
+/* What planes take from it. */
+static void land(const lar_domain *domain, const lar_condition_notes *notes, const lar_state *state,
+                 int tool, lar_rigid_sum *sum) {
+    const lar_model *model = domain->model;
+    lar_landing landing;
+    double arm[3];
+    lar_landing_begin(model, &model->tool[tool], sum, domain->time_step, &landing);
+    for (int32_t k = 0; (k = next_of(notes, tool, k)) < notes->constraint_count; k++) {
+        arm_of(domain, state, notes->constraint[k].node, sum->centre, arm);
+        lar_landing_meet(&landing, arm);
+    }
+    lar_landing_end(&landing);
+}
+
 void lar_free_bodies_go(const lar_domain *domain, const lar_condition_notes *notes,
                         const lar_state *state, double time, lar_tools *tools) {
     const lar_model *model = domain->model;
@@ -173,6 +147,7 @@ void lar_free_bodies_go(const lar_domain *domain, const lar_condition_notes *not
         lar_rigid_sum sum;
         sum_nodes(domain, notes, state, &step, tool, &sum);
         if (!(sum.mass > 0)) continue;
+        if (model->tool[tool].planes) land(domain, notes, state, tool, &sum);
         lar_tool_at(&tools->motion[tool], state->step, domain->time_step, &way.from, NULL);
         next_pose(&model->tool[tool], &sum, domain->time_step, &way.from, &way.to);
         lar_tool_ask(tools, tool, &way);

@@ -25,14 +25,7 @@
 
 #include "contact/tools.h"
 #include "step/domain.h"
-
-/* Sums over the nodes of a body where they are now, with their masses and those velocities. */
-typedef struct lar_rigid_sum {
-    double mass, centre[3]; /* [kg]; of mass, or where the body is held [m] */
-    double momentum[3];     /* [kg m/s] */
-    double spin[3];         /* angular momentum about `centre` [kg m^2/s] */
-    double inertia[6];      /* about `centre`: xx yy zz xy yz zx [kg m^2] */
-} lar_rigid_sum;
+#include "step/rigid/inertia.h"
 
 bool lar_free_bodies_any(const lar_model *model);
 
