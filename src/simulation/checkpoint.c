@@ -560,7 +560,7 @@ lar_status lar_checkpoint_parse(const char *path, const lar_bytes *bytes, const 
                   (checkpoint->exchanged > 0) == (head.version >= TOUCHED);
     checkpoint->history = checkpoint->rows + LAR_NODE_VALUES * nodes;
     if (!finite || !all_finite(checkpoint->rows, LAR_NODE_VALUES * nodes + shape.history) ||
-        !lar_checkpoint_none_negative(checkpoint->rows, nodes) || head.step > LAR_STEPS_MAX)
+        head.step > LAR_STEPS_MAX)
         return refuse(error, path, "has numbers beyond all range; take another checkpoint");
     uint64_t hash = lar_checkpoint_hash(head.step, checkpoint->rows, nodes);
     if (head.hash != lar_viscous_hash_values(hash, checkpoint->history, shape.history))

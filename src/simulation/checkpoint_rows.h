@@ -3,8 +3,6 @@
 #ifndef LAR_SIMULATION_CHECKPOINT_ROWS_H
 #define LAR_SIMULATION_CHECKPOINT_ROWS_H
 
-#include <stdbool.h>
-
 #include "layout/state.h"
 
 /* A node's values in the order of the table, from and to the rows of a file. */
@@ -35,17 +33,6 @@ static inline uint64_t lar_checkpoint_hash(uint64_t step, const double *rows, si
         hash = lar_state_hash_values(hash, value);
     }
     return hash;
-}
-
-/* What is hashed only where it is above 0 is never less. */
-static inline bool lar_checkpoint_none_negative(const double *rows, size_t nodes) {
-    bool good = true;
-#define LAR_STATE_CHECK(array, count, before, always)                                              \
-    for (size_t i = 0; !(always) && i < nodes * (count); i++)                                      \
-        good = good && rows[nodes * (before) + i] >= 0;
-    LAR_STATE_ROWS(LAR_STATE_CHECK)
-#undef LAR_STATE_CHECK
-    return good;
 }
 
 #endif

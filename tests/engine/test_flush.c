@@ -340,6 +340,24 @@ static void it_has_the_same_bits(void **unused) {
     lar_model_destroy(model);
 }
 
+/* Who has parted from what it was flush with may then come behind another body, and files hold
+ * both. */
+static void files_hold_who_parted_and_is_behind(void **unused) {
+    (void)unused;
+    static const double levels[] = {-4e-300, -5e-300, -1e-300, -1e-3, -0.0};
+    int32_t first;
+    lar_model *model = sliding(&first);
+    lar_simulation *s = start(model), *later = start(model);
+    lar_error error;
+    advance(s, 90);
+    for (int k = 0; k < 5; k++) s->state.level[k] = levels[k];
+    assert_int_equal(lar_simulation_save(s, "parted.checkpoint", &error), LAR_OK);
+    if (lar_simulation_load(later, "parted.checkpoint", &error)) fail_msg("%s", error.message);
+    assert_memory_equal(later->state.level, levels, sizeof levels);
+    lar_simulation_destroy(later);
+    finish(s, model);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_little_aside_bears_too),
@@ -349,6 +367,7 @@ int main(void) {
         cmocka_unit_test(who_meets_along_a_line_stays),
         cmocka_unit_test(who_slides_off_gains_nothing),
         cmocka_unit_test(it_has_the_same_bits),
+        cmocka_unit_test(files_hold_who_parted_and_is_behind),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
