@@ -103,9 +103,9 @@ static bool near_enough(const lar_tool *tool, const lar_tool_motion *motion) {
 
 bool lar_tool_motion_good(const lar_tool *tool, const lar_tool_motion *motion) {
     return lar_pose_is_normal(&motion->from) && lar_pose_is_normal(&motion->to) &&
-           motion->start <= motion->end && motion->end <= LAR_STEPS_MAX && motion->holding >= 0 &&
-           motion->holding <= LAR_HOLDS_NEAR && (motion->outside | 1) == 1 &&
-           near_enough(tool, motion);
+           motion->start <= motion->end + 1 && motion->end <= LAR_STEPS_MAX &&
+           motion->holding >= 0 && motion->holding <= LAR_HOLDS_NEAR &&
+           (motion->outside | 1) == 1 && near_enough(tool, motion);
 }
 
 /* Sums are whatever they are; tissue is no deeper in a tool than its middle. Hands never lag. */
@@ -181,6 +181,10 @@ void lar_tool_within(const lar_tool_motion *motion, uint64_t step, double part, 
 void lar_tool_pose_now(const lar_tool_motion *motion, const lar_state *state, int32_t ahead,
                        double time_step, lar_tool_pose *pose) {
     int32_t part = state->part + ahead;
+    if (lar_tool_motion_free(motion) && motion->end == state->step) {
+        *pose = ahead > 0 ? motion->to : motion->from;
+        return;
+    }
     if (part >= state->parts)
         lar_tool_at(motion, state->step + 1, time_step, pose, NULL);
     else

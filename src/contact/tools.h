@@ -28,11 +28,12 @@ enum { LAR_GRASPS_MAX = 256 };
 enum { LAR_HOLDS = 1, LAR_HOLDS_NEAR };
 typedef struct lar_tool_motion {
     lar_tool_pose from, to;
-    uint64_t start, end; /* steps */
-    int32_t holding;     /* it has closed upon something, or nothing, and not opened since: 1; and
-                            since the last decision something has been within its jaws, or it has
-                            just closed: 2 */
-    int32_t outside;     /* no tissue that it touches has come near its middle: 1 (tool_body.h) */
+    uint64_t start,
+        end;         /* steps; of a free body in the part of step `end` under way, start > end */
+    int32_t holding; /* it has closed upon something, or nothing, and not opened since: 1; and
+                        since the last decision something has been within its jaws, or it has
+                        just closed: 2 */
+    int32_t outside; /* no tissue that it touches has come near its middle: 1 (tool_body.h) */
 } lar_tool_motion;
 
 /* A surface point that a tool has hold of. */
@@ -260,6 +261,11 @@ void lar_tool_at(const lar_tool_motion *motion, uint64_t step, double time_step,
 /* The same when a part of the step, 0 up to 1, has passed. */
 void lar_tool_within(const lar_tool_motion *motion, uint64_t step, double part, double time_step,
                      lar_tool_pose *pose, double velocity[3]);
+
+/* Whether it is the way of a free body (step/rigid/free_body.h): `from` now, `to` a part later. */
+static inline bool lar_tool_motion_free(const lar_tool_motion *motion) {
+    return motion->start > motion->end;
+}
 
 /* The same at the state's part of a step, or `ahead` parts later. `time_step`: of a whole step. */
 void lar_tool_pose_now(const lar_tool_motion *motion, const lar_state *state, int32_t ahead,

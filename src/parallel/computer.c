@@ -248,13 +248,14 @@ static lar_status advance_all(lar_computer *computer, uint64_t until, bool first
     return status;
 }
 
-/* The round before which all stop next: for a search, where an interval ends, or what has begun of
- * a step when all is `over`. */
+/* The round before which all stop next: for a search, where an interval ends, what has begun of a
+ * step when all is `over`, or the next one where somebody leads free bodies. */
 static uint64_t next_stop(const lar_computer *computer, uint64_t end, bool over) {
     const lar_worker *first = &computer->processor[0].worker[0];
     uint64_t step = first->state.step;
     uint64_t until = lar_interval_end(computer->whole, &computer->tools->division, step);
     if (over) until = step + 1;
+    if (computer->lead && !over) return first->round + 1;
     return lar_contact_until(computer, first->round,
                              round_of(computer, first, until < end ? until : end));
 }
@@ -285,7 +286,7 @@ lar_status lar_computer_advance(lar_computer *computer, uint64_t steps, bool fir
         if (status || full.kind) break;
         if (state->part == 0 && lar_interval_decide(computer->whole, begin, computer->tools))
             computer->tools_sent = false;
-        if (computer->lead && state->part == 0) {
+        if (computer->lead) {
             status = computer->lead(computer->leader, error);
             computer->tools_sent = false;
             if (status) break;

@@ -104,8 +104,8 @@ typedef struct lar_computer {
     lar_tool_list *list; /* of this process: its spares follow `tools` */
     lar_interval interval;
     bool tools_sent; /* to the other processes, as they are */
-    /* At zero, before the first step of an advance, when all that is decided is: where free bodies
-     * go. NULL: there are none. */
+    /* Before every step and every part of a divided one, when all that is decided is: where free
+     * bodies go. NULL: there are none. */
     lar_status (*lead)(void *leader, lar_error *error);
     void *leader;
     bool broken;   /* a processor failed: nothing goes on */

@@ -164,7 +164,10 @@ lar_status lar_computer_gather(lar_computer *computer, lar_error *error) {
     lar_status status = lar_computer_check(computer, error);
     if (status) return status;
     lar_state *state = computer->state;
-    state->step = computer->processor[0].worker[0].state.step;
+    const lar_state *first = &computer->processor[0].worker[0].state;
+    state->step = first->step;
+    state->part = first->part; /* who leads free bodies looks between parts */
+    state->parts = first->parts;
     state->external = state->damped = state->contact = state->exchanged = 0;
     gather_here(computer);
     if (computer->control) status = gather_rounds(computer, LAR_ORDER_GATHER, take_nodes, error);

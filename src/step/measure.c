@@ -140,8 +140,9 @@ static void begin_look(const lar_domain *domain, lar_measure_scratch *scratch,
     lar_step_forces(domain, l->interactions, &l->state, &ignored);
     if (!scratch->ahead) return;
     *scratch->ahead = *scratch->tools;
-    lar_free_bodies_go(domain, &l->interactions->notes, &l->state,
-                       lar_state_time(domain, &l->state), scratch->ahead);
+    const lar_leapfrog leapfrog =
+        lar_step_leapfrog_at(domain, l->interactions, &l->context, &l->state);
+    lar_free_bodies_go(domain, &l->interactions->notes, &l->state, &leapfrog, scratch->ahead);
     l->context.tools = scratch->ahead;
 }
 

@@ -283,16 +283,14 @@ static void park_spares(const lar_domain *domain, const lar_condition_context *c
     }
 }
 
-/* lar_step_leapfrog, with gravity where it follows a curve. */
-static lar_leapfrog leapfrog_at(const lar_domain *domain, const lar_interactions *interactions,
-                                const lar_condition_context *context, double time,
-                                const lar_state *state) {
+lar_leapfrog lar_step_leapfrog_at(const lar_domain *domain, const lar_interactions *interactions,
+                                  const lar_condition_context *context, const lar_state *state) {
     const lar_settings *settings = lar_settings_of(interactions);
     lar_leapfrog leapfrog = lar_step_leapfrog(domain, interactions, state);
     if (lar_gravity_varies(domain->model, settings)) {
         double gravity[3], damping = lar_damping_of(domain->model, settings);
         double mean = context->mean_step;
-        lar_gravity_at(domain->model, settings, time, gravity);
+        lar_gravity_at(domain->model, settings, lar_state_time(domain, state), gravity);
         for (int i = 0; i < 3; i++)
             leapfrog.drift[i] = gravity[i] * mean / (1 + 0.5 * damping * mean);
     }
@@ -300,14 +298,13 @@ static lar_leapfrog leapfrog_at(const lar_domain *domain, const lar_interactions
 }
 
 static void move_nodes(const lar_domain *domain, const lar_interactions *interactions,
-                       const lar_condition_context *context, double time, lar_state *state,
-                       lar_fault *fault) {
+                       const lar_condition_context *context, lar_state *state, lar_fault *fault) {
     /* Where contact is predicted from the fastest node, that is none of these. */
     bool predicts = interactions->body_contact.surface ||
                     interactions->tool_contact.plane_contact.planes->count > 0 ||
                     interactions->surroundings->faces.face_count > 0;
     uint64_t park_interval = predicts ? 4 : LAR_PARK_INTERVAL;
-    lar_leapfrog leapfrog = leapfrog_at(domain, interactions, context, time, state);
+    lar_leapfrog leapfrog = lar_step_leapfrog_at(domain, interactions, context, state);
     double damping = lar_damping_of(domain->model, lar_settings_of(interactions)), damped = 0;
     if (state->step % park_interval == 0) park_spares(domain, context, state);
     const double *weight = damping > 0 ? domain->weight : NULL;
@@ -386,8 +383,7 @@ static void add_friction(const lar_domain *domain, lar_interactions *interaction
                          const lar_condition_context *context, lar_state *state) {
     lar_tool_contact *contact = &interactions->tool_contact;
     if (!contact->press) return;
-    lar_leapfrog leapfrog =
-        leapfrog_at(domain, interactions, context, lar_state_time(domain, state), state);
+    lar_leapfrog leapfrog = lar_step_leapfrog_at(domain, interactions, context, state);
     lar_tool_friction_add(contact, context, &leapfrog, domain->push, state);
 }
 
@@ -445,13 +441,15 @@ void lar_step_move(const lar_domain *domain, lar_interactions *interactions,
                    const lar_condition_context *context, lar_state *state, lar_fault *fault) {
     double time = lar_state_time(domain, state);
     add_last(domain, interactions, context, state);
-    if (interactions->leads && state->part == 0)
-        lar_free_bodies_go(domain, &interactions->notes, state, time, interactions->leads);
+    if (interactions->leads) {
+        const lar_leapfrog leapfrog = lar_step_leapfrog_at(domain, interactions, context, state);
+        lar_free_bodies_go(domain, &interactions->notes, state, &leapfrog, interactions->leads);
+    }
     lar_tool_friction_half_work(&interactions->tool_contact, context, state);
     lar_tool_contact_carry(&interactions->tool_contact, context, &interactions->notes, state);
     lar_conditions_observe(context, &interactions->notes, state);
     lar_tool_contact_observe(&interactions->tool_contact, context, state);
-    move_nodes(domain, interactions, context, time, state, fault);
+    move_nodes(domain, interactions, context, state, fault);
     state->external += lar_conditions_impose(context, time, &interactions->notes, state);
     lar_tool_contact_stop(&interactions->tool_contact, context, state);
     lar_body_contact_moved(&interactions->body_contact, state, state->fastest * context->time_step);

@@ -81,6 +81,10 @@ double lar_past_step(const lar_domain *domain, const lar_step_division *division
 lar_leapfrog lar_step_leapfrog(const lar_domain *domain, const lar_interactions *interactions,
                                const lar_state *state);
 
+/* The same, with gravity where it follows a curve: that of the state's time. */
+lar_leapfrog lar_step_leapfrog_at(const lar_domain *domain, const lar_interactions *interactions,
+                                  const lar_condition_context *context, const lar_state *state);
+
 /* Between steps: from now on the thread that moves the context's nodes follows what was set of
  * supports. Asks for memory where that has changed; when there is none nothing changes. */
 lar_status lar_step_support(const lar_condition_context *context, const lar_supports *set,

@@ -187,11 +187,6 @@ static bool may_have_part(const lar_domain *domain, const lar_tools *tools, int3
     return touched && (spot->loads < spot->firm || (moving && pressed));
 }
 
-/* A free body that nobody leads: forces take it from step to step, and it can be told nothing. */
-static bool is_led(const lar_model *model, int32_t tool, const lar_tool_motion *motion) {
-    return tool >= model->tool_count || !model->tool[tool].free || motion->end > motion->start + 1;
-}
-
 void lar_fault_attribute(const lar_domain *domain, const lar_tools *tools, lar_fault *fault) {
     const lar_tool_faces *faces = &domain->surroundings.faces;
     const lar_tool_list *list = domain->surroundings.list;
@@ -212,7 +207,7 @@ void lar_fault_attribute(const lar_domain *domain, const lar_tools *tools, lar_f
         double velocity[3];
         const lar_tool_motion *motion = &tools->motion[t];
         bool moving = motion->end > 0 && fault->step < motion->end + JUST;
-        if (tool->shape == LAR_TOOL_NONE || !is_led(domain->model, t, motion) ||
+        if (tool->shape == LAR_TOOL_NONE || lar_tool_motion_free(motion) ||
             !may_have_part(domain, tools, t, moving, &spot))
             continue;
         lar_tool_at(&tools->motion[t], fault->step, domain->time_step, &pose, velocity);

@@ -16,22 +16,6 @@ bool lar_free_bodies_any(const lar_model *model) {
 
 /* ---- what the nodes would do ----------------------------------------------------------------- */
 
-/* How a node that nothing holds moves in a whole step, also where that is divided: bodies go evenly
- * through its parts. */
-typedef struct whole_step {
-    double keep, push, drift[3];
-} whole_step;
-
-static whole_step whole_step_of(const lar_domain *domain, double time,
-                                const lar_settings *settings) {
-    const double dt = domain->time_step, made = 0.5 * domain->model->damping * dt;
-    const double half = 0.5 * lar_damping_of(domain->model, settings) * dt;
-    whole_step step = {(1 - half) / (1 + half), (1 + made) / (1 + half), {0}};
-    lar_gravity_at(domain->model, settings, time, step.drift);
-    for (int i = 0; i < 3; i++) step.drift[i] *= dt / (1 + half);
-    return step;
-}
-
 /* Where a node is now, seen from a point. Returns its mass. */
 static double arm_of(const lar_domain *domain, const lar_state *state, lar_lid node,
                      const double from[3], double arm[3]) {
@@ -65,51 +49,19 @@ static void find_centre(const lar_domain *domain, const lar_condition_notes *not
         sum->centre[i] = body->free & LAR_AXIS_ALL ? all[i] / sum->mass : body->point[i];
 }
 
-/* How the body went through the step before. Of divided steps nodes have the velocity of the last
- * part, whose chord is longer in the turn than that of the whole: by that what spins would spin
- * faster and faster, as the square of its turn in a step. */
-typedef struct last_step {
-    double swing[3], turn[4]; /* from where its centre is, and back to where the body was */
-    bool known;               /* it went by itself, or by the way of a step */
-} last_step;
-
-static last_step last_step_of(const lar_tool_motion *way, uint64_t now, const double centre[3]) {
-    last_step last = {.known = way->end == now && way->end == way->start + 1};
-    const double *to = way->to.orientation;
-    double arm[3], swung[3];
-    lar_quaternion_product(way->from.orientation, (double[]){to[0], -to[1], -to[2], -to[3]},
-                           last.turn);
-    lar_minus(centre, way->to.position, arm);
-    lar_turn(last.turn, arm, swung);
-    for (int i = 0; i < 3; i++)
-        last.swing[i] = way->to.position[i] - way->from.position[i] + arm[i] - swung[i];
-    return last;
-}
-
-/* Of a node [m/s]; its last velocity is `v`. */
-static void mean_velocity(const last_step *last, const double arm[3], double dt, double v[3]) {
-    double swung[3];
-    if (!last->known) return;
-    lar_turn(last->turn, arm, swung);
-    for (int i = 0; i < 3; i++) v[i] = (last->swing[i] + arm[i] - swung[i]) / dt;
-}
-
 static void sum_nodes(const lar_domain *domain, const lar_condition_notes *notes,
-                      const lar_state *state, const whole_step *step, int tool,
-                      const lar_tool_motion *way, lar_rigid_sum *sum) {
+                      const lar_state *state, const lar_leapfrog *leapfrog, int tool,
+                      lar_rigid_sum *sum) {
     *sum = (lar_rigid_sum){0};
     find_centre(domain, notes, state, tool, sum);
-    const last_step last = last_step_of(way, state->step, sum->centre);
     for (int32_t k = 0; (k = next_of(notes, tool, k)) < notes->constraint_count; k++) {
         const lar_lid n = notes->constraint[k].node;
-        double r[3], v[3], p[3], turn[3];
+        double r[3], p[3], turn[3];
         const double mass = arm_of(domain, state, n, sum->centre, r);
-        for (int i = 0; i < 3; i++) v[i] = state->v[lar_state_at(state, n, i)];
-        mean_velocity(&last, r, domain->time_step, v);
         for (int i = 0; i < 3; i++) {
             const size_t at = lar_state_at(state, n, i);
-            p[i] = mass * (step->keep * v[i] + step->drift[i] -
-                           step->push * domain->push[n] * (double)state->force[at]);
+            p[i] = mass * (leapfrog->keep * state->v[at] + leapfrog->drift[i] -
+                           leapfrog->push * domain->push[n] * (double)state->force[at]);
         }
         lar_cross(r, p, turn);
         for (int i = 0; i < 3; i++) {
@@ -157,11 +109,11 @@ static void next_pose(const lar_tool *tool, const lar_rigid_sum *sum, double dt,
 
 /* What planes take from it. */
 static void land(const lar_domain *domain, const lar_condition_notes *notes, const lar_state *state,
-                 int tool, lar_rigid_sum *sum) {
+                 double dt, int tool, lar_rigid_sum *sum) {
     const lar_model *model = domain->model;
     lar_landing landing;
     double arm[3];
-    lar_landing_begin(model, &model->tool[tool], sum, domain->time_step, &landing);
+    lar_landing_begin(model, &model->tool[tool], sum, dt, &landing);
     for (int32_t k = 0; (k = next_of(notes, tool, k)) < notes->constraint_count; k++) {
         arm_of(domain, state, notes->constraint[k].node, sum->centre, arm);
         lar_landing_meet(&landing, arm);
@@ -170,18 +122,17 @@ static void land(const lar_domain *domain, const lar_condition_notes *notes, con
 }
 
 void lar_free_bodies_go(const lar_domain *domain, const lar_condition_notes *notes,
-                        const lar_state *state, double time, lar_tools *tools) {
+                        const lar_state *state, const lar_leapfrog *leapfrog, lar_tools *tools) {
     const lar_model *model = domain->model;
-    const whole_step step = whole_step_of(domain, time, &tools->settings);
     for (int tool = 0; tool < model->tool_count; tool++) {
         if (!model->tool[tool].free || tools->motion[tool].end > state->step) continue;
-        lar_tool_motion way = {.start = state->step, .end = state->step + 1};
+        lar_tool_motion way = {.start = state->step + 1, .end = state->step};
         lar_rigid_sum sum;
-        sum_nodes(domain, notes, state, &step, tool, &tools->motion[tool], &sum);
+        sum_nodes(domain, notes, state, leapfrog, tool, &sum);
         if (!(sum.mass > 0)) continue;
-        if (model->tool[tool].planes) land(domain, notes, state, tool, &sum);
+        if (model->tool[tool].planes) land(domain, notes, state, leapfrog->dt, tool, &sum);
         lar_tool_at(&tools->motion[tool], state->step, domain->time_step, &way.from, NULL);
-        next_pose(&model->tool[tool], &sum, domain->time_step, &way.from, &way.to);
+        next_pose(&model->tool[tool], &sum, leapfrog->dt, &way.from, &way.to);
         lar_tool_ask(tools, tool, &way);
     }
 }

@@ -18,7 +18,7 @@
  * What turns about a point or an axis is the same about that point.
  *
  * One thread must have all nodes: lar_step does it itself; for processors it is done between steps,
- * by a look at the forces (lar_measure_ahead), with the same bits.
+ * and the parts of divided ones, by a look at the forces (lar_measure_ahead), with the same bits.
  */
 #ifndef LAR_STEP_RIGID_FREE_BODY_H
 #define LAR_STEP_RIGID_FREE_BODY_H
@@ -29,10 +29,10 @@
 
 bool lar_free_bodies_any(const lar_model *model);
 
-/* All forces stand in state->force, which is that of the time `time` [s]: tells `tools` where free
- * bodies go in the step, those that nobody leads. */
+/* All forces stand in state->force: tells `tools` where free bodies go in the step, or in the part
+ * of it that comes, those that nobody leads. `leapfrog`: how nodes move there. */
 void lar_free_bodies_go(const lar_domain *domain, const lar_condition_notes *notes,
-                        const lar_state *state, double time, lar_tools *tools);
+                        const lar_state *state, const lar_leapfrog *leapfrog, lar_tools *tools);
 
 /* The Cayley vector of the turn of a body within dt, about `axis` where that is not zero. What is
  * as thin as a line turns about an axis only. */
