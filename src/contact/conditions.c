@@ -233,8 +233,9 @@ LAR_SETUP lar_status lar_condition_notes_set(const lar_conditions *c, const lar_
     return status;
 }
 
-static double factor_at(const lar_model *model, int curve, double time) {
-    return curve < 0 ? 1 : lar_curve_value(&model->curve[curve], time);
+/* Of a load, for the time that it changes velocities for. */
+static double factor_at(const lar_condition_context *context, int curve, double time) {
+    return curve < 0 ? 1 : lar_curve_mean(&context->model->curve[curve], time, context->mean_step);
 }
 
 /* Subtracts an external force from the residual, in force units, rounded to nearest. False, and
@@ -357,7 +358,7 @@ int32_t lar_conditions_load(const lar_conditions *c, const lar_condition_context
     int32_t beyond = -1;
     for (int32_t i = 0; i < c->force_count; i++) {
         const lar_point_force *f = &c->force[i];
-        double factor = factor_at(context->model, f->curve, time), *now = notes->force[i];
+        double factor = factor_at(context, f->curve, time), *now = notes->force[i];
         for (int k = 0; k < 3; k++) now[k] = factor * f->force[k];
         if (!add_external(state, f->node, context->scale, now)) beyond = f->node;
     }
@@ -374,7 +375,7 @@ int32_t lar_conditions_load(const lar_conditions *c, const lar_condition_context
         for (int a = 0; a < 4; a++)
             for (int k = 0; k < 3; k++)
                 x[a][k] = p->position[a][k] + state->u[lar_state_at(state, p->node[a], k)];
-        pressure_forces(x, p->pressure * factor_at(context->model, p->curve, time), now);
+        pressure_forces(x, p->pressure * factor_at(context, p->curve, time), now);
         for (int a = 0; a < 4; a++)
             if (!add_external(state, p->node[a], context->scale, now[a])) beyond = p->node[a];
     }

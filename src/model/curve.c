@@ -85,6 +85,39 @@ double lar_curve_value(const lar_curve *curve, double time) {
     return curve->kind == LAR_CURVE_RAMP ? ramp_value(curve->over, time) : table_value(curve, time);
 }
 
+/* Whether a table goes through a piece shorter than `width` between two times; `first`: the point
+ * that the earlier one lies behind. */
+static bool is_quick(const lar_curve *curve, int first, double to, double width) {
+    bool quick = false;
+    for (int i = first; i + 1 < curve->count && curve->point[i][0] < to && !quick; i++) {
+        const double length = curve->point[i + 1][0] - curve->point[i][0];
+        quick = length > 0 && length < width;
+    }
+    return quick;
+}
+
+double lar_curve_mean(const lar_curve *curve, double time, double width) {
+    static const double QUICK = 16;                  /* widths */
+    static const double GAUSS = 0.28867513459481287; /* of a piece, from its middle: 1 / sqrt 12 */
+    const double begin = fmax(0, time - 0.5 * width), end = time + 0.5 * width;
+    const bool table = curve->kind == LAR_CURVE_TABLE && !curve->repeats && curve->count > 1;
+    const int last = curve->count - 1;
+    if (!table || !(begin < curve->point[last][0]) || !(end > curve->point[0][0]))
+        return lar_curve_value(curve, time);
+    const int first = begin > curve->point[0][0] ? point_before(curve, begin) : 0;
+    if (!is_quick(curve, first, end, QUICK * width)) return lar_curve_value(curve, time);
+    double sum = 0, from = begin;
+    for (int i = first; from < end; i++) {
+        const double to = i <= last ? fmin(curve->point[i][0], end) : end;
+        if (!(to > from)) continue;
+        const double middle = 0.5 * (from + to), aside = GAUSS * (to - from);
+        sum += 0.5 * (to - from) *
+               (table_value(curve, middle - aside) + table_value(curve, middle + aside));
+        from = to;
+    }
+    return sum / (end - begin);
+}
+
 void lar_curve_hold_from(lar_curve *curve, double time) {
     if (curve->kind != LAR_CURVE_TABLE || lar_curve_end(curve) <= time) return;
     double value = table_value(curve, time);

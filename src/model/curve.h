@@ -34,6 +34,11 @@ typedef struct lar_curve {
 /* Value at `time` (seconds). A table without points is 1. */
 double lar_curve_value(const lar_curve *curve, double time);
 
+/* The mean over `width` seconds about `time`, not before 0, where a table goes there through pieces
+ * shorter than sixteen times that: pulses keep their impulse however long a step is. Else, and
+ * where it repeats, the value at `time`. */
+double lar_curve_mean(const lar_curve *curve, double time, double width);
+
 /* Time after which the value no longer changes, or begins to repeat [s], at least 0. */
 double lar_curve_end(const lar_curve *curve);
 

@@ -29,6 +29,13 @@ double lar_model_slow_period(const lar_model *model) {
     return damping > 0.0 ? 4.0 * PI / damping : 1.0;
 }
 
+double lar_model_memory(const lar_model *model) {
+    static const double MEMORY = 0.05, DAMPED = 1; /* [s], [1/s] */
+    const double swing = lar_model_slow_period(model);
+    if (model->own_units) return swing;
+    return model->damping >= DAMPED ? MEMORY : fmax(MEMORY, swing);
+}
+
 void lar_model_slow_to(lar_model *model, double period) {
     double share = period / lar_model_slow_period(model), factor = share * share;
     for (int i = 0; i < model->material_count; i++) model->material[i].density *= factor;

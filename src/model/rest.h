@@ -19,6 +19,11 @@ double lar_model_rest_damping(const lar_model *model);
 /* The period of that motion, 2 pi / omega [s]; 1 when there is no such number. */
 double lar_model_slow_period(const lar_model *model);
 
+/* How long a step stays divided after it had to be, fading: strained tissue trembles, and where
+ * steps become longer and shorter with it energy grows. 50 ms; that period where it is longer, and
+ * nothing damps the motion; that period in decks, whose seconds may be any [s]. */
+double lar_model_memory(const lar_model *model);
+
 /* Gives the body so much more or less mass that this period becomes `period` [s], and gravity so
  * much less or more: forces and what they come to at rest stay as they are. */
 void lar_model_slow_to(lar_model *model, double period);

@@ -6,6 +6,7 @@
 #include "simulation/checkpoint.h"
 #include "simulation/simulation.h"
 #include "step/guard.h"
+#include "step/rigid/free_body.h"
 #include "step/viscous_history.h"
 
 /* ---- the start ------------------------------------------------------------------------------- */
@@ -89,6 +90,9 @@ static void set_initial_velocities(lar_simulation *simulation) {
     for (int32_t entry = 0; entry < domain->surroundings.planes.count;)
         entry = start_on_planes(domain, entry, gravity, state);
     memset(state->force, 0, 3 * state->stride * sizeof *state->force);
+    if (lar_free_bodies_any(model))
+        lar_free_bodies_start(domain, &simulation->scratch->measure.interactions.notes, state,
+                              &simulation->tools);
 }
 
 lar_status lar_simulation_set_anew(lar_simulation *simulation, lar_error *error) {

@@ -95,6 +95,7 @@ typedef struct lar_domain {
     lar_step_room room; /* of a step, where tools touch */
     lar_gid stable_worst;
     double thinnest; /* element at rest, of hex8 [m] */
+    double memory;   /* of how finely steps were divided lately: lar_model_memory [s] */
     bool adds;       /* mass, see mass_scaling.h */
     lar_hex8_limits limits;
     lar_leapfrog leapfrog; /* without gravity when gravity follows a curve */

@@ -6,6 +6,7 @@
 #include "contact/tool_body.h"
 #include "step/grasp.h"
 #include "step/mass/heavier.h"
+#include "step/rigid/free_body.h"
 
 void lar_interval_restart(lar_interval *interval) {
     memset(interval->seen, 0, sizeof interval->seen);
@@ -231,10 +232,9 @@ static bool starts_suddenly(const lar_domain *whole, const lar_tools *tools) {
 }
 
 bool lar_interval_divide(const lar_domain *whole, uint64_t step, double seconds, lar_tools *tools) {
-    /* What was needed lately counts for some time: strained tissue trembles [s]. */
-    static const double MEMORY = 0.05;
     lar_step_division *d = &tools->division;
-    double fading = fmax(0.5, 1 - seconds / MEMORY);
+    /* What was needed lately counts for some time: strained tissue trembles. */
+    double fading = fmax(0.5, 1 - seconds / whole->memory);
     const lar_hardened tool =
         lar_tools_harden(whole->surroundings.list, tools, lar_interval_springs(whole), fading,
                          seconds, 1 / whole->scale);
@@ -255,7 +255,8 @@ bool lar_interval_divide(const lar_domain *whole, uint64_t step, double seconds,
     lar_heavier_fade(fading, &tools->strained);
     int32_t wanted = d->base;
     while (wanted < LAR_PARTS_MAX &&
-           (!bears(whole, tools, tool.most, wanted) || goes_too_far(whole, way, wanted)))
+           (!bears(whole, tools, tool.most, wanted) || goes_too_far(whole, way, wanted) ||
+            lar_free_bodies_turn_far(tools, step, wanted)))
         wanted = lar_more_parts(wanted);
     bool changed = tool.changed || wanted != d->parts || close != lar_division_is_close(d) ||
                    let_go != lar_division_lets_go(d) ||

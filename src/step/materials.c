@@ -6,6 +6,7 @@
 
 #include "base/memory.h"
 #include "mechanics/hex8_guard.h"
+#include "model/rest.h"
 #include "step/activation.h"
 #include "step/folds.h"
 
@@ -141,6 +142,7 @@ lar_status lar_materials_copy(lar_domain *domain, lar_error *error) {
     const lar_model *model = domain->model;
     size_t count = (size_t)model->material_count;
     for (int i = 0; i < LAR_FACTORS_MAX; i++) domain->factor[i] = domain->faster[i] = 1;
+    domain->memory = lar_model_memory(model);
     domain->material = lar_calloc(count, sizeof *domain->material);
     if (!domain->material)
         return lar_fail_memory(error, count * sizeof *domain->material, "the materials");

@@ -340,6 +340,37 @@ static void it_has_the_same_bits(void **unused) {
     lar_model_destroy(model);
 }
 
+/* A plate that falls on a cushion of its own outline from some millimetres meets the rim, too. */
+static void who_falls_straight_on_it_stays_out(void **unused) {
+    (void)unused;
+    static const double gap[] = {0, 0.002, 0.005, 0.02};
+    const brick cushion = {{6, 6, 3}, 0.01, 0, LAR_LAW_coupled_neo_hookean, 1.5e5, 1e5, 30};
+    const brick plate = {{4, 4, 1}, 0.015, 0, LAR_LAW_coupled_neo_hookean, 1.5e6, 1e6, 3e4};
+    for (size_t i = 0; i < sizeof gap / sizeof gap[0]; i++) {
+        lar_model *model = empty_model(&cushion);
+        add_brick(model, &cushion, (double[]){0, 0, 0});
+        lar_material *material = LAR_MODEL_APPEND(model, material);
+        *material = model->material[0];
+        material->name = NULL;
+        material->density = plate.density;
+        const int32_t nodes = model->mesh.node_count, elements = model->mesh.element_count;
+        add_brick(model, &plate, (double[]){0, 0, 0.03 + gap[i]});
+        for (int32_t e = elements; e < model->mesh.element_count; e++)
+            model->element_material[e] = 1;
+        fix_nodes(model, brick_side(&cushion, 2, 0), LAR_AXIS_ALL);
+        throw_nodes(model, nodes, model->mesh.node_count, (double[]){0, 0, -1});
+        touch_between(model, elements);
+        lar_simulation *s = start(model);
+        while (lar_simulation_time(s) < 0.02 + gap[i]) advance(s, 16);
+        lar_contact_info info;
+        lar_simulation_contact(s, &info);
+        print_message("from %g mm: %.2f mm deep\n", 1e3 * gap[i], 1e3 * info.deepest_ever);
+        assert_true(info.deepest_ever > 0);
+        assert_below(info.deepest_ever, 0.0025); /* the rim by 6 mm before */
+        finish(s, model);
+    }
+}
+
 /* Who has parted from what it was flush with may then come behind another body, and files hold
  * both. */
 static void files_hold_who_parted_and_is_behind(void **unused) {
@@ -367,6 +398,7 @@ int main(void) {
         cmocka_unit_test(who_meets_along_a_line_stays),
         cmocka_unit_test(who_slides_off_gains_nothing),
         cmocka_unit_test(it_has_the_same_bits),
+        cmocka_unit_test(who_falls_straight_on_it_stays_out),
         cmocka_unit_test(files_hold_who_parted_and_is_behind),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

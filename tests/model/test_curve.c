@@ -5,6 +5,8 @@
 #include <stdint.h>
 #include <cmocka.h>
 
+#include <math.h>
+
 #include "model/curve.h"
 
 static double three[3][2] = {{1.0, 2.0}, {2.0, 6.0}, {4.0, -2.0}};
@@ -147,6 +149,29 @@ static void test_splines(void **state) {
     }
 }
 
+/* Whatever a step is, the means over all steps keep the impulse of a short pulse; what is slower
+ * has its values. */
+static void test_means_keep_impulses(void **state) {
+    (void)state;
+    static double pulses[][3][2] = {
+        {{0.5, 0}, {0.5, 1}, {0.52, 0}}, /* a jump that decays */
+        {{0.5, 0}, {0.51, 1}, {0.52, 0}},
+        {{0.501, 0}, {0.5011, 1}, {0.503, 0}},
+    };
+    static const double area[] = {0.01, 0.01, 0.001};
+    for (int k = 0; k < 3; k++)
+        for (double dt = 1e-4; dt < 0.1; dt *= 1.37) {
+            lar_curve curve = {.kind = LAR_CURVE_TABLE, .count = 3, .point = pulses[k]};
+            double sum = 0.5 * dt * lar_curve_mean(&curve, 0, dt);
+            for (int n = 1; n * dt < 0.7; n++) sum += dt * lar_curve_mean(&curve, n * dt, dt);
+            assert_true(fabs(sum / area[k] - 1) < (dt > 0.002 ? 1e-12 : 0.06));
+        }
+    static double slow[][2] = {{0, 0}, {0.3, 1}, {0.5, -2}};
+    const lar_curve curve = {.kind = LAR_CURVE_TABLE, .count = 3, .point = slow};
+    for (double t = 0; t < 0.6; t += 0.01)
+        assert_true(lar_curve_mean(&curve, t, 0.02) == lar_curve_value(&curve, t));
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_ramp),
@@ -156,6 +181,7 @@ int main(void) {
         cmocka_unit_test(test_splines),
         cmocka_unit_test(test_odd_tables),
         cmocka_unit_test(test_hold_from),
+        cmocka_unit_test(test_means_keep_impulses),
         cmocka_unit_test(test_values_have_fixed_bits),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

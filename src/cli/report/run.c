@@ -369,6 +369,7 @@ static void print_depth(const run_report *report, const lar_tool_info *info,
     const length_unit unit = unit_of(report);
     const double *f = force->force, deep = force->depth / info->radius;
     double springs = 0.5 * sqrt(f[0] * f[0] + f[1] * f[1] + f[2] * f[2]) * force->depth;
+    if (!(force->depth > 0)) return;
     if (!(deep > MUCH || springs > MUCH * (energy->strain + energy->hourglass))) return;
     fprintf(out,
             "%-17stissue is %.2g %s deep in it, %.2g of its radius: the force is less than that "

@@ -105,6 +105,13 @@ static bool may_meet(const lar_body_contact *contact, const lar_state *state, in
            !lar_flush_next_body(s, group->node, &at, &body);
 }
 
+/* Who is nearer to a face has not parted from its body. Bodies that began apart push each other
+ * before they touch. */
+static double near_of(const lar_contact_surface *s, int32_t node, int32_t face) {
+    return lar_contact_standoff(s, &s->node[node], &s->face[face]) +
+           LAR_FLUSH_NEAR * s->face[face].size;
+}
+
 double lar_offset_meet(lar_body_contact *contact, const lar_state *state, int32_t g, int32_t face,
                        const lar_face_point *closest) {
     const lar_contact_surface *s = contact->surface;
@@ -112,15 +119,15 @@ double lar_offset_meet(lar_body_contact *contact, const lar_state *state, int32_
     const int32_t *faces = contact->list.face + group->first;
     double most = 0;
     if (!may_meet(contact, state, g)) return INFINITY;
-    for (int32_t i = 0; i < group->count; i++) most = fmax(most, s->face[faces[i]].size);
+    for (int32_t i = 0; i < group->count; i++) most = fmax(most, near_of(s, group->node, faces[i]));
     /* Who is out of reach is not looked at in every step. */
     const double reach = lar_contact_reach(s, &s->node[group->node], &s->face[face]);
     if (closest->height > 0 && is_straight(closest) && closest->distance < reach &&
-        closest->distance < LAR_FLUSH_NEAR * s->face[face].size &&
+        closest->distance < near_of(s, group->node, face) &&
         !lar_flush_hides(s, group->node, face) && (!contact->keeps || contact->keeps[group->node]))
         contact->offset[contact->offset_count++] =
             (lar_penetration_offset){contact->view.local[group->node], LAR_OFFSET_MET};
-    return fmax(0, closest->distance - LAR_FLUSH_NEAR * most);
+    return fmax(0, closest->distance - most);
 }
 
 /* ---- sharp edges ----------------------------------------------------------------------------- */
@@ -413,8 +420,9 @@ void lar_offset_stay_flush(lar_body_contact *contact, const lar_state *state, in
     const lar_contact_surface *s = contact->surface;
     const int32_t node = contact->list.group[g].node;
     if (node >= s->node_count) return;
-    double near =
-        face < 0 ? 0 : (closest->height < 0 ? ROUNDING : LAR_FLUSH_NEAR) * s->face[face].size;
+    double near = 0;
+    if (face >= 0 && closest->height < 0) near = ROUNDING * s->face[face].size;
+    if (face >= 0 && !(closest->height < 0)) near = near_of(s, node, face);
     if ((face < 0 || !(closest->distance < near)) && !stands_on_another(contact, state, g))
         lar_offset_part(contact, node);
 }

@@ -267,12 +267,24 @@ static lar_status refuse_overlap(const lar_model *model, const lar_contact_searc
                     (long long)model->mesh.element_id[s->face[deepest.face].element]);
 }
 
+/* Who begins straight before a block may be some layers away from it, as far as the list has room
+ * for. */
+static lar_status find_flush(const lar_model *model, lar_contact_search *search,
+                             lar_contact_surface *s, lar_error *error) {
+    static const double LAYERS = 8;
+    const double far = s->body_count > 1 ? LAYERS * s->reach_max : 0;
+    if (!lar_contact_search_run(search, (const double(*)[3])s->rest, far)) return LAR_OK;
+    return lar_flush_find(s, &search->list, lar_overlap_rounding(&model->mesh), error);
+}
+
 /* Within one body that is its shape, and nothing to be pushed apart. Bodies that lie in each other
  * are refused. */
 static lar_status keep_shape(const lar_model *model, lar_contact_search *search,
                              lar_contact_surface *s, lar_error *error) {
     const lar_contact_list *list = &search->list;
     s->rounding = lar_overlap_rounding(&model->mesh);
+    lar_status status = find_flush(model, search, s, error);
+    if (status) return status;
     if (!lar_contact_search_run(search, (const double(*)[3])s->rest, 0))
         return lar_fail(
             error, LAR_ERROR_MODEL,
@@ -281,13 +293,11 @@ static lar_status keep_shape(const lar_model *model, lar_contact_search *search,
             "or surfaces overlap at many places; take fewer or larger bodies, or wider "
             "gaps",
             LAR_PAIRS_PER_NODE, LAR_PAIRS_PER_NODE / 8);
-    lar_status status = refuse_overlap(model, search, error);
+    status = refuse_overlap(model, search, error);
     if (!status) status = refuse_twice(model, search, error);
     if (!status) status = lar_contact_refuse_inside(model, s, list, error);
     if (status) return status;
     measure_clearance(s, list, lar_overlap_rounding(&model->mesh));
-    status = lar_flush_find(s, list, lar_overlap_rounding(&model->mesh), error);
-    if (status) return status;
     int32_t(*pair)[2] = lar_calloc((size_t)list->face_count, sizeof *pair), count = 0;
     if (!pair) return lar_fail_memory(error, 8 * (size_t)list->face_count, "pairs at rest");
     for (int32_t g = 0; g < list->group_count; g++) {

@@ -136,3 +136,37 @@ void lar_free_bodies_go(const lar_domain *domain, const lar_condition_notes *not
         lar_tool_ask(tools, tool, &way);
     }
 }
+
+void lar_free_bodies_start(const lar_domain *domain, const lar_condition_notes *notes,
+                           const lar_state *state, lar_tools *tools) {
+    const lar_model *model = domain->model;
+    const lar_leapfrog as_they_are = {.keep = 1};
+    for (int tool = 0; tool < model->tool_count; tool++) {
+        if (!model->tool[tool].free || tools->motion[tool].end > state->step) continue;
+        lar_tool_motion way = {.start = state->step + 1, .end = state->step};
+        lar_rigid_sum sum;
+        sum_nodes(domain, notes, state, &as_they_are, tool, &sum);
+        if (!(sum.mass > 0)) continue;
+        way.to = tools->motion[tool].to;
+        next_pose(&model->tool[tool], &sum, -domain->time_step / LAR_PARTS_MAX, &way.to, &way.from);
+        lar_tool_ask(tools, tool, &way);
+    }
+}
+
+/* Twice the sine of half the turn on a way. */
+static double turn_of(const lar_tool_motion *way) {
+    double before[4], turn[4];
+    lar_quaternion_inverse(way->from.orientation, before);
+    lar_quaternion_product(way->to.orientation, before, turn);
+    return 2 * lar_length(&turn[1]);
+}
+
+bool lar_free_bodies_turn_far(const lar_tools *tools, uint64_t step, int32_t parts) {
+    static const double FAR = 0.1;
+    const int32_t before = step == 0 ? LAR_PARTS_MAX : tools->division.parts;
+    bool far = false;
+    for (int32_t i = 0; i < tools->count && !far; i++)
+        far = lar_tool_motion_free(&tools->motion[i]) &&
+              turn_of(&tools->motion[i]) * before > FAR * parts;
+    return far;
+}

@@ -34,6 +34,14 @@ bool lar_free_bodies_any(const lar_model *model);
 void lar_free_bodies_go(const lar_domain *domain, const lar_condition_notes *notes,
                         const lar_state *state, const lar_leapfrog *leapfrog, lar_tools *tools);
 
+/* Before the first step: how they turn to begin with, by the nodes' velocities. */
+void lar_free_bodies_start(const lar_domain *domain, const lar_condition_notes *notes,
+                           const lar_state *state, lar_tools *tools);
+
+/* Whether one of them would turn by more than a tenth in each of so many parts of a step: momentum
+ * says the sine of the turn, and beyond a quarter of a circle nothing. */
+bool lar_free_bodies_turn_far(const lar_tools *tools, uint64_t step, int32_t parts);
+
 /* The Cayley vector of the turn of a body within dt, about `axis` where that is not zero. What is
  * as thin as a line turns about an axis only. */
 void lar_free_body_turn(const lar_rigid_sum *sum, const double axis[3], double dt, double v[3]);
