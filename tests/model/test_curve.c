@@ -169,7 +169,7 @@ static void test_means_keep_impulses(void **state) {
     static double slow[][2] = {{0, 0}, {0.3, 1}, {0.5, -2}};
     const lar_curve curve = {.kind = LAR_CURVE_TABLE, .count = 3, .point = slow};
     for (double t = 0; t < 0.6; t += 0.01)
-        assert_true(lar_curve_mean(&curve, t, 0.02) == lar_curve_value(&curve, t));
+        assert_true(lar_curve_mean(&curve, t, 0.01) == lar_curve_value(&curve, t));
 }
 
 int main(void) {
