@@ -380,7 +380,9 @@ static void print_depth(const run_report *report, const lar_tool_info *info,
 
 /* Nothing of tools that neither touch nor hold. */
 static void print_tools(const run_report *report, const lar_energy *energy, FILE *out) {
+    static const double LATE = 0.1; /* radii */
     const lar_simulation *simulation = report->simulation;
+    const length_unit unit = unit_of(report);
     for (int32_t i = 0; i < lar_simulation_tool_count(simulation); i++) {
         lar_tool_info info;
         lar_tool_force force;
@@ -395,6 +397,9 @@ static void print_tools(const run_report *report, const lar_energy *energy, FILE
             fprintf(out, " and %.3g N m on the nodes that it moves",
                     sqrt(t[0] * t[0] + t[1] * t[1] + t[2] * t[2]));
         if (force.held > 0) fprintf(out, ", holds %d points", (int)force.held);
+        if (force.limited && force.apart > LATE * info.radius)
+            fprintf(out, ", kept %.3g %s from where it is led", unit.per_metre * force.apart,
+                    unit.name);
         fputc('\n', out);
         print_depth(report, &info, &force, energy, out);
     }
