@@ -99,7 +99,8 @@ enum { LAR_HEAVIER_MAX = 64, LAR_HEAVY_LIST = 2 * LAR_HEAVIER_MAX };
 
 /* All zero where the scene does not ask for them. */
 typedef struct lar_heavy_list {
-    int32_t count, padding;
+    int32_t count;
+    float deep;                   /* what springs deep in other bodies need, of this interval */
     double beyond_need, beyond;   /* the same, the largest of those that did not find room */
     lar_heavy of[LAR_HEAVY_LIST]; /* by element */
 } lar_heavy_list;

@@ -55,13 +55,14 @@ static void divide_blows(const lar_domain *whole, const lar_needs *needs, lar_he
 }
 
 /* Bodies that are deep in each other have springs that ask for parts (lar_contact_deep_need),
- * beside elements that are crushed there. */
+ * beside elements that are crushed there: of those that may be heavier it is known at the decision
+ * which they are, however often somebody has looked before (lar_heavier_fade). */
 static void divide_deep(const lar_domain *whole, const lar_report *report, int32_t base,
                         lar_heavy_list *list) {
     if (!(report->deep > 0)) return;
-    const double strained = report->needs.count > 0 ? report->needs.of[0].need : 0;
-    const double elements = fmax(strained, whole->room.max * base * base);
+    const double elements = whole->room.max * base * base;
     list->beyond_need = larger(list->beyond_need, elements + report->deep);
+    if (whole->burden) list->deep = fmaxf(list->deep, (float)report->deep);
 }
 
 void lar_interval_harvest(lar_interval *interval, const lar_domain *whole, const lar_report *report,

@@ -68,6 +68,9 @@ static void cut(lar_heavy_list *list, int32_t count) {
 }
 
 void lar_heavier_fade(double fading, lar_heavy_list *list) {
+    for (int32_t i = 0; i < list->count && list->deep > 0; i++)
+        list->beyond_need = larger(list->beyond_need, list->of[i].need + list->deep);
+    list->deep = 0;
     for (int32_t i = 0; i < list->count; i++) fade(fading, &list->of[i].need, &list->of[i].lately);
     fade(fading, &list->beyond_need, &list->beyond);
     if (list->count <= LAR_HEAVIER_MAX) return;
@@ -165,7 +168,7 @@ static bool good_heavy(const lar_heavy *heavy) {
 }
 
 bool lar_heavier_good(const lar_domain *whole, const lar_heavy_list *list) {
-    bool good = list->count >= 0 && list->count <= LAR_HEAVY_LIST && list->padding == 0 &&
+    bool good = list->count >= 0 && list->count <= LAR_HEAVY_LIST && list->deep >= 0 &&
                 list->beyond_need >= 0 && list->beyond >= 0 && list->beyond <= LAR_NEED_MAX;
     int32_t heavier = 0, elements = whole->model->mesh.element_count;
     for (int32_t i = 0; good && i < list->count; i++) {
