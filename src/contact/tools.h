@@ -28,8 +28,8 @@ enum { LAR_GRASPS_MAX = 256 };
 enum { LAR_HOLDS = 1, LAR_HOLDS_NEAR };
 typedef struct lar_tool_motion {
     lar_tool_pose from, to;
-    uint64_t start,
-        end;         /* steps; of a free body in the part of step `end` under way, start > end */
+    /* Steps; of a free body in the part of step `end` that is under way, start > end. */
+    uint64_t start, end;
     int32_t holding; /* it has closed upon something, or nothing, and not opened since: 1; and
                         since the last decision something has been within its jaws, or it has
                         just closed: 2 */

@@ -235,9 +235,11 @@ static bool starts_suddenly(const lar_domain *whole, const lar_tools *tools) {
 bool lar_interval_divide(const lar_domain *whole, uint64_t step, double seconds, lar_tools *tools) {
     lar_step_division *d = &tools->division;
     /* What was needed lately counts for some time: strained tissue trembles. */
-    double fading = fmax(0.5, 1 - seconds / whole->memory);
+    static const double HARD = 0.05; /* tools, in scenes [s] */
+    const double fading = fmax(0.5, 1 - seconds / whole->memory);
+    const double softens = whole->model->own_units ? fading : fmax(0.5, 1 - seconds / HARD);
     const lar_hardened tool =
-        lar_tools_harden(whole->surroundings.list, tools, lar_interval_springs(whole), fading,
+        lar_tools_harden(whole->surroundings.list, tools, lar_interval_springs(whole), softens,
                          seconds, 1 / whole->scale);
     const double way = lar_tools_way(whole->surroundings.list, tools, step);
     const double reach = lar_division_reach(d);
