@@ -254,6 +254,17 @@ static bool springs_open(const lar_tool *tool, const lar_tool_limits *limits, co
            limits->travel * (hand->opening - now->opening) > law->farthest;
 }
 
+/* The part of its drag that jaws have which carry something that hardly pulls at them: by that they
+ * see that it goes with them. Were it held, a step of theirs would push with no more than half of
+ * what they may. */
+static double carries(const mean_load *mean, const lar_tool_limits *limits,
+                      const lar_tool_motion *motion) {
+    static const double LEAST = 0.125, LIGHT = 0.125;
+    if (!motion->holding) return 1;
+    const double force = lar_length(mean->force) + lar_length(mean->torque) / limits->lever;
+    return fmin(1, fmax(LEAST, force / (LIGHT * limits->force)));
+}
+
 /* A tool that is kept from following goes its own way; one that has come back to its hand follows
  * again. Jaws that are opened at once are held back likewise, or what they let go would fly as if
  * nothing had held it. True when it goes elsewhere than before. */
@@ -272,7 +283,8 @@ static bool follow(const lar_tool *tool, const lar_tool_limits *limits, lar_tool
     lar_tool_at(&follower->hand, step, time_step, &hand, NULL);
     lar_tool_at(&follower->hand, until, time_step, &then, NULL);
     double steps = (double)(until - step), seconds = steps * time_step;
-    const follow_law law = {.drag = limits->drag * tools->hardness[index],
+    const double drag = limits->drag * tools->hardness[index];
+    const follow_law law = {.drag = drag * carries(mean, limits, motion),
                             .seconds = seconds,
                             .farthest = fmin(SHARE * tool->radius * steps, FASTEST * seconds)};
     step_pose(tool, limits, mean, &law, &now, &then, &next);
