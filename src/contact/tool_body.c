@@ -145,6 +145,7 @@ static mean_load mean_of(const lar_tool_felt *felt, const lar_tool_limits *limit
 typedef struct follow_law {
     double drag, seconds; /* [N s/m], of the interval */
     double farthest;      /* way in the interval [m] */
+    double carries;       /* the part of its drag that it goes with, but does not turn or close */
 } follow_law;
 
 static double dot(int count, const double *a, const double *b) {
@@ -219,10 +220,12 @@ static void step_pose(const lar_tool *tool, const lar_tool_limits *limits, const
                       const follow_law *law, const lar_tool_pose *now, const lar_tool_pose *hand,
                       lar_tool_pose *next) {
     double gap[3], way[3], pushed[3], lever = limits->lever;
+    follow_law goes = *law;
+    goes.drag *= law->carries;
     *next = *hand;
     lar_minus(hand->position, now->position, gap);
     for (int i = 0; i < 3; i++) pushed[i] = mean->excess * mean->force[i];
-    if (!go(law, 3, gap, pushed, draws(mean, limits, law, pushed), way))
+    if (!go(&goes, 3, gap, pushed, draws(mean, limits, &goes, pushed), way))
         for (int i = 0; i < 3; i++) next->position[i] = now->position[i] + way[i];
     /* Turns as ways of a point at the lever's end. */
     turn_between(now->orientation, hand->orientation, gap);
@@ -283,8 +286,8 @@ static bool follow(const lar_tool *tool, const lar_tool_limits *limits, lar_tool
     lar_tool_at(&follower->hand, step, time_step, &hand, NULL);
     lar_tool_at(&follower->hand, until, time_step, &then, NULL);
     double steps = (double)(until - step), seconds = steps * time_step;
-    const double drag = limits->drag * tools->hardness[index];
-    const follow_law law = {.drag = drag * carries(mean, limits, motion),
+    const follow_law law = {.drag = limits->drag * tools->hardness[index],
+                            .carries = carries(mean, limits, motion),
                             .seconds = seconds,
                             .farthest = fmin(SHARE * tool->radius * steps, FASTEST * seconds)};
     step_pose(tool, limits, mean, &law, &now, &then, &next);

@@ -61,11 +61,11 @@ static lar_model *straight_tool_model(const brick *b) {
 
 /* ---- the same bits -------------------------------------------------------------------------- */
 
-static same_bits body = {fibrous_tool_model, PATH, {0x123c820a0a3f293d, 0x8013c4a2253e33cc}};
+static same_bits body = {fibrous_tool_model, PATH, {0xb875749081aa8561, 0x6a985ce265ede585}};
 
 static same_bits straight = {straight_tool_model,
                              LAR_TEST_BUILD "/straight.checkpoint",
-                             {0x2e5e12c36ba8ac81, 0x2bb448dfe7d8f844}};
+                             {0xd5ec3be324218749, 0x056ef5bfa209a3e9}};
 
 /* Parameters of each law beside tissue of some kilopascal. */
 static const double LAWS[LAR_FIBRE_LAWS][LAR_FIBRE_PARAMETERS] = {
