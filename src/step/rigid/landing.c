@@ -1,11 +1,10 @@
 #include "step/rigid/landing.h"
 
 #include <math.h>
-#include <string.h>
 
 #include "base/vector.h"
 
-/* What a body that is told to turn by `spin` turns by, and one that is pushed goes by. */
+/* Pushes the body at a place: momentum and spin, and what it goes and turns by for that. */
 static void add_impulse(lar_landing *landing, const double arm[3], const double impulse[3]) {
     lar_rigid_sum *sum = landing->sum;
     double spin[3], turn[3];
