@@ -68,8 +68,7 @@
 /* Of a contact node in the exchange buffer: place, velocity, offset. */
 enum { LAR_PLACE_VALUES = 7 };
 
-/* And behind it, where bodies rub (history/body_friction.h). */
-enum { LAR_STICK_VALUES = 4 };
+/* And behind it, where bodies rub, LAR_STICK_VALUES (history/body_friction.h). */
 
 typedef struct lar_body_friction lar_body_friction;
 

@@ -72,6 +72,7 @@ typedef struct lar_tool_contact_group {
 typedef struct lar_tool_rub_node {
     double rest[3]; /* [m] */
     int32_t node;   /* of the model */
+    int32_t grip;   /* of a free body: its place in the history (history/tool_grip.h); else -1 */
     uint8_t held;   /* LAR_AXIS bits of the axes that its supports hold */
 } lar_tool_rub_node;
 
@@ -84,6 +85,7 @@ typedef struct lar_tool_faces {
     int32_t *foreign;              /* [foreign_count] local nodes: corners that others move */
     lar_point_weights *weights;    /* NULL: no faces */
     int32_t rub_count, local_count;
+    bool grips;             /* whether one of them is a free body's */
     lar_tool_rub_node *rub; /* [rub_count] moved by the thread; NULL: no tool has friction. Of all
                                nodes of the processor there are `local_count` */
     int32_t *rub_at;        /* [local_count] index into `rub`; -1: none */
@@ -104,7 +106,9 @@ typedef struct lar_tool_contact_force {
 /* Friction of a node in the step under way [force units]. */
 typedef struct lar_tool_rubbed {
     int32_t node; /* local */
+    int32_t grip; /* of what remembers, -1: nothing; and what then */
     int64_t force[3];
+    double stick[LAR_STICK_VALUES];
 } lar_tool_rubbed;
 
 /* The segments of a tool, where they are and where they will be a step later. */

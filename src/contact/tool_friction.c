@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/vector.h"
+#include "contact/history/tool_grip.h"
 #include "contact/touch_list.h"
 
 /* ---- set-up -------------------------------------------------------------------------------- */
@@ -22,6 +23,25 @@ LAR_SETUP static void find_nodes(const lar_model *model, const int32_t *local,
         int32_t n = model->surface.corner[i / 4][i % 4];
         if (local[n] >= 0 && (!share || share->holds[n] == share->thread)) node[local[n]] = n;
     }
+}
+
+/* Which of them are free bodies'. */
+LAR_SETUP static lar_status find_grips(const lar_model *model, const int32_t *local,
+                                       lar_tool_faces *faces, lar_error *error) {
+    const int32_t count = lar_grips_list(model, NULL);
+    int32_t *node = count > 0 ? lar_calloc((size_t)count, sizeof *node) : NULL;
+    if (count == 0) return LAR_OK;
+    if (!node)
+        return lar_fail_memory(error, (size_t)count * sizeof *node, "the nodes before tools");
+    lar_grips_list(model, node);
+    for (int32_t i = 0; i < count; i++) {
+        const int32_t n = local[node[i]], at = n < 0 ? -1 : faces->rub_at[n];
+        if (at < 0) continue;
+        faces->rub[at].grip = i;
+        faces->grips = true;
+    }
+    free(node);
+    return LAR_OK;
 }
 
 LAR_SETUP lar_status lar_tool_friction_list(const lar_model *model, const int32_t *local,
@@ -43,6 +63,7 @@ LAR_SETUP lar_status lar_tool_friction_list(const lar_model *model, const int32_
         if (node[n] < 0) continue;
         lar_tool_rub_node *rub = &faces->rub[faces->rub_at[n] = faces->rub_count++];
         rub->node = node[n];
+        rub->grip = -1;
         memcpy(rub->rest, model->mesh.position[node[n]], sizeof rub->rest);
     }
     for (int32_t i = 0; i < conditions->constraint_count && !status; i++) {
@@ -50,6 +71,7 @@ LAR_SETUP lar_status lar_tool_friction_list(const lar_model *model, const int32_
         int32_t at = faces->rub_at[constraint->node];
         if (at >= 0) faces->rub[at].held |= (uint8_t)(LAR_AXIS_X << constraint->axis);
     }
+    if (!status) status = find_grips(model, local, faces, error);
     free(node);
     return status;
 }
@@ -212,12 +234,20 @@ static inline unsigned held_axes(const lar_tool_contact *contact,
     return context->held ? context->held[node->node] & LAR_AXIS_ALL : node->held;
 }
 
-/* Whether the node is one that rubs: that something pushes along axes that nothing holds. */
+/* The place of a node in the history that is held by a free body now; of others -1. */
+static inline int32_t grip_of(const lar_tool_contact *contact, int32_t local, unsigned held) {
+    return held == LAR_AXIS_ALL ? contact->faces->rub[contact->faces->rub_at[local]].grip : -1;
+}
+
+/* Whether the node is one that rubs: that something pushes along axes that nothing holds, but what
+ * goes where forces take it. */
 static inline bool rubs_at(const lar_tool_contact *contact, const lar_condition_context *context,
-                           int32_t local) {
+                           int32_t local, int32_t *grip) {
     const int32_t at = contact->faces->rub_at[local];
     if (at < 0) return false; /* another thread moves it */
-    const unsigned held = held_axes(contact, context, local);
+    unsigned held = held_axes(contact, context, local);
+    *grip = grip_of(contact, local, held);
+    if (*grip >= 0) held = 0;
     for (int i = 0; held && i < 3; i++)
         if (held & (unsigned)LAR_AXIS_X << i) *press_at(contact, local, i) = 0;
     return (*press_at(contact, local, 0) | *press_at(contact, local, 1) |
@@ -230,9 +260,11 @@ static void list_rubbed(lar_tool_contact *contact, const lar_condition_context *
     contact->rubbed_count = 0;
     for (int32_t w = 0; w < words; w++) {
         for (uint64_t left = contact->pressed[w]; left; left &= left - 1) {
-            int32_t local = 64 * w + __builtin_ctzll(left);
-            if (rubs_at(contact, context, local))
-                contact->rubbed[contact->rubbed_count++].node = local;
+            int32_t grip, local = 64 * w + __builtin_ctzll(left);
+            if (!rubs_at(contact, context, local, &grip)) continue;
+            lar_tool_rubbed *rubbed = &contact->rubbed[contact->rubbed_count++];
+            rubbed->node = local;
+            rubbed->grip = grip;
         }
         contact->pressed[w] = 0;
     }
@@ -265,17 +297,47 @@ static inline rough_tool *take_up(const lar_tool_contact *contact,
         rubs->velocity[i][t] = velocity[i];
         rubs->arm[i][t] = x[i] - tool->now.position[i];
     }
-    const unsigned held = held_axes(contact, context, local);
+    unsigned held = held_axes(contact, context, local);
+    if (grip_of(contact, local, held) >= 0) held = 0;
     for (int i = 0; held && i < 3; i++) /* no slip along it, so no friction */
         if (held & (unsigned)LAR_AXIS_X << i)
             rubs->force[i][t] = rubs->v[i][t] = rubs->velocity[i][t] = 0;
     return tool;
 }
 
+/* What the node remembers pulls in lane t in place of what it would need. */
+__attribute__((noinline, cold)) static void hang_on(const lar_condition_context *context,
+                                                    const lar_state *state, const rough_tool *tool,
+                                                    const double tip[3], lar_tool_rubbed *rubbed,
+                                                    lar_tool_rubs *rubs, int32_t t) {
+    lar_contact_law law = lar_contact_tool_law_for(context->whole_step, context->stable_step);
+    lar_grip grip = {.tool = tool->tool, .mass = context->springs[rubbed->node]};
+    double pull[3], force[3][4] = {{0}}, x[4][3] = {{0}};
+    lar_tool_pushes pushes;
+    law.lead *= context->time_step / context->whole_step;
+    law.stiffness *= context->tools->hardness[tool->tool];
+    for (int i = 0; i < 3; i++) {
+        grip.press[i] = rubs->press[i][t] / context->scale;
+        grip.slide[i] = rubs->v[i][t] - rubs->velocity[i][t];
+        x[0][i] = tip[i] + rubs->arm[i][t];
+    }
+    lar_tool_grip_pull(&grip, &law, context->time_step, lar_grip_of(state, rubbed->grip),
+                       rubbed->stick, pull);
+    for (int i = 0; i < 3; i++) force[i][0] = pull[i];
+    lar_tool_push_lanes(context->scale, (const double(*)[4])force, (const double(*)[3])x, tip,
+                        &pushes);
+    for (int i = 0; i < 3; i++) {
+        rubs->friction.force[i][t] = pushes.force[i][0];
+        rubs->friction.torque[i][t] = pushes.torque[i][0];
+        rubs->friction.rest[i][t] = pushes.rest[i][0];
+    }
+}
+
 /* The node and its tool get what lane t has found. */
 static inline void hand_over(const lar_tool_contact *contact, const lar_condition_context *context,
-                             lar_tool_rubbed *rubbed, rough_tool *tool, const lar_tool_rubs *rubs,
+                             lar_tool_rubbed *rubbed, rough_tool *tool, lar_tool_rubs *rubs,
                              int32_t t, lar_state *state) {
+    if (rubbed->grip >= 0) hang_on(context, state, tool, tool->now.position, rubbed, rubs, t);
 #pragma GCC unroll 3
     for (int i = 0; i < 3; i++) {
         rubbed->force[i] = (int64_t)rubs->friction.force[i][t];
@@ -337,6 +399,19 @@ void lar_tool_friction_add(lar_tool_contact *contact, const lar_condition_contex
     for (int32_t i = 0; i < all; i += TOGETHER)
         rub_nodes(contact, context, leapfrog, push, rough, count, &contact->rubbed[i],
                   all - i < TOGETHER ? all - i : TOGETHER, state);
+}
+
+void lar_tool_friction_keep(const lar_tool_contact *contact, lar_state *state) {
+    if (!contact->press || !contact->faces->grips) return;
+    for (int32_t i = 0; i < contact->faces->rub_count; i++) {
+        const int32_t grip = contact->faces->rub[i].grip;
+        if (grip >= 0) memset(lar_grip_of(state, grip), 0, LAR_STICK_VALUES * sizeof(double));
+    }
+    for (int32_t i = 0; i < contact->rubbed_count; i++) {
+        const lar_tool_rubbed *rubbed = &contact->rubbed[i];
+        if (rubbed->grip >= 0)
+            memcpy(lar_grip_of(state, rubbed->grip), rubbed->stick, sizeof rubbed->stick);
+    }
 }
 
 void lar_tool_friction_half_work(const lar_tool_contact *contact,

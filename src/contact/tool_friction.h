@@ -23,7 +23,7 @@
  * A node that several tools push at once rubs on the nearest of those with friction. Nodes that
  * supports hold or move along some axes rub along the others only, with what pushes them along
  * these: a node in a plane of symmetry is pushed from one side, and what pushes it across the plane
- * is borne by what is left out.
+ * is borne by what is left out. Nodes of free bodies hang on springs instead (history/tool_grip.h).
  */
 #ifndef LAR_CONTACT_TOOL_FRICTION_H
 #define LAR_CONTACT_TOOL_FRICTION_H
@@ -62,6 +62,9 @@ void lar_tool_friction_press(lar_tool_contact *contact, const lar_condition_cont
  * follows (hex8_block.h). */
 void lar_tool_friction_add(lar_tool_contact *contact, const lar_condition_context *context,
                            const lar_leapfrog *leapfrog, const double *push, lar_state *state);
+
+/* Before the nodes move: what those of free bodies remember of it goes on. */
+void lar_tool_friction_keep(const lar_tool_contact *contact, lar_state *state);
 
 /* Half its work in this step, to state->external: once before and once after the nodes move. */
 void lar_tool_friction_half_work(const lar_tool_contact *contact,

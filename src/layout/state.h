@@ -47,6 +47,8 @@
 
 #define LAR_STATE_COUNT(array, count, before, always) +(count)
 enum { LAR_NODE_VALUES = 0 LAR_STATE_ROWS(LAR_STATE_COUNT) };
+/* Of a node that remembers where it took hold, in the history. */
+enum { LAR_STICK_VALUES = 4 };
 #undef LAR_STATE_COUNT
 
 typedef struct lar_strained lar_strained; /* step/guard.h */

@@ -171,7 +171,8 @@ lar_status lar_computer_gather(lar_computer *computer, lar_error *error) {
     state->external = state->damped = state->contact = state->exchanged = 0;
     gather_here(computer);
     if (computer->control) status = gather_rounds(computer, LAR_ORDER_GATHER, take_nodes, error);
-    bool remembers = computer->whole->element_history || computer->whole->rubbing;
+    bool remembers = computer->whole->element_history || computer->whole->rubbing ||
+                     computer->whole->grip_count > 0;
     if (!status && computer->control && remembers)
         status = gather_rounds(computer, LAR_ORDER_HISTORY, take_history, error);
     computer->gathered = !status;

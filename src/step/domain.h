@@ -77,6 +77,8 @@ typedef struct lar_domain {
     size_t *run_history;      /* [run_count] where a viscous run's begin */
     int64_t *element_history; /* [elements of the model] where an element's begin, one in eight;
                                  -1: it has none here. NULL where nothing is viscous */
+    int32_t grip_count; /* of free bodies (contact/history/tool_grip.h): the first in a history */
+    lar_gid *grip;      /* [grip_count] nodes of the model */
     const lar_contact_surface *rubbing; /* whose nodes' values are the last; lent; NULL: none */
     int32_t spare_count;
     lar_lid *spare; /* nodes without mass, ascending */

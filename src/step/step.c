@@ -445,6 +445,7 @@ void lar_step_move(const lar_domain *domain, lar_interactions *interactions,
         const lar_leapfrog leapfrog = lar_step_leapfrog_at(domain, interactions, context, state);
         lar_free_bodies_go(domain, &interactions->notes, state, &leapfrog, interactions->leads);
     }
+    lar_tool_friction_keep(&interactions->tool_contact, state);
     lar_tool_friction_half_work(&interactions->tool_contact, context, state);
     lar_tool_contact_carry(&interactions->tool_contact, context, &interactions->notes, state);
     lar_conditions_observe(context, &interactions->notes, state);

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "contact/history/body_friction.h"
+#include "contact/history/tool_grip.h"
 
 int lar_viscous_count(const lar_domain *domain, int32_t item) {
     if (lar_history_node(domain, item) >= 0) return LAR_STICK_VALUES;
@@ -13,7 +14,8 @@ int lar_viscous_count(const lar_domain *domain, int32_t item) {
 
 size_t lar_viscous_total(const lar_domain *domain) {
     const lar_model *model = domain->model;
-    size_t total = domain->rubbing ? lar_stick_total(domain->rubbing) : 0;
+    size_t total = LAR_STICK_VALUES * (size_t)domain->grip_count;
+    if (domain->rubbing) total += lar_stick_total(domain->rubbing);
     bool any = false;
     for (int i = 0; i < model->material_count; i++)
         any = any || model->material[i].viscosity.terms > 0;
@@ -73,12 +75,27 @@ static void plan_run(lar_domain *domain, int32_t r) {
     domain->history_count += values * LAR_BLOCK * (size_t)run->count;
 }
 
+/* Nodes of free bodies that tools may hold. */
+static lar_status plan_grips(lar_domain *domain, lar_error *error) {
+    const int32_t count = lar_grips_list(domain->model, NULL);
+    if (count == 0) return LAR_OK;
+    domain->grip = lar_calloc((size_t)count, sizeof *domain->grip);
+    if (!domain->grip)
+        return lar_fail_memory(error, (size_t)count * sizeof(lar_gid), "free bodies");
+    domain->grip_count = lar_grips_list(domain->model, domain->grip);
+    domain->history_count = LAR_STICK_VALUES * (size_t)count;
+    domain->history_count += LAR_BLOCK - 1 - (domain->history_count - 1) % LAR_BLOCK;
+    return LAR_OK;
+}
+
 lar_status lar_viscous_plan(lar_domain *domain, lar_error *error) {
     const lar_model *model = domain->model;
     bool any = false;
+    lar_status status = plan_grips(domain, error);
+    if (status) return status;
     for (int i = 0; i < model->material_count; i++) {
         if (model->material[i].viscosity.terms == 0) continue;
-        lar_status status = check_material(domain, &model->material[i], error);
+        status = check_material(domain, &model->material[i], error);
         if (status) return status;
         any = true;
     }
@@ -100,6 +117,9 @@ void lar_viscous_unplan(lar_domain *domain) {
     free(domain->relaxing);
     free(domain->run_history);
     free(domain->element_history);
+    free(domain->grip);
+    domain->grip = NULL;
+    domain->grip_count = 0;
     domain->relaxing = NULL;
     domain->run_history = NULL;
     domain->element_history = NULL;
@@ -115,11 +135,17 @@ void lar_history_plan_nodes(lar_domain *domain, const lar_contact_surface *surfa
 
 /* ---- one item ---------------------------------------------------------------------------- */
 
+/* Of a node. */
+static double *stick_of(const lar_domain *domain, const lar_state *state, int32_t item) {
+    const int32_t grip = lar_history_grip(domain, item);
+    if (grip >= 0) return lar_grip_of(state, grip);
+    return lar_stick_of(domain->rubbing, state, item - domain->model->mesh.element_count);
+}
+
 void lar_viscous_read(const lar_domain *domain, const lar_state *state, int32_t item,
                       double *value) {
-    int32_t node = item - domain->model->mesh.element_count;
-    if (node >= 0) {
-        memcpy(value, lar_stick_of(domain->rubbing, state, node), LAR_STICK_VALUES * sizeof *value);
+    if (lar_history_node(domain, item) >= 0) {
+        memcpy(value, stick_of(domain, state, item), LAR_STICK_VALUES * sizeof *value);
         return;
     }
     const double *from = state->history + domain->element_history[item];
@@ -129,9 +155,8 @@ void lar_viscous_read(const lar_domain *domain, const lar_state *state, int32_t 
 
 void lar_viscous_write(const lar_domain *domain, lar_state *state, int32_t item,
                        const double *value) {
-    int32_t node = item - domain->model->mesh.element_count;
-    if (node >= 0) {
-        memcpy(lar_stick_of(domain->rubbing, state, node), value, LAR_STICK_VALUES * sizeof *value);
+    if (lar_history_node(domain, item) >= 0) {
+        memcpy(stick_of(domain, state, item), value, LAR_STICK_VALUES * sizeof *value);
         return;
     }
     double *to = state->history + domain->element_history[item];

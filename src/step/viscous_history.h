@@ -1,5 +1,6 @@
 /* What viscous elements remember (law/viscosity.h), and behind it nodes of bodies that rub
- * (contact/history/body_friction.h), in the state of a domain and on its way to and from others.
+ * (contact/history/body_friction.h), in the state of a domain and on its way to and from others;
+ * before it, those of free bodies that tools hold (contact/history/tool_grip.h).
  *
  *     model     element 0, 1, 2, ...          one element's values one after the other; those of
  *                   |                         what is elastic have none. Hash, checkpoint and
@@ -8,10 +9,11 @@
  *                                             order in which a step needs them
  *
  * Every element belongs to one thread of one processor, which alone takes its history on. A node is
- * taken on by all processors that have it, to the same bits. A model in which nothing is viscous
- * and no bodies rub has none of this: no memory, no bit of any hash.
+ * taken on by all processors that have it, to the same bits. A model in which nothing is viscous,
+ * no bodies rub and none is free has none of this: no memory, no bit of any hash.
  *
- * Items are the elements of the model, and behind them its contact nodes where these rub.
+ * Items are the elements of the model, and behind them its contact nodes where these rub, and the
+ * nodes of free bodies.
  */
 #ifndef LAR_STEP_VISCOUS_HISTORY_H
 #define LAR_STEP_VISCOUS_HISTORY_H
@@ -28,15 +30,22 @@ void lar_viscous_unplan(lar_domain *domain); /* idempotent */
  * model, outlives the domain. */
 void lar_history_plan_nodes(lar_domain *domain, const lar_contact_surface *surface);
 
-/* Whether an item remembers at all; then one behind the last. */
+/* One behind the last item. */
 static inline int32_t lar_history_end(const lar_domain *domain) {
     int32_t nodes = domain->rubbing ? domain->rubbing->node_count : 0;
-    return domain->model->mesh.element_count + nodes;
+    return domain->model->mesh.element_count + nodes + domain->grip_count;
+}
+/* The place of an item among the nodes of free bodies; -1: it is none of them. */
+static inline int32_t lar_history_grip(const lar_domain *domain, int32_t item) {
+    int32_t grip = item - (lar_history_end(domain) - domain->grip_count);
+    return grip < 0 ? -1 : grip;
 }
 /* The node of the model that an item is; -1: it is an element. */
 static inline lar_gid lar_history_node(const lar_domain *domain, int32_t item) {
     int32_t node = item - domain->model->mesh.element_count;
-    return node < 0 ? -1 : domain->rubbing->node[node].node;
+    int32_t grip = lar_history_grip(domain, item);
+    if (node < 0) return -1;
+    return grip < 0 ? domain->rubbing->node[node].node : domain->grip[grip];
 }
 
 /* Values of one item, 0: it is elastic. */

@@ -7,29 +7,13 @@
 #include "base/quaternion.h"
 #include "step/rigid/free_body.h"
 
-/* All nodes of a body become one rigid body, with all freedom. */
-static lar_tool *bind(lar_model *model, int32_t first, int32_t end) {
-    lar_node_list nodes = {end - first, lar_calloc((size_t)(end - first), 4)};
-    double x[3] = {0};
-    for (int32_t n = first; n < end; n++) {
-        nodes.node[n - first] = n;
-        for (int i = 0; i < 3; i++) x[i] += model->mesh.position[n][i] / (end - first);
-    }
-    add_tool(model, "stone", LAR_TOOL_RIGID, x[0], x[1], x[2]);
-    *(lar_move *)LAR_MODEL_APPEND(model, move) =
-        (lar_move){.nodes = nodes, .axes = LAR_AXIS_ALL, .tool = model->tool_count};
-    lar_tool *tool = &model->tool[model->tool_count - 1];
-    tool->free = LAR_AXIS_ALL | LAR_FREE_TURNS;
-    return tool;
-}
-
 static const brick stone = {{2, 3, 5}, 0.01, 0.1, LAR_LAW_neo_hookean, 2e3, 2e4, 1000};
 enum { STONE_NODES = 3 * 4 * 6 };
 
 static lar_model *stone_model(void) {
     lar_model *model = empty_model(&stone);
     add_brick(model, &stone, (double[]){0, 0, 0});
-    bind(model, 0, model->mesh.node_count);
+    bind_nodes(model, 0, model->mesh.node_count);
     return model;
 }
 
@@ -228,7 +212,7 @@ static void it_swings_on_a_hinge(void **unused) {
     for (int hinge = 0; hinge < 2; hinge++) {
         lar_model *model = empty_model(&rod);
         add_brick(model, &rod, (double[]){0, -0.03, -0.03});
-        lar_tool *tool = bind(model, 0, model->mesh.node_count);
+        lar_tool *tool = bind_nodes(model, 0, model->mesh.node_count);
         tool->free = LAR_FREE_TURNS;
         if (hinge) tool->axis[1] = 1;
         model->gravity[2] = -9.81;
@@ -263,7 +247,7 @@ static const brick cushion = {{8, 8, 3}, 0.01, 0, LAR_LAW_coupled_neo_hookean, 1
 /* A heavy block above a cushion on the ground. */
 static lar_model *cushion_model(double gap) {
     lar_model *model = two_bricks(&cushion, &block, gap, true);
-    bind(model, 9 * 9 * 4, model->mesh.node_count);
+    bind_nodes(model, 9 * 9 * 4, model->mesh.node_count);
     lar_material *heavy = LAR_MODEL_APPEND(model, material);
     *heavy = model->material[0];
     heavy->density = 4000;
@@ -405,7 +389,7 @@ static void slide_down(double slope, double friction, double *way, double *law) 
         double *x = model->mesh.position[n];
         if (x[0] < 0.005) x[0] = 0;
     }
-    bind(model, 0, STONE_NODES);
+    bind_nodes(model, 0, STONE_NODES);
     stand_before(model, (double[]){0, 0, 0}, (double[]){1, 0, 0}, friction);
     memcpy(model->gravity, (double[]){-on, 0, -down}, sizeof model->gravity);
     lar_simulation *simulation = start(model);

@@ -21,6 +21,22 @@ TEST_UNUSED static void add_tool(lar_model *model, const char *name, lar_tool_sh
                    .rest = {.position = {x, y, z}, .orientation = {1, 0, 0, 0}, .opening = 1}};
 }
 
+/* All nodes of a body become one rigid body, with all freedom. */
+TEST_UNUSED static lar_tool *bind_nodes(lar_model *model, int32_t first, int32_t end) {
+    lar_node_list nodes = {end - first, lar_calloc((size_t)(end - first), 4)};
+    double x[3] = {0};
+    for (int32_t n = first; n < end; n++) {
+        nodes.node[n - first] = n;
+        for (int i = 0; i < 3; i++) x[i] += model->mesh.position[n][i] / (end - first);
+    }
+    add_tool(model, "stone", LAR_TOOL_RIGID, x[0], x[1], x[2]);
+    *(lar_move *)LAR_MODEL_APPEND(model, move) =
+        (lar_move){.nodes = nodes, .axes = LAR_AXIS_ALL, .tool = model->tool_count};
+    lar_tool *tool = &model->tool[model->tool_count - 1];
+    tool->free = LAR_AXIS_ALL | LAR_FREE_TURNS;
+    return tool;
+}
+
 /* The same body, so fine that its state is more than one packet between processes. */
 static const brick fine_tool_brick = {{12, 10, 8}, 0.005, 0.1, LAR_LAW_neo_hookean, 2e3, 2e4, 1000};
 
