@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "contact/history/body_friction.h"
+#include "contact/search/pair_mass.h"
 #include "contact/history/flush.h"
 #include "contact/tool_body.h"
 #include "mechanics/face_contact.h"
@@ -31,8 +32,7 @@ typedef struct touching {
 /* Where the surface is that touches a node, and how that moves. */
 typedef struct contact_point {
     double at[3], velocity[3]; /* [m], [m/s] */
-    double mass;               /* [kg] */
-    double cover;              /* mass of the surface around it [kg/m^2] */
+    lar_point_mass mass;
 } contact_point;
 
 /* A face whose corners have been looked up. */
@@ -41,10 +41,10 @@ typedef struct known_face {
     double x[4][3], v[4][3]; /* [m], [m/s] */
 } known_face;
 
-/* The point of t->count faces with the weights of t; one of them may be known. */
+/* The point of t->count faces with the weights of t that a node meets; one of them may be known. */
 static void point_of(const lar_body_contact *contact, const lar_state *state, const touching *t,
-                     const known_face *known, contact_point *point) {
-    double compliance = 0, thin = 0;
+                     const known_face *known, int32_t node, contact_point *point) {
+    const lar_contact_node *of_node = &contact->surface->node[node];
     *point = (contact_point){0};
     for (int32_t f = 0; f < t->count; f++) {
         const int32_t *corner = contact->surface->face[t->face[f]].corner;
@@ -61,14 +61,10 @@ static void point_of(const lar_body_contact *contact, const lar_state *state, co
             point->at[i] += at[i];
             point->velocity[i] += velocity[i];
         }
-        for (int a = 0; a < 4; a++) {
-            const lar_contact_node *node = &contact->surface->node[corner[a]];
-            compliance += t->weight[f][a] / node->mass;
-            thin += t->weight[f][a] * (node->area / node->mass);
-        }
+        for (int a = 0; a < 4; a++)
+            lar_point_mass_add(&contact->surface->node[corner[a]], t->weight[f][a], of_node,
+                               contact->held, &point->mass);
     }
-    point->mass = 1 / compliance;
-    point->cover = 1 / thin;
 }
 
 /* By how much others may be farther away than the closest triangle and still count; 0: it counts
@@ -175,13 +171,6 @@ static void springs_of(const lar_body_contact *contact, int32_t node, int32_t fa
     double part = lar_contact_softness(s, node, face, standoff, contact->law.stiffness);
     two[0] = (spring){part * mass, depth + (standoff - offset)};
     two[1] = (spring){(1 - part) * mass, depth};
-}
-
-/* The mass that the spring of a node and a point moves. Many nodes may press on one corner, and
- * heavy ones have springs that are as hard as the point bears each: together they have no more than
- * their part of the surface leaves them. */
-static double moved_mass(const lar_contact_node *node, const contact_point *point) {
-    return fmin(lar_contact_pair_mass(node->mass, point->mass), node->area * point->cover);
 }
 
 /* How far a spring is pressed in where a sharp edge pushes like any other place [m]. */
@@ -364,7 +353,7 @@ static bool push(lar_body_contact *contact, const lar_state *state, int32_t g, i
     if ((before || !own) && lar_contact_active(&surface->node[node], f))
         blend(contact, g, closest, s, t);
     const bool past = rim->part > 0 && shift(t, face, rim);
-    point_of(contact, state, t, &known, &point);
+    point_of(contact, state, t, &known, node, &point);
     double depth = outward(x, &point, before ? -1 : 1, LAR_FACE_TIE * f->size,
                            (const double(*)[3])known.x, way);
     /* Without a length there is no direction. */
@@ -376,7 +365,8 @@ static bool push(lar_body_contact *contact, const lar_state *state, int32_t g, i
     double offset = own ? lar_offset_follow(contact, state, node, face, depth, rate) : 0;
     if (!own && !lar_offset_pushes(contact, state, g, face, s, depth, rate)) return false;
     if (!lar_contact_active(&surface->node[node], f)) return false;
-    double moved = moved_mass(&surface->node[node], &point);
+    const lar_contact_node *own_node = &surface->node[node], *corner = &surface->node[f->corner[0]];
+    double moved = lar_contact_moved_mass(own_node, corner, contact->held, &point.mass);
     spring two[2];
     springs_of(contact, node, face, moved, depth, offset, two);
     const meeting m = {
@@ -405,7 +395,7 @@ static bool push(lar_body_contact *contact, const lar_state *state, int32_t g, i
                          .speed = (const double(*)[3])known.v,
                          .weight = closest->weight,
                          .press = together * fmax(force, 0),
-                         .mass = moved};
+                         .mass = lar_contact_rub_mass(own_node, corner, moved)};
     if (!lar_body_friction_rub(contact, state, &rub, t->fade)) return true;
     t->rubs = t->fading < 0 && t->count == 1 && t->face[0] == face;
     if (!t->rubs) t->fading = face;
@@ -579,6 +569,7 @@ static void look_ahead(lar_body_contact *contact) {
 void lar_body_contact_add(lar_body_contact *contact, const lar_condition_context *context,
                           lar_state *state) {
     contact->time_step = context->time_step; /* of a part, where steps are divided */
+    contact->held = context->held;
     contact->part_count = contact->offset_count = 0;
     if (contact->friction) lar_body_friction_begin(contact->friction);
     contact->info.touching = 0;

@@ -144,6 +144,7 @@ typedef struct lar_body_contact {
     const lar_contact_surface *surface; /* NULL: nothing to do */
     lar_contact_law law;
     double time_step;
+    const uint8_t *held; /* as in the context of the step under way */
     lar_contact_view view;
     lar_contact_list list;            /* what this thread has to do with */
     uint8_t *adds_node, *adds_corner; /* [contact nodes], [contact faces]; NULL: all */

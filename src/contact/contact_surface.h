@@ -53,6 +53,8 @@ typedef struct lar_contact_node {
     double mass;     /* that a spring of the law counts it with, see lar_contact_surface_fit [kg] */
     double area;     /* of the surface around it at rest that looks one way [m^2] */
     unsigned held;   /* axes that supports of the scene hold it along */
+    float bound;     /* of a free body: the part of its mass that it has by that, at least 1, which
+                        is in `mass` (step/rigid/firm.h); else 0 */
     double blunt;    /* 1, or less where it is on a sharp edge, down to 0: contact_edges.c */
     int32_t along;   /* which of these is along an edge that goes on beyond the node; 3: none */
     int32_t inward[3]; /* on a sharp edge: contact nodes beside it that lie in the body, as seen

@@ -12,6 +12,7 @@
 #include "simulation/field.h"
 #include "step/domain_share.h"
 #include "step/mass/heavier.h"
+#include "step/rigid/firm.h"
 #include "step/viscous_history.h"
 #include "step/measure.h"
 
@@ -166,6 +167,7 @@ static lar_status compile(const lar_model *model, const lar_options *options,
         status = lar_surroundings_add_bodies(model, domain->mass, domain->layout.local,
                                              domain->time_step, domain->stable_step,
                                              &domain->surroundings, error);
+    if (!status) lar_free_bodies_firm(domain, &domain->surroundings.bodies.surface);
     if (!status) lar_history_plan_nodes(domain, &domain->surroundings.bodies.surface);
     if (!status) status = check_damping(domain, error);
     if (!status)
