@@ -256,8 +256,8 @@ static uint64_t next_stop(const lar_computer *computer, uint64_t end, bool over)
     uint64_t until = lar_interval_end(computer->whole, &computer->tools->division, step);
     if (over) until = step + 1;
     if (computer->lead) return first->round + 1;
-    return lar_contact_until(computer, first->round,
-                             round_of(computer, first, until < end ? until : end));
+    until = lar_contact_until(computer, step, until < end ? until : end);
+    return until > step ? round_of(computer, first, until) : first->round + 1;
 }
 
 /* Stretch by stretch: intervals (step/interval.h), and where contact needs a new list, which may be

@@ -28,6 +28,7 @@
 #include "parallel/division.h"
 #include "step/interval.h"
 #include "parallel/processor.h"
+#include "parallel/sudden.h"
 #include "step/report.h"
 
 /* One thread of one processor of this process: number = processor * threads + thread. */
@@ -57,7 +58,8 @@ typedef struct lar_computer_contact {
     bool valid;                     /* the search belongs to the state */
     bool too_many_pairs;            /* it had to be made with a thinner skin than asked for */
     bool always;                    /* search in every step */
-    lar_contact_info info;          /* what concerns all processors together */
+    lar_sudden sudden;
+    lar_contact_info info; /* what concerns all processors together */
 } lar_computer_contact;
 
 /* What elements cost, and whether another division would be faster (redivide.c). */
@@ -189,8 +191,9 @@ lar_status lar_contact_refresh(lar_computer *computer, lar_fault *fault, lar_err
 /* Between advances, while nobody waits: what there will be to search soon, up to `until` by
  * lar_clock_seconds. Threads only. */
 lar_status lar_contact_work_ahead(lar_computer *computer, double until, lar_error *error);
-/* The round that a stretch from `round` towards `end` may reach at most. */
-uint64_t lar_contact_until(const lar_computer *computer, uint64_t round, uint64_t end);
+/* The step before which a stretch from `step` towards `end` stops; `step` itself: after one round.
+ */
+uint64_t lar_contact_until(const lar_computer *computer, uint64_t step, uint64_t end);
 /* After a stretch of so many steps. */
 void lar_contact_count(lar_computer *computer, uint64_t steps);
 /* Another process: takes what processor zero found. */

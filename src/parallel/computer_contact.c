@@ -56,6 +56,7 @@ lar_status lar_contact_open(lar_computer *computer, lar_error *error) {
     lar_status status = LAR_OK;
     if (!owner || !contact->shift || !contact->x || !contact->searched || !contact->allow)
         status = lar_fail_memory(error, 4 * elements + 56 * nodes, "contact of bodies");
+    if (!status) status = lar_sudden_create(model, &contact->sudden, error);
     if (!status) {
         list_elements(computer, owner, contact->shift);
         status =
@@ -75,6 +76,7 @@ void lar_contact_close(lar_computer *computer) {
     free(contact->x);
     free(contact->searched);
     free(contact->allow);
+    lar_sudden_destroy(&contact->sudden);
     *contact = (lar_computer_contact){0};
 }
 
@@ -410,6 +412,8 @@ static bool is_late(const lar_computer *computer, bool crowded) {
 lar_status lar_contact_refresh(lar_computer *computer, lar_fault *fault, lar_error *error) {
     lar_computer_contact *contact = &computer->contact;
     if (!contact->map.surface) return LAR_OK;
+    lar_sudden_note(&contact->sudden, computer->tools, computer->processor[0].worker[0].state.step,
+                    !contact->valid);
     bool crowded = is_crowded(computer), always = !contact->valid || contact->always;
     lar_status status = LAR_OK;
     if (!always && (contact->searching || !is_late(computer, crowded)))
@@ -420,9 +424,11 @@ lar_status lar_contact_refresh(lar_computer *computer, lar_fault *fault, lar_err
     return status;
 }
 
-uint64_t lar_contact_until(const lar_computer *computer, uint64_t round, uint64_t end) {
-    bool one = computer->contact.always || is_crowded(computer);
-    return one && round < end ? round + 1 : end;
+uint64_t lar_contact_until(const lar_computer *computer, uint64_t step, uint64_t end) {
+    const lar_computer_contact *contact = &computer->contact;
+    if (!contact->map.surface) return end;
+    if (contact->always || is_crowded(computer)) return step;
+    return lar_sudden_next(&contact->sudden, computer->whole, step, end);
 }
 
 void lar_contact_count(lar_computer *computer, uint64_t steps) {
