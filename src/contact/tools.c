@@ -140,7 +140,7 @@ bool lar_division_good(const lar_step_division *d, uint64_t step) {
            d->decided <= step && d->hardness >= 1 && d->hardness <= 4.0 * d->parts * d->parts &&
            d->hardness <= LAR_HARDNESS_MAX && d->need >= 0 && d->lately >= 0 &&
            d->lately <= LAR_NEED_MAX && d->base >= 1 && d->base <= LAR_PARTS_MAX &&
-           (d->base & (d->base - 1)) == 0 && d->due >= 0 &&
+           (d->base & (d->base - 1)) == 0 && d->softer >= 0 && d->due >= 0 &&
            (d->due & ~LAR_THROWN) <= 2 * LAR_WATCHED + 1 && abs(d->still) <= LAR_STILL_LONG &&
            d->untouched >= 0;
 }

@@ -75,7 +75,8 @@ typedef struct lar_step_division {
     double need;   /* of the last interval: (omega dt / 2)^2 of the fastest element, dt undivided */
     double lately; /* the largest `need`, fading */
     uint64_t decided;  /* the step when it was decided last */
-    int32_t base;      /* parts that stiffer materials (settings.h) take at least, a power of two */
+    int16_t base;      /* parts that stiffer materials (settings.h) take at least, a power of two */
+    int16_t softer;    /* for how many steps these have asked for fewer */
     int8_t due;        /* 1: to be decided before the next step, wherever an interval begins; and 2
                           for each decision to come that is close (lar_division_watch); and
                           LAR_THROWN from the end of an interval to the next decision */

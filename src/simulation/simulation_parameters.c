@@ -43,9 +43,8 @@ static lar_status faster_with(const lar_domain *domain, int32_t material, const 
         double square = (now * now + lar_spring_square(model, squares, e)) / usual;
         most = square <= most ? most : square; /* what is no number, too */
     }
-    static const double LITTLE = 1.02, ROOM = 0.9;
     double dt = domain->time_step, fastest = domain->fastest[lar_factor_of(material)];
-    bool roomy = most <= LITTLE && 0.25 * dt * dt * fastest * most <= ROOM;
+    bool roomy = lar_little_faster(most, 0.25 * dt * dt * fastest * most);
     *faster = (most > 1 && roomy) || most == 0 ? 1 : most; /* 0: nothing is made of it */
     free(squares);
     return LAR_OK;

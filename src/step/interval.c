@@ -112,12 +112,12 @@ uint64_t lar_interval_end(const lar_domain *whole, const lar_step_division *divi
 
 /* What elements take of a step, as a share of all, of the materials that are set. */
 static double taken_now(const lar_domain *whole, bool *stiffer) {
-    double dt = whole->time_step, stiff = 0;
-    *stiffer = false;
+    double dt = whole->time_step, stiff = 0, most = 0;
     for (int i = 0; i < LAR_FACTORS_MAX; i++) {
-        *stiffer = *stiffer || whole->faster[i] > 1;
+        most = fmax(most, whole->faster[i]);
         stiff = fmax(stiff, 0.25 * dt * dt * whole->fastest[i] * whole->faster[i]);
     }
+    *stiffer = most > 1 && !lar_little_faster(most, stiff);
     return stiff;
 }
 
@@ -137,6 +137,20 @@ static int32_t base_of(const lar_domain *whole) {
     int32_t base = 1;
     while (stiffer && stiff + contact > fmax(1, elements + contact) * base * base) base *= 2;
     return base;
+}
+
+/* Whoever makes materials stiffer and softer again in turn would divide steps and undivide them,
+ * and each change of the step may give fast modes energy: steps stay divided for some time. */
+static void settle_base(const lar_domain *whole, double seconds, lar_step_division *d) {
+    static const double LONG = 20; /* memories: of 50 ms a second */
+    const double steps = d->softer + round(seconds / whole->time_step);
+    const int32_t base = base_of(whole);
+    if (base < d->base && steps < INT16_MAX && steps * whole->time_step < LONG * whole->memory) {
+        d->softer = (int16_t)steps;
+        return;
+    }
+    d->base = (int16_t)base;
+    d->softer = 0;
 }
 
 double lar_interval_springs(const lar_domain *whole) {
@@ -283,8 +297,8 @@ bool lar_interval_decide(const lar_domain *whole, uint64_t step, lar_tools *tool
     if (!list) return false;
     if (step % whole->interval != 0 && !lar_division_is_close(division) && !division->due)
         return false;
-    if (division->due & 1) division->base = base_of(whole);
     double seconds = (double)(step - division->decided) * whole->time_step;
+    settle_base(whole, seconds, division);
     division->decided = step;
     const double need = division->need;
     bool changed = lar_interval_divide(whole, step, seconds, tools);

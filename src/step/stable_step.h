@@ -42,6 +42,12 @@ lar_status lar_stable_step(const lar_model *model, lar_element_kind kind, double
  */
 double lar_auto_step(const lar_model *model, double stable_step);
 
+/* Whether steps bear materials that are `times` faster, squares of frequencies, and take `share` of
+ * a step, without being divided: what is little faster does so. */
+static inline bool lar_little_faster(double times, double share) {
+    return times <= 1.02 && share <= 0.9;
+}
+
 /* What an undivided step bears of elements and springs together, (omega dt / 2)^2, what the
  * springs of tools take of it that are as hard as at rest, and what the fastest element takes that
  * is not strained. Parts of a step bear their square times as much; springs do not become stiffer
