@@ -446,16 +446,20 @@ static bool list_saved(PyObject *source, int count, python_saved **saved, PyObje
             return python_refuse_type("state: expected a Saved, item %d is %R", i,
                                       (PyObject *)Py_TYPE(item));
         saved[i] = (python_saved *)item;
-        if (saved[i]->busy) {
-            PyErr_SetString(python_error_state, "reset: another thread uses this saved state");
-            return false;
-        }
     }
     return true;
 }
 
-static void mark_saved(python_saved **saved, int count, bool busy) {
-    for (int i = 0; i < count; i++) saved[i]->busy = busy;
+static void give_saved(python_saved **saved, int count) {
+    for (int i = 0; i < count; i++) python_saved_give(saved[i]);
+}
+static bool take_saved(python_saved **saved, int count) {
+    for (int i = 0; i < count; i++) {
+        if (python_saved_take(saved[i], false, "reset")) continue;
+        give_saved(saved, i);
+        return false;
+    }
+    return true;
 }
 
 static PyObject *reset(PyObject *me, PyObject *args, PyObject *keywords) {
@@ -474,12 +478,12 @@ static PyObject *reset(PyObject *me, PyObject *args, PyObject *keywords) {
     if (state != Py_None) {
         l.saved = PyMem_Calloc((size_t)count + 1, sizeof(python_saved *));
         ok = l.saved ? list_saved(state, count, l.saved, &keep) : PyErr_NoMemory() != NULL;
-        ok = ok && python_batch_look(me, "reset") && saved_fit(self, &call.members, l.saved);
+        ok = ok && python_batch_look(me, "reset") && saved_fit(self, &call.members, l.saved) &&
+             take_saved(l.saved, count);
     }
     if (ok) {
-        if (l.saved) mark_saved(l.saved, count, true);
         ok = python_batch_run(self, &call);
-        if (l.saved) mark_saved(l.saved, count, false);
+        if (l.saved) give_saved(l.saved, count);
     } else {
         python_rows_free(&call.members.rows);
     }

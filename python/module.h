@@ -63,8 +63,8 @@ typedef struct python_simulation {
 typedef struct python_saved {
     PyObject_HEAD lar_saved *saved;
     python_model *model;
-    lar_simulation_info of; /* whom it serves */
-    bool busy;
+    lar_simulation_info of;  /* whom it serves */
+    int users;               /* threads that take it up now; -1: one fills it */
     unsigned long long step; /* of the state in it */
     double time;             /* [s] */
     python_asked asked[LAR_TOOLS_MAX];
@@ -262,6 +262,10 @@ bool python_simulation_sound(python_simulation *self, const char *call);
 /* Looks, and takes, for calls that change what goes on: an unstable run does not. */
 lar_simulation *python_simulation_look_sound(python_simulation *self, const char *call);
 lar_simulation *python_simulation_take_sound(python_simulation *self, const char *call);
+/* For one thread that fills it, or any number that take up what is there: false, with an exception,
+ * where others are in the way. What is taken is given back by each. */
+bool python_saved_take(python_saved *saved, bool fills, const char *call);
+void python_saved_give(python_saved *saved);
 /* Whether the state may be put into the simulation, or the other way round; else what differs. */
 bool python_saved_fits(const python_saved *saved, const lar_simulation *simulation,
                        const char *call);

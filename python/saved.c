@@ -18,6 +18,25 @@ static PyObject *saved_repr(PyObject *me) {
                                 lar_model_source(self->model->model), self->step);
 }
 
+/* ---- who uses it ------------------------------------------------------------------------------
+ */
+
+bool python_saved_take(python_saved *saved, bool fills, const char *call) {
+    if (fills ? saved->users != 0 : saved->users < 0) {
+        PyErr_Format(python_error_state,
+                     saved->users < 0 ? "%s: another thread fills this saved state"
+                                      : "%s: another thread takes up this saved state",
+                     call);
+        return false;
+    }
+    saved->users = fills ? -1 : saved->users + 1;
+    return true;
+}
+
+void python_saved_give(python_saved *saved) {
+    saved->users = saved->users < 0 ? 0 : saved->users - 1;
+}
+
 /* ---- whom it serves -------------------------------------------------------------------------- */
 
 /* "... 2 tools, and the simulation 3", behind what was said before. */
@@ -88,7 +107,8 @@ static PyType_Slot saved_slots[] = {
     {Py_tp_doc,
      "A state in memory, for whoever tries one thing after another from it. It serves all "
      "simulations of the\nmodel that have as many tools, hands and spares, the same kind of "
-     "element and time step, on any grid."},
+     "element and time step, on any grid.\nAny number of threads may take it up at once, each with a "
+     "simulation of its own; who fills it does so alone."},
     {Py_tp_dealloc, saved_dealloc},
     {Py_tp_repr, saved_repr},
     {Py_tp_getset, saved_properties},

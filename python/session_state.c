@@ -52,20 +52,16 @@ static PyObject *replay(PyObject *me, PyObject *path) {
 }
 
 static PyObject *with_saved(python_session *self, python_saved *saved, bool save) {
-    if (saved->busy) {
-        PyErr_SetString(python_error_state, "another thread uses this saved state");
-        return NULL;
-    }
     const char *call = save ? "save" : "load";
     lar_session *session = python_session_look(self, call);
     if (!session || !python_saved_fits(saved, self->simulation->simulation, call)) return NULL;
+    if (!python_saved_take(saved, save, call)) return NULL;
     session = python_session_take(self, call);
     lar_error error;
     lar_status status;
-    saved->busy = true;
     PYTHON_UNLOCKED(status = save ? lar_session_save_to(session, saved->saved, &error)
                                   : lar_session_load_from(session, saved->saved, &error));
-    saved->busy = false;
+    python_saved_give(saved);
     if (!status &&
         save) { /* at or after the tick that was saved: there is no call that says which */
         lar_session_status now;

@@ -192,27 +192,21 @@ static PyObject *on_disk(python_simulation *self, PyObject *target, bool save) {
     return python_answer(status, &error);
 }
 
-static bool take_saved(python_saved *saved, const char *call) {
-    if (!saved->busy) return true;
-    PyErr_Format(python_error_state, "%s: another thread uses this saved state", call);
-    return false;
-}
-
 static PyObject *in_memory(python_simulation *self, python_saved *saved, bool save) {
     const char *call = save ? "save" : "load";
-    if (!take_saved(saved, call)) return NULL;
     lar_simulation *simulation = python_simulation_look(self, call);
-    if (!simulation || !python_saved_fits(saved, simulation, call)) return NULL;
+    if (!simulation || !python_saved_fits(saved, simulation, call) ||
+        !python_saved_take(saved, save, call))
+        return NULL;
     self->busy = true;
     lar_error error;
     lar_status status;
-    saved->busy = true;
     PYTHON_UNLOCKED(status = save ? lar_simulation_save_to(simulation, saved->saved, &error)
                                   : lar_simulation_load_from(simulation, saved->saved, &error));
-    saved->busy = false;
     if (!save && status) python_asked_forget(self->asked);
     if (!save && !status) memcpy(self->asked, saved->asked, sizeof self->asked);
     if (!save && !status) self->broken = false;
+    python_saved_give(saved);
     if (!status && save) {
         memcpy(saved->asked, self->asked, sizeof saved->asked);
         saved->step = lar_simulation_steps(simulation);

@@ -8,6 +8,7 @@ import random
 import re
 import subprocess
 import tempfile
+import threading
 import unittest
 
 import lariat
@@ -576,6 +577,33 @@ class Tools(unittest.TestCase):
                      lambda: sim.tool_move(0), lambda: sim.tool_move(0, 5)):
             with self.assertRaises(TypeError):
                 call()
+
+
+class Threads(unittest.TestCase):
+    def test_many_take_up_one_state(self):
+        model = block()
+        first = lariat.Simulation(model)
+        first.advance(20)
+        state, ends, errors = first.save(), [], []
+        first.advance(4)
+
+        def tries():
+            own = lariat.Simulation(model)
+            try:
+                for _ in range(50 if LIBRARY_ONLY else 500):
+                    own.load(state)
+                    own.advance(4)
+                    ends.append(own.hash())
+            except lariat.Error as error:
+                errors.append(error)
+
+        threads = [threading.Thread(target=tries) for _ in range(4)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        self.assertEqual(errors, [])
+        self.assertEqual(set(ends), {first.hash()})
 
 
 class Arguments(unittest.TestCase):
