@@ -398,6 +398,9 @@ typedef struct lar_tool_info {
 LAR_API int32_t lar_model_tool_count(const lar_model *model);
 LAR_SIZED lar_status lar_model_tool(const lar_model *model, int32_t index, lar_tool_info *info,
                                     lar_error *error);
+/* Of a rigid body that nothing leads (`free` in a scene): the axes of space along which forces take
+ * it, LAR_AXIS_X and so on added up, and 8 where it turns. 0: it is led, as all other tools are. */
+LAR_API unsigned lar_model_tool_free(const lar_model *model, int32_t index);
 
 /* What the tissue does to a tool. */
 typedef struct lar_tool_force {

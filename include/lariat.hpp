@@ -248,6 +248,7 @@ class Model : public detail::Handle<lar_model, lar_model_destroy> {
     lar_tool_info tool(std::int32_t index) const {
         return detail::ask<lar_tool_info>(lar_model_tool, get(), index);
     }
+    unsigned tool_free(std::int32_t index) const { return lar_model_tool_free(get(), index); }
     lar_mesh_quality quality(const char *against = nullptr, double scale = 1) const {
         return detail::ask<lar_mesh_quality>(lar_model_quality, get(), against, scale);
     }

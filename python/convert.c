@@ -185,8 +185,10 @@ PyObject *python_scene_text(PyObject *scene) {
 /* ---- tools ---------------------------------------------------------------------------------- */
 
 bool python_pose(PyObject *position, PyObject *orientation, PyObject *opening,
-                 const python_asked *asked, const lar_tool_pose *now, lar_tool_pose *pose) {
-    const double *kept = isnan(asked->orientation[0]) ? now->orientation : asked->orientation;
+                 const python_asked *asked, bool turns, const lar_tool_pose *now,
+                 lar_tool_pose *pose) {
+    const bool known = !turns && !isnan(asked->orientation[0]);
+    const double *kept = known ? asked->orientation : now->orientation;
     memcpy(pose->orientation, kept, sizeof pose->orientation);
     pose->opening = isnan(asked->opening) ? now->opening : asked->opening;
     return python_vector(position, "position", 3, pose->position) &&

@@ -168,9 +168,10 @@ PyObject *python_path(PyObject *source, const char *name);
 /* Scene text: a str as it is, a dict as JSON, which is YAML. A new str. */
 PyObject *python_scene_text(PyObject *scene);
 /* The pose that a move asks for. Orientation and opening, NULL or None, stay what was asked for
- * before, or what they are now. */
+ * before, or what they are now, as the orientation of a free body (`turns`) always is. */
 bool python_pose(PyObject *position, PyObject *orientation, PyObject *opening,
-                 const python_asked *asked, const lar_tool_pose *now, lar_tool_pose *pose);
+                 const python_asked *asked, bool turns, const lar_tool_pose *now,
+                 lar_tool_pose *pose);
 /* After it was accepted, and when nothing is known any more. */
 void python_asked_set(python_asked *asked, const lar_tool_pose *pose);
 void python_asked_forget(python_asked asked[LAR_TOOLS_MAX]);

@@ -107,7 +107,8 @@ static PyType_Slot saved_slots[] = {
     {Py_tp_doc,
      "A state in memory, for whoever tries one thing after another from it. It serves all "
      "simulations of the\nmodel that have as many tools, hands and spares, the same kind of "
-     "element and time step, on any grid.\nAny number of threads may take it up at once, each with a "
+     "element and time step, on any grid.\nAny number of threads may take it up at once, each with "
+     "a "
      "simulation of its own; who fills it does so alone."},
     {Py_tp_dealloc, saved_dealloc},
     {Py_tp_repr, saved_repr},

@@ -35,8 +35,10 @@ static PyObject *tool_move(PyObject *me, PyObject *args, PyObject *keywords) {
     lar_session *session = look(me, tool, &index, "tool_move");
     if (!session) return NULL;
     if (lar_session_tool_force(session, index, &now, NULL, &error)) return python_raise(&error);
-    python_asked *asked = &((python_session *)me)->asked[index];
-    if (!python_pose(position, orientation, opening, asked, &now, &pose)) return NULL;
+    python_session *self = (python_session *)me;
+    python_asked *asked = &self->asked[index];
+    const bool turns = lar_model_tool_free(self->simulation->model->model, index) != 0;
+    if (!python_pose(position, orientation, opening, asked, turns, &now, &pose)) return NULL;
     /* Reading numbers may have run any code. */
     if (!python_session_look_sound((python_session *)me, "tool_move")) return NULL;
     if (!(session = look(me, tool, &index, "tool_move"))) return NULL;

@@ -41,8 +41,10 @@ static PyObject *tool_move(PyObject *me, PyObject *args, PyObject *keywords) {
     lar_simulation *simulation = look_sound(me, tool, &index, "tool_move");
     if (!simulation) return NULL;
     if (lar_simulation_tool_pose(simulation, index, &now, &error)) return python_raise(&error);
-    python_asked *asked = &((python_simulation *)me)->asked[index];
-    if (!python_pose(position, orientation, opening, asked, &now, &pose)) return NULL;
+    python_simulation *self = (python_simulation *)me;
+    python_asked *asked = &self->asked[index];
+    const bool turns = lar_model_tool_free(self->model->model, index) != 0;
+    if (!python_pose(position, orientation, opening, asked, turns, &now, &pose)) return NULL;
     /* Reading numbers may have run any code. */
     if (!(simulation = look_sound(me, tool, &index, "tool_move"))) return NULL;
     if (lar_simulation_tool_move(simulation, index, &pose, count, &error))

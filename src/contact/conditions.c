@@ -289,7 +289,7 @@ static double half_work_on(const double force[3], const lar_state *state, int32_
 static double gravity_half_work(const lar_condition_context *context, double time,
                                 const lar_state *state) {
     double gravity[3], momentum[3] = {0};
-    lar_gravity_at(context->model, context->settings, time, gravity);
+    lar_gravity_at(context->model, context->settings, time, context->mean_step, gravity);
     for (int32_t n = context->first; n < context->end; n++) {
         double weight = context->weight[n];
         if (context->added && weight > 0) weight -= context->added[n];
@@ -547,7 +547,7 @@ double lar_conditions_impose(const lar_condition_context *context, double time,
     double share = damping * step / context->whole_step;
     course was = {time, context, state, 0, .curve = -1, .rigid = -1};
     course next = {time + dt, context, state, 1, .curve = -1, .rigid = -1};
-    lar_gravity_at(model, context->settings, time, gravity);
+    lar_gravity_at(model, context->settings, time, context->mean_step, gravity);
     state->damped -= share * hold(notes, context->weight, state);
     for (int32_t i = notes->fixed_count; i < notes->constraint_count; i++) {
         const lar_constraint *constraint = &notes->constraint[i];

@@ -96,26 +96,48 @@ static bool is_quick(const lar_curve *curve, int first, double to, double width)
     return quick;
 }
 
-double lar_curve_mean(const lar_curve *curve, double time, double width) {
-    static const double QUICK = 16;                  /* widths */
+/* Adds a table's integral from one time to another, pieces between its points one by one: true,
+ * when it goes there through one shorter than `width`. */
+static bool integrate(const lar_curve *curve, double begin, double end, double width, double *sum) {
     static const double GAUSS = 0.28867513459481287; /* of a piece, from its middle: 1 / sqrt 12 */
-    const double begin = fmax(0, time - 0.5 * width), end = time + 0.5 * width;
-    const bool table = curve->kind == LAR_CURVE_TABLE && !curve->repeats && curve->count > 1;
     const int last = curve->count - 1;
-    if (!table || !(begin < curve->point[last][0]) || !(end > curve->point[0][0]))
-        return lar_curve_value(curve, time);
     const int first = begin > curve->point[0][0] ? point_before(curve, begin) : 0;
-    if (!is_quick(curve, first, end, QUICK * width)) return lar_curve_value(curve, time);
-    double sum = 0, from = begin;
+    double from = begin;
     for (int i = first; from < end; i++) {
         const double to = i <= last ? fmin(curve->point[i][0], end) : end;
         if (!(to > from)) continue;
         const double middle = 0.5 * (from + to), aside = GAUSS * (to - from);
-        sum += 0.5 * (to - from) *
-               (table_value(curve, middle - aside) + table_value(curve, middle + aside));
+        *sum += 0.5 * (to - from) *
+                (table_value(curve, middle - aside) + table_value(curve, middle + aside));
         from = to;
     }
-    return sum / (end - begin);
+    return is_quick(curve, first, end, width);
+}
+
+double lar_curve_mean(const lar_curve *curve, double time, double width) {
+    static const double QUICK = 16, MANY = 64; /* widths; rounds of a table within one */
+    const double begin = fmax(0, time - 0.5 * width), end = time + 0.5 * width;
+    const int last = curve->count - 1;
+    if (curve->kind != LAR_CURVE_TABLE || last < 1 || !(width > 0) || !(end > curve->point[0][0]) ||
+        !(begin < curve->point[last][0] || curve->repeats))
+        return lar_curve_value(curve, time);
+    const double stop = curve->point[last][0], round = stop - curve->point[0][0];
+    double from = begin, to = end, sum = 0;
+    bool quick = false;
+    if (curve->repeats && from >= stop) {
+        from = curve->point[0][0] + fmod(from - curve->point[0][0], round);
+        to = from + (end - begin);
+    }
+    if (to - from > MANY * round && curve->repeats) {
+        integrate(curve, curve->point[0][0], stop, 0, &sum);
+        return sum / round;
+    }
+    for (; curve->repeats && to > stop; to -= round) {
+        quick = integrate(curve, from, stop, QUICK * width, &sum) || quick;
+        from = curve->point[0][0];
+    }
+    quick = integrate(curve, from, to, QUICK * width, &sum) || quick;
+    return quick ? sum / (end - begin) : lar_curve_value(curve, time);
 }
 
 void lar_curve_hold_from(lar_curve *curve, double time) {

@@ -36,7 +36,7 @@ double lar_curve_value(const lar_curve *curve, double time);
 
 /* The mean over `width` seconds about `time`, not before 0, where a table goes there through pieces
  * shorter than sixteen times that: pulses keep their impulse however long a step is. Else, and
- * where it repeats, the value at `time`. */
+ * with a width of 0, the value at `time`. */
 double lar_curve_mean(const lar_curve *curve, double time, double width);
 
 /* Time after which the value no longer changes, or begins to repeat [s], at least 0. */

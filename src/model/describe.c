@@ -30,7 +30,7 @@ int lar_model_view(const lar_model *model, double from[3]) {
 
 int lar_model_gravity(const lar_model *model, double time, double gravity[3]) {
     double g[3] = {0};
-    if (model) lar_gravity_at(model, NULL, time, g);
+    if (model) lar_gravity_at(model, NULL, time, 0, g);
     if (gravity) memcpy(gravity, g, sizeof g);
     return model && lar_gravity_varies(model, NULL);
 }
@@ -224,4 +224,8 @@ lar_status lar_model_tool(const lar_model *model, int32_t index, lar_tool_info *
         return refuse_index("tool", index, model->tool_count, error);
     *info = lar_tool_inspect(&model->tool[index]);
     return LAR_OK;
+}
+
+unsigned lar_model_tool_free(const lar_model *model, int32_t index) {
+    return model && index >= 0 && index < model->tool_count ? model->tool[index].free : 0;
 }

@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-void lar_gravity_at(const lar_model *model, const lar_settings *settings, double time,
+void lar_gravity_at(const lar_model *model, const lar_settings *settings, double time, double width,
                     double gravity[3]) {
     if (settings && settings->gravity_set) {
         memcpy(gravity, settings->gravity, sizeof settings->gravity);
@@ -11,7 +11,7 @@ void lar_gravity_at(const lar_model *model, const lar_settings *settings, double
     for (int axis = 0; axis < 3; axis++) {
         int curve = model->gravity_curve[axis];
         gravity[axis] = model->gravity[axis];
-        if (curve >= 0) gravity[axis] *= lar_curve_value(&model->curve[curve], time);
+        if (curve >= 0) gravity[axis] *= lar_curve_mean(&model->curve[curve], time, width);
     }
 }
 

@@ -58,8 +58,8 @@ static inline int lar_gravity_varies(const lar_model *model, const lar_settings 
     return curve[0] >= 0 || curve[1] >= 0 || curve[2] >= 0;
 }
 
-/* Gravity at `time` [m/s^2]. */
-void lar_gravity_at(const lar_model *model, const lar_settings *settings, double time,
+/* Gravity at `time` [m/s^2], for a step of `width` (lar_curve_mean); 0: at that moment. */
+void lar_gravity_at(const lar_model *model, const lar_settings *settings, double time, double width,
                     double gravity[3]);
 
 /* Whether they are such as the public calls let through: for what comes from files and from other

@@ -23,28 +23,46 @@ static void set_initial_displacements(lar_simulation *simulation) {
     }
 }
 
-/* What the first step adds to velocities: v' = keep v + p. */
-static double first_push(const lar_domain *domain, const lar_state *state, lar_lid node, int axis,
-                         const double gravity[3]) {
-    double drift =
-        gravity[axis] * domain->time_step / (1 + 0.5 * domain->model->damping * domain->time_step);
-    return drift - domain->push[node] * (double)state->force[lar_state_at(state, node, axis)];
+/* The first step: v' = keep v + p. */
+typedef struct first_step {
+    lar_leapfrog leapfrog;
+    const lar_domain *domain;
+} first_step;
+
+/* With gravity, as its curve says, and damping that are set. */
+static first_step first_of(const lar_simulation *simulation) {
+    const lar_domain *domain = &simulation->domain;
+    const lar_settings *settings = &simulation->tools.settings;
+    const double dt = domain->time_step, half = 0.5 * lar_damping_of(domain->model, settings) * dt;
+    first_step first = {.domain = domain};
+    first.leapfrog.keep = (1 - half) / (1 + half);
+    first.leapfrog.push = (1 + 0.5 * domain->model->damping * dt) / (1 + half);
+    lar_gravity_at(domain->model, settings, 0, dt, first.leapfrog.drift);
+    double *drift = first.leapfrog.drift; /* step.c has the same order of operations */
+    for (int i = 0; i < 3; i++) drift[i] = drift[i] * dt / (1 + half);
+    return first;
+}
+
+static double first_push(const first_step *first, const lar_state *state, lar_lid node, int axis) {
+    const double push = first->leapfrog.push * first->domain->push[node];
+    return first->leapfrog.drift[axis] -
+           push * (double)state->force[lar_state_at(state, node, axis)];
 }
 
 /* Of a node at entry `entry` of the planes: where a plane bears it from the start on, it does so
  * half a step before, too. Otherwise it would come up from below and be stopped, by a plane that
  * gives what it never took. Who flies onto a plane is stopped. Returns the entry behind its last.
  */
-static int32_t start_on_planes(const lar_domain *domain, int32_t entry, const double gravity[3],
-                               lar_state *state) {
+static int32_t start_on_planes(const first_step *begin, int32_t entry, lar_state *state) {
     static const double ALONG = 1e-9; /* of what is free: it neither leaves nor comes */
+    const lar_domain *domain = begin->domain;
     const lar_planes *planes = &domain->surroundings.planes;
     const lar_condition_context context = lar_domain_context(domain);
     const lar_lid node = planes->node[entry].node;
     double v[3], free[3], ahead[3];
     lar_state_velocity(state, node, v);
     for (int i = 0; i < 3; i++) {
-        free[i] = domain->leapfrog.keep * v[i] + first_push(domain, state, node, i, gravity);
+        free[i] = begin->leapfrog.keep * v[i] + first_push(begin, state, node, i);
         ahead[i] = free[i];
     }
     const int32_t first = entry;
@@ -65,7 +83,7 @@ static void set_initial_velocities(lar_simulation *simulation) {
     const lar_domain *domain = &simulation->domain;
     lar_state *state = &simulation->state;
     const lar_model *model = domain->model;
-    double keep = domain->leapfrog.keep, gravity[3];
+    const first_step begin = first_of(simulation);
     for (int i = 0; i < model->initial_count; i++) {
         const lar_initial_velocity *initial = &model->initial[i];
         for (int32_t k = 0; k < initial->nodes.count; k++)
@@ -74,13 +92,12 @@ static void set_initial_velocities(lar_simulation *simulation) {
     }
     lar_fault ignored = {0};
     lar_step_forces(domain, &simulation->scratch->measure.interactions, state, &ignored);
-    lar_gravity_at(model, &simulation->tools.settings, 0, gravity);
     for (lar_gid g = 0; g < model->mesh.node_count; g++)
         for (int i = 0; i < 3; i++) {
             lar_lid node = domain->layout.local[g];
             size_t value = lar_state_at(state, node, i);
-            double push = first_push(domain, state, node, i, gravity);
-            state->v[value] = (2 * state->v[value] - push) / (1 + keep);
+            double push = first_push(&begin, state, node, i);
+            state->v[value] = (2 * state->v[value] - push) / (1 + begin.leapfrog.keep);
         }
     for (int32_t i = 0; i < domain->surroundings.conditions.constraint_count; i++) {
         const lar_constraint *c = &domain->surroundings.conditions.constraint[i];
@@ -88,7 +105,7 @@ static void set_initial_velocities(lar_simulation *simulation) {
             state->v[lar_constraint_at(state, c)] = 0;
     }
     for (int32_t entry = 0; entry < domain->surroundings.planes.count;)
-        entry = start_on_planes(domain, entry, gravity, state);
+        entry = start_on_planes(&begin, entry, state);
     memset(state->force, 0, 3 * state->stride * sizeof *state->force);
     if (lar_free_bodies_any(model))
         lar_free_bodies_start(domain, &simulation->scratch->measure.interactions.notes, state,

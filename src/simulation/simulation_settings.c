@@ -43,7 +43,7 @@ static double gravity_account(const lar_simulation *simulation, const lar_settin
     const lar_state *state = &simulation->state;
     double gravity[3], half = 0.5 * length_of_step(simulation), sum = 0;
     if (lar_gravity_varies(domain->model, settings)) return 0;
-    lar_gravity_at(domain->model, settings, 0, gravity);
+    lar_gravity_at(domain->model, settings, 0, 0, gravity);
     for (lar_gid g = 0; g < domain->model->mesh.node_count; g++) {
         lar_lid n = domain->layout.local[g];
         double u[3], v[3];
@@ -81,7 +81,7 @@ void lar_simulation_gravity(const lar_simulation *simulation, double gravity[3])
     for (int i = 0; i < 3; i++) gravity[i] = 0;
     if (!simulation) return;
     lar_gravity_at(simulation->domain.model, &simulation->tools.settings,
-                   lar_simulation_time(simulation), gravity);
+                   lar_simulation_time(simulation), 0, gravity);
 }
 
 /* ---- damping -------------------------------------------------------------------------------- */
@@ -100,8 +100,7 @@ lar_status lar_simulation_set_damping(lar_simulation *simulation, double damping
     lar_settings *settings = &simulation->tools.settings;
     settings->damping_set = damping != simulation->domain.model->damping;
     settings->damping = settings->damping_set ? damping : 0;
-    lar_simulation_set(simulation);
-    return LAR_OK;
+    return lar_simulation_set_anew(simulation, error);
 }
 
 double lar_simulation_damping(const lar_simulation *simulation) {
@@ -311,8 +310,7 @@ static lar_status put_force(lar_simulation *simulation, const lar_force_entry *e
         return lar_fail(error, LAR_ERROR_ARGUMENT,
                         "%d forces are set already; remove one, or give nodes of one force a set",
                         LAR_FORCES_MAX);
-    lar_simulation_set(simulation);
-    return LAR_OK;
+    return lar_simulation_set_anew(simulation, error);
 }
 
 static void take_force(lar_force_entry *entry, const double force[3]) {
@@ -334,8 +332,7 @@ lar_status lar_simulation_set_force(lar_simulation *simulation, int32_t node, co
     take_force(&entry, force);
     if (!all) return put_force(simulation, &entry, error);
     simulation->tools.forces = (lar_forces){0};
-    lar_simulation_set(simulation);
-    return LAR_OK;
+    return lar_simulation_set_anew(simulation, error);
 }
 
 lar_status lar_simulation_force_set(const lar_model *model, const char *name, int32_t *index,

@@ -4,6 +4,27 @@
  * released begins with the velocity that its support gave it. */
 #include "simulation/simulation.h"
 
+/* A rigid body goes as a whole: a node that were held, or let go, would be torn out of it. */
+static lar_status check_free(const lar_model *model, const lar_support_entry *entry,
+                             lar_error *error) {
+    const lar_force_nodes nodes = lar_nodes_of(model, &entry->of, entry->on_set);
+    for (int m = 0; m < model->move_count; m++) {
+        const lar_move *move = &model->move[m];
+        const lar_tool *tool = move->tool ? &model->tool[move->tool - 1] : NULL;
+        for (int32_t k = 0; tool && tool->free && k < move->nodes.count; k++)
+            for (int32_t i = 0; i < nodes.count; i++)
+                if (nodes.node[i] == move->nodes.node[k])
+                    return lar_fail(
+                        error, LAR_ERROR_ARGUMENT,
+                        "node %ld belongs to the free body \"%.100s\", which moves as a "
+                        "whole; to hold that, lead it to where it is, "
+                        "lar_simulation_tool_move to its pose, for as many steps as it "
+                        "is to stay",
+                        (long)nodes.node[i], tool->name);
+    }
+    return LAR_OK;
+}
+
 static lar_status check(const lar_simulation *simulation, const lar_support_entry *entry,
                         unsigned axes, lar_error *error) {
     const lar_model *model = simulation->domain.model;
@@ -12,7 +33,7 @@ static lar_status check(const lar_simulation *simulation, const lar_support_entr
                         "there are no axes %u of nodes; give LAR_AXIS_X, _Y and _Z, added up, 1 to "
                         "7",
                         axes);
-    if (lar_support_good(entry, model)) return LAR_OK;
+    if (lar_support_good(entry, model)) return check_free(model, entry, error);
     return lar_fail(error, LAR_ERROR_ARGUMENT,
                     "there is no node%s %ld to support; the model has %ld nodes, counted from 0",
                     entry->on_set ? " set" : "", (long)entry->of, (long)model->mesh.node_count);

@@ -62,9 +62,10 @@ static double set_of(const lar_domain *domain, int32_t material) {
 
 /* ---- at a time ------------------------------------------------------------------------------ */
 
-static double curve_at(const lar_model *model, const lar_material *material, double time) {
+static double curve_at(const lar_domain *domain, const lar_material *material, double time) {
     int curve = material->activation.curve;
-    return curve > 0 ? lar_curve_value(&model->curve[curve - 1], time) : 1;
+    if (curve == 0) return 1;
+    return lar_curve_mean(&domain->model->curve[curve - 1], time, domain->time_step);
 }
 
 static double wave_at(const lar_material *material, double place, double time) {
@@ -80,7 +81,7 @@ static double model_at(const lar_domain *domain, lar_gid e, double time) {
         lar_mesh_corners(&domain->model->mesh, e, corner);
         place = lar_wave_place(&material->activation.wave, (const double(*)[3])corner);
     }
-    return curve_at(domain->model, material, time) * wave_at(material, place, time);
+    return curve_at(domain, material, time) * wave_at(material, place, time);
 }
 
 double lar_activation_at(const lar_domain *domain, lar_gid e, double time) {
@@ -112,7 +113,7 @@ static double lane_at(lane_walk *walk, size_t lane, lar_gid e) {
     const lar_material *material = &domain->model->material[index];
     if (walk->material != index) {
         walk->material = index;
-        walk->factor = set_of(domain, index) * curve_at(domain->model, material, walk->time);
+        walk->factor = set_of(domain, index) * curve_at(domain, material, walk->time);
     }
     return domain->place ? walk->factor * wave_at(material, domain->place[lane], walk->time)
                          : walk->factor;

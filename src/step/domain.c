@@ -437,7 +437,7 @@ static void prepare_motion(lar_domain *domain) {
     const lar_model *model = domain->model;
     double dt = domain->time_step, half = 0.5 * model->damping * dt;
     double gravity[3], shortest = DBL_MAX;
-    lar_gravity_at(model, NULL, 0, gravity);
+    lar_gravity_at(model, NULL, 0, 0, gravity);
     domain->leapfrog = (lar_leapfrog){.keep = (1 - half) / (1 + half), .dt = dt, .push = 1};
     for (int i = 0; i < 3; i++) domain->leapfrog.drift[i] = gravity[i] * dt / (1 + half);
     for (int32_t n = 0; n < domain->layout.node_count; n++)

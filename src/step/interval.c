@@ -203,7 +203,7 @@ static int8_t still_now(const lar_domain *whole, const lar_tools *tools, uint64_
 static bool loaded(const lar_domain *whole, const lar_tools *tools, double time) {
     const lar_model *model = whole->model;
     double gravity[3];
-    lar_gravity_at(model, &tools->settings, time, gravity);
+    lar_gravity_at(model, &tools->settings, time, 0, gravity);
     return gravity[0] != 0 || gravity[1] != 0 || gravity[2] != 0 || lar_model_active(model) ||
            model->contact_count > 0 || model->move_count > 0 || model->load_count > 0 ||
            model->pressure_count > 0 || tools->forces.count > 0 || tools->supports.count > 0;

@@ -127,9 +127,9 @@ static void enter_look(const lar_domain *domain, lar_measure_scratch *scratch,
                 .context = lar_domain_context(domain),
                 .state = *state};
     l->state.force = scratch->force;
-    lar_gravity_at(domain->model, lar_settings_of(l->interactions), lar_state_time(domain, state),
-                   l->gravity);
     lar_step_enter(domain, l->interactions, &l->context, &l->state);
+    lar_gravity_at(domain->model, lar_settings_of(l->interactions), lar_state_time(domain, state),
+                   l->context.mean_step, l->gravity);
 }
 
 /* Loads and internal forces stand in look->state.force; free bodies set out. */

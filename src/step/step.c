@@ -201,7 +201,7 @@ lar_leapfrog lar_step_leapfrog(const lar_domain *domain, const lar_interactions 
     if (mean == whole && !is_set(settings)) return leapfrog;
     double half = 0.5 * lar_damping_of(domain->model, settings) * mean;
     double half_whole = 0.5 * domain->model->damping * whole, gravity[3];
-    lar_gravity_at(domain->model, settings, 0, gravity);
+    lar_gravity_at(domain->model, settings, 0, 0, gravity);
     leapfrog.keep = (1 - half) / (1 + half);
     leapfrog.push = mean / whole * (1 + half_whole) / (1 + half);
     for (int i = 0; i < 3; i++) leapfrog.drift[i] = gravity[i] * mean / (1 + half);
@@ -290,7 +290,7 @@ lar_leapfrog lar_step_leapfrog_at(const lar_domain *domain, const lar_interactio
     if (lar_gravity_varies(domain->model, settings)) {
         double gravity[3], damping = lar_damping_of(domain->model, settings);
         double mean = context->mean_step;
-        lar_gravity_at(domain->model, settings, lar_state_time(domain, state), gravity);
+        lar_gravity_at(domain->model, settings, lar_state_time(domain, state), mean, gravity);
         for (int i = 0; i < 3; i++)
             leapfrog.drift[i] = gravity[i] * mean / (1 + 0.5 * damping * mean);
     }
@@ -367,7 +367,7 @@ static void hold_up_added(const lar_domain *domain, const lar_interactions *inte
     double gravity[3];
     if (!domain->added) return;
     lar_gravity_at(domain->model, lar_settings_of(interactions), lar_state_time(domain, state),
-                   gravity);
+                   context->mean_step, gravity);
     for (int axis = 0; axis < 3; axis++) {
         double pull = gravity[axis] * domain->scale;
         for (lar_lid n = context->first; domain->adds && n < context->end && pull != 0; n++)

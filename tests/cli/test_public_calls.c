@@ -54,6 +54,7 @@ static void model_calls(void **unused) {
     REFUSED(lar_model_contact(model, 0, NULL, &error));
     REFUSED(lar_model_contact(model, 0, &contact, &error));
     assert_int_equal(lar_model_tool_count(model), 0);
+    assert_int_equal(lar_model_tool_free(model, 0), 0);
     REFUSED(lar_model_tool(NULL, 0, &tool, &error));
     REFUSED(lar_model_tool(model, 0, NULL, &error));
     REFUSED(lar_model_tool(model, 0, &tool, &error));
@@ -419,6 +420,7 @@ static void calls_without_a_status_accept_nothing(void **unused) {
     assert_true(session.tick == 0 && !session.simulation);
     assert_true(lar_model_contact_count(NULL) <= 0);
     assert_true(lar_model_tool_count(NULL) <= 0);
+    assert_int_equal(lar_model_tool_free(NULL, 0), 0);
     lar_meshing_destroy(NULL);
     lar_meshing_inspect(NULL, NULL);
     lar_simulation_destroy(NULL);

@@ -459,6 +459,21 @@ static void three_planes_stop_it(void **unused) {
     finish(simulation, model);
 }
 
+/* It is one thing: no node of it is held, or let go. */
+static void its_nodes_are_not_held_one_by_one(void **unused) {
+    (void)unused;
+    lar_model *model = stone_model();
+    lar_simulation *simulation = start(model);
+    lar_error error;
+    for (int held = 0; held < 2; held++) {
+        assert_int_equal(lar_simulation_set_support(simulation, 3, LAR_AXIS_ALL, held, &error),
+                         LAR_ERROR_ARGUMENT);
+        assert_true(strstr(error.message, "free body \"stone\"") != NULL);
+    }
+    assert_int_equal(lar_model_tool_free(model, 0), LAR_AXIS_ALL | LAR_FREE_TURNS);
+    finish(simulation, model);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(it_flies),
@@ -473,6 +488,7 @@ int main(void) {
         cmocka_unit_test(it_goes_where_it_may),
         cmocka_unit_test(planes_rub_as_coulomb_says),
         cmocka_unit_test(three_planes_stop_it),
+        cmocka_unit_test(its_nodes_are_not_held_one_by_one),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

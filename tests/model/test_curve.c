@@ -166,6 +166,15 @@ static void test_means_keep_impulses(void **state) {
             for (int n = 1; n * dt < 0.7; n++) sum += dt * lar_curve_mean(&curve, n * dt, dt);
             assert_true(fabs(sum / area[k] - 1) < (dt > 0.002 ? 1e-12 : 0.06));
         }
+    static double train[][2] = {{0, 1}, {0.001, 1}, {0.001, 0}, {0.01, 0}}; /* again and again */
+    for (double dt = 7e-5; dt < 2; dt *= 1.37) {
+        const lar_curve curve = {
+            .kind = LAR_CURVE_TABLE, .repeats = true, .count = 4, .point = train};
+        double sum = 0.5 * dt * lar_curve_mean(&curve, 0, dt), end = 0.5 * dt;
+        for (int n = 1; end < 5; n++, end += dt) sum += dt * lar_curve_mean(&curve, n * dt, dt);
+        const double whole = floor(end / 0.01), left = fmin(end - 0.01 * whole, 0.001);
+        assert_true(fabs(sum - (0.001 * whole + left)) < (dt > 0.64 ? 2e-3 : 1e-9));
+    }
     static double slow[][2] = {{0, 0}, {0.3, 1}, {0.5, -2}};
     const lar_curve curve = {.kind = LAR_CURVE_TABLE, .count = 3, .point = slow};
     for (double t = 0; t < 0.6; t += 0.01)

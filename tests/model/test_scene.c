@@ -137,7 +137,7 @@ static void test_gravity_with_a_course(void **state) {
     double g[3];
     lar_model *model = scene(HEAD MATERIAL "gravity: {acceleration: [1, 0, -8], over: 0.2}\n");
     same(lar_model_duration(model), 0.2);
-    lar_gravity_at(model, NULL, 0.1, g);
+    lar_gravity_at(model, NULL, 0.1, 0, g);
     same(g[0], 0.5);
     same(g[1], 0);
     same(g[2], -4);
@@ -146,13 +146,13 @@ static void test_gravity_with_a_course(void **state) {
         scene(HEAD MATERIAL "gravity:\n"
                             "  - {acceleration: [0, 0, -8], curve: {points: [[0, 1], [2, 0]]}}\n"
                             "  - {acceleration: [4, 0, 0], curve: {points: [[0, 0], [1, 1]]}}\n");
-    lar_gravity_at(model, NULL, 0.5, g);
+    lar_gravity_at(model, NULL, 0.5, 0, g);
     same(g[0], 2);
     same(g[1], 0);
     same(g[2], -6);
     lar_model_destroy(model);
     model = scene(HEAD MATERIAL "gravity: {acceleration: [0, 0, -8]}\n");
-    lar_gravity_at(model, NULL, 0, g);
+    lar_gravity_at(model, NULL, 0, 0, g);
     same(g[2], -8);
     lar_model_destroy(model);
 }

@@ -143,7 +143,7 @@ static bool solve(const implicit *body, double *matrix, double *b) {
 /* What gravity does at that time. */
 static void weigh(implicit *body) {
     double gravity[3];
-    lar_gravity_at(body->model, NULL, body->time, gravity);
+    lar_gravity_at(body->model, NULL, body->time, 0, gravity);
     for (int i = 0; i < body->freedoms; i++) body->guess[i] = gravity[i % 3];
     times_mass(body, body->guess, body->weight);
 }

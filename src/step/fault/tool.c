@@ -56,7 +56,7 @@ static double loads_at(const lar_domain *domain, const lar_tools *tools, double 
                        const fault_spot *spot) {
     const lar_model *model = domain->model;
     double gravity[3], most;
-    lar_gravity_at(model, &tools->settings, time, gravity);
+    lar_gravity_at(model, &tools->settings, time, 0, gravity);
     most = weight * lar_length(gravity);
     for (int i = 0; i < model->load_count; i++) {
         const lar_nodal_load *load = &model->load[i];

@@ -148,7 +148,7 @@ static lar_status external(lar_implicit *m, const double *u, double time, double
                            lar_error *error) {
     lar_condition_context context = {.model = m->model, .scale = m->scale};
     double gravity[3];
-    lar_gravity_at(m->model, NULL, time, gravity);
+    lar_gravity_at(m->model, NULL, time, 0, gravity);
     memset(m->state.force, 0, 3 * m->state.stride * sizeof *m->state.force);
     for (int32_t r = 0; r < m->rows; r++) m->state.u[lar_state_at(&m->state, r / 3, r % 3)] = u[r];
     int32_t beyond = lar_conditions_load(&m->conditions, &context, time, &m->notes, &m->state);
