@@ -142,7 +142,7 @@ static void begin_look(const lar_domain *domain, lar_measure_scratch *scratch,
     *scratch->ahead = *scratch->tools;
     const lar_leapfrog leapfrog =
         lar_step_leapfrog_at(domain, l->interactions, &l->context, &l->state);
-    lar_free_bodies_go(domain, &l->interactions->notes, &l->state, &leapfrog, scratch->ahead);
+    lar_free_bodies_go(domain, &l->interactions->notes, &l->state, &leapfrog, scratch->ahead, NULL);
     l->context.tools = scratch->ahead;
 }
 
@@ -475,6 +475,19 @@ static void take_supports(const look *l, double (*force)[3]) {
     }
 }
 
+/* What planes push free bodies with, which are supported for all others: their supports are the
+ * bodies. `times`: 1 or -1. */
+static void add_landings(const look *l, lar_measure_scratch *scratch, double times,
+                         double (*force)[3]) {
+    if (!scratch->ahead) return;
+    const double h = mean_step(l), half = 0.5 * damping_of(l) * h;
+    const lar_landed landed = {times * (1 + half) / h, force};
+    const lar_leapfrog leapfrog =
+        lar_step_leapfrog_at(l->domain, l->interactions, &l->context, &l->state);
+    *scratch->ahead = *scratch->tools;
+    lar_free_bodies_go(l->domain, supports_of(l), &l->state, &leapfrog, scratch->ahead, &landed);
+}
+
 static void take_damping(const look *l, double (*force)[3]) {
     const lar_domain *domain = l->domain;
     const lar_planes *planes = planes_of(l);
@@ -561,8 +574,9 @@ lar_status lar_measure_nodal_forces(const lar_domain *domain, lar_measure_scratc
         take_planes(&l, force);
     else if (cause == LAR_CAUSE_SUPPORTS)
         take_supports(&l, force);
-    else
-        take_damping(&l, force);
+    if (cause == LAR_CAUSE_PLANES || cause == LAR_CAUSE_SUPPORTS)
+        add_landings(&l, scratch, cause == LAR_CAUSE_PLANES ? 1 : -1, force);
+    if (cause == LAR_CAUSE_DAMPING) take_damping(&l, force);
     end_look(&l);
     return LAR_OK;
 }

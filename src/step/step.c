@@ -443,7 +443,8 @@ void lar_step_move(const lar_domain *domain, lar_interactions *interactions,
     add_last(domain, interactions, context, state);
     if (interactions->leads) {
         const lar_leapfrog leapfrog = lar_step_leapfrog_at(domain, interactions, context, state);
-        lar_free_bodies_go(domain, &interactions->notes, state, &leapfrog, interactions->leads);
+        lar_free_bodies_go(domain, &interactions->notes, state, &leapfrog, interactions->leads,
+                           NULL);
     }
     lar_tool_friction_keep(&interactions->tool_contact, state);
     lar_tool_friction_half_work(&interactions->tool_contact, context, state);

@@ -107,9 +107,20 @@ static void next_pose(const lar_tool *tool, const lar_rigid_sum *sum, double dt,
     }
 }
 
+static void note_landing(const lar_domain *domain, const lar_condition_notes *notes, int tool,
+                         const lar_landing *landing, const lar_landed *landed) {
+    int32_t n = 0;
+    for (int32_t k = 0; (k = next_of(notes, tool, k)) < notes->constraint_count; k++) {
+        double *force = landed->force[domain->layout.global[notes->constraint[k].node]];
+        double impulse[3] = {0};
+        lar_landing_on(landing, ++n, impulse);
+        for (int i = 0; i < 3; i++) force[i] += landed->times * impulse[i];
+    }
+}
+
 /* What planes take from it. */
 static void land(const lar_domain *domain, const lar_condition_notes *notes, const lar_state *state,
-                 double dt, int tool, lar_rigid_sum *sum) {
+                 double dt, int tool, lar_rigid_sum *sum, const lar_landed *landed) {
     const lar_model *model = domain->model;
     lar_landing landing;
     double arm[3];
@@ -119,10 +130,12 @@ static void land(const lar_domain *domain, const lar_condition_notes *notes, con
         lar_landing_meet(&landing, arm);
     }
     lar_landing_end(&landing);
+    if (landed) note_landing(domain, notes, tool, &landing, landed);
 }
 
 void lar_free_bodies_go(const lar_domain *domain, const lar_condition_notes *notes,
-                        const lar_state *state, const lar_leapfrog *leapfrog, lar_tools *tools) {
+                        const lar_state *state, const lar_leapfrog *leapfrog, lar_tools *tools,
+                        const lar_landed *landed) {
     const lar_model *model = domain->model;
     for (int tool = 0; tool < model->tool_count; tool++) {
         if (!model->tool[tool].free || tools->motion[tool].end > state->step) continue;
@@ -130,7 +143,7 @@ void lar_free_bodies_go(const lar_domain *domain, const lar_condition_notes *not
         lar_rigid_sum sum;
         sum_nodes(domain, notes, state, leapfrog, tool, &sum);
         if (!(sum.mass > 0)) continue;
-        if (model->tool[tool].planes) land(domain, notes, state, leapfrog->dt, tool, &sum);
+        if (model->tool[tool].planes) land(domain, notes, state, leapfrog->dt, tool, &sum, landed);
         lar_tool_at(&tools->motion[tool], state->step, domain->time_step, &way.from, NULL);
         next_pose(&model->tool[tool], &sum, leapfrog->dt, &way.from, &way.to);
         lar_tool_ask(tools, tool, &way);

@@ -29,10 +29,18 @@
 
 bool lar_free_bodies_any(const lar_model *model);
 
+/* For who looks: planes' impulses on nodes. */
+typedef struct lar_landed {
+    double times;       /* what to add of them [1/s] */
+    double (*force)[3]; /* [nodes of the model] to this [N] */
+} lar_landed;
+
 /* All forces stand in state->force: tells `tools` where free bodies go in the step, or in the part
- * of it that comes, those that nobody leads. `leapfrog`: how nodes move there. */
+ * of it that comes, those that nobody leads. `leapfrog`: how nodes move there. `landed` may be
+ * NULL. */
 void lar_free_bodies_go(const lar_domain *domain, const lar_condition_notes *notes,
-                        const lar_state *state, const lar_leapfrog *leapfrog, lar_tools *tools);
+                        const lar_state *state, const lar_leapfrog *leapfrog, lar_tools *tools,
+                        const lar_landed *landed);
 
 /* Before the first step: how they turn to begin with, by the nodes' velocities. */
 void lar_free_bodies_start(const lar_domain *domain, const lar_condition_notes *notes,

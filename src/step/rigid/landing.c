@@ -184,3 +184,16 @@ void lar_landing_end(lar_landing *landing) {
         }
     }
 }
+
+void lar_landing_on(const lar_landing *landing, int32_t node, double impulse[3]) {
+    for (int k = 0; k < landing->count; k++) {
+        const lar_landing_spot *spot = &landing->spot[k];
+        const double *normal = landing->model->contact[spot->plane].normal;
+        double beside[2][3];
+        if (spot->node != node) continue;
+        along(normal, beside);
+        for (int i = 0; i < 3; i++)
+            impulse[i] +=
+                spot->push * normal[i] + spot->rub[0] * beside[0][i] + spot->rub[1] * beside[1][i];
+    }
+}

@@ -44,4 +44,7 @@ void lar_landing_meet(lar_landing *landing, const double arm[3]);
 
 void lar_landing_end(lar_landing *landing);
 
+/* Adds the impulses on the nth node, from 1 [N s]. */
+void lar_landing_on(const lar_landing *landing, int32_t node, double impulse[3]);
+
 #endif
