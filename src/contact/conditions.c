@@ -559,7 +559,7 @@ double lar_conditions_impose(const lar_condition_context *context, double time,
         double old = value_in(model, constraint, &was);
         *u = value_in(model, constraint, &next);
         *v = (*u - old) / dt;
-        state->fastest = fmax(state->fastest, fabs(*v));
+        if (fabs(*v) > state->fastest) state->fastest = fabs(*v);
         state->damped += share * weight * ((before + *v) * (before + *v) - free * free);
         /* What the support must add for the node to move so: m a + c m v - m g + residual. */
         double mean = 0.5 * (*v + before);

@@ -507,7 +507,8 @@ void lar_tool_contact_carry(lar_tool_contact *contact, const lar_condition_conte
     for (int32_t i = notes->fixed_count; i < notes->constraint_count; i++) {
         const lar_constraint *c = &notes->constraint[i];
         const int32_t next = (c->axis + 1) % 3, last = (c->axis + 2) % 3;
-        if (c->curve != LAR_CURVE_TOOL || !(context->weight[c->node] > 0)) continue;
+        const int64_t pull = state->force[lar_constraint_at(state, c)];
+        if (c->curve != LAR_CURVE_TOOL || pull == 0 || !(context->weight[c->node] > 0)) continue;
         if (tool != c->rigid)
             lar_tool_pose_now(&contact->tools->motion[c->rigid], state, 0, context->whole_step,
                               &pose);
@@ -516,7 +517,7 @@ void lar_tool_contact_carry(lar_tool_contact *contact, const lar_condition_conte
         lar_tool_push push = {0};
         double u[3];
         lar_state_displacement(state, c->node, u);
-        push.force[c->axis] = -state->force[lar_constraint_at(state, c)];
+        push.force[c->axis] = -pull;
         const double force = (double)push.force[c->axis];
         add_turn(next, (at[last] + u[last] - pose.position[last]) * force, &push);
         add_turn(last, -(at[next] + u[next] - pose.position[next]) * force, &push);

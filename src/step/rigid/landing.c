@@ -1,35 +1,32 @@
 #include "step/rigid/landing.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "base/vector.h"
 
-/* Pushes the body at a place: momentum and spin, and what it goes and turns by for that. */
-static void add_impulse(lar_landing *landing, const double arm[3], const double impulse[3]) {
-    lar_rigid_sum *sum = landing->sum;
-    double spin[3], turn[3];
-    lar_cross(arm, impulse, spin);
-    lar_symmetric_product(landing->inverse, spin, turn);
+/* The body goes and turns by an impulse at a spot along one of its ways. */
+static void add_impulse(lar_landing *landing, const lar_landing_spot *spot, int k, double impulse) {
     for (int i = 0; i < 3; i++) {
-        sum->momentum[i] += impulse[i];
-        sum->spin[i] += spin[i];
-        if (landing->tool->free >> i & 1) landing->v[i] += impulse[i] / sum->mass;
-        landing->w[i] += turn[i];
+        landing->v[i] += impulse * spot->way[k][i] * landing->light[i];
+        landing->w[i] += impulse * spot->swing[k][i];
     }
 }
 
-/* The speed along b of what is pushed by one along a, at the same place [1/kg]. */
-static double yields(const lar_landing *landing, const double arm[3], const double a[3],
-                     const double b[3]) {
-    double spin[3], turn[3], swung[3], sum = 0;
-    lar_cross(arm, a, spin);
-    lar_symmetric_product(landing->inverse, spin, turn);
-    lar_cross(turn, arm, swung);
-    for (int i = 0; i < 3; i++) {
-        sum += b[i] * swung[i];
-        if (landing->tool->free >> i & 1) sum += b[i] * a[i] / landing->sum->mass;
-    }
-    return sum;
+static double speed_along(const lar_landing *landing, const lar_landing_spot *spot, int k) {
+    double speed = 0;
+    for (int i = 0; i < 3; i++)
+        speed += spot->way[k][i] * landing->v[i] + spot->lever[k][i] * landing->w[i];
+    return speed;
+}
+
+/* The speed along one way by an impulse of one along another [1/kg]. */
+static double yields(const lar_landing *landing, const lar_landing_spot *spot, int by, int k) {
+    double speed = 0;
+    for (int i = 0; i < 3; i++)
+        speed += spot->way[k][i] * landing->light[i] * spot->way[by][i] +
+                 spot->lever[k][i] * spot->swing[by][i];
+    return speed;
 }
 
 /* Two directions along a plane. */
@@ -55,8 +52,10 @@ void lar_landing_begin(const lar_model *model, const lar_tool *tool, lar_rigid_s
     landing->count = 0;
     lar_rigid_sum_yields(sum, tool, landing->inverse);
     lar_symmetric_product(landing->inverse, sum->spin, landing->w);
-    for (int i = 0; i < 3; i++)
-        landing->v[i] = tool->free >> i & 1 ? sum->momentum[i] / sum->mass : 0;
+    for (int i = 0; i < 3; i++) {
+        landing->light[i] = tool->free >> i & 1 ? 1 / sum->mass : 0;
+        landing->v[i] = sum->momentum[i] * landing->light[i];
+    }
     for (int i = 0; i < model->contact_count && i < 32; i++)
         for (int k = 0; k < LAR_LANDING_SPOTS && tool->planes >> i & 1; k++)
             landing->spot[landing->count++] = (lar_landing_spot){.plane = i};
@@ -66,7 +65,7 @@ void lar_landing_begin(const lar_model *model, const lar_tool *tool, lar_rigid_s
 
 static void keep_farther(lar_landing_spot *spot, double value, const lar_landing_spot *fresh) {
     if (spot->node > 0 && !(value > spot->most)) return;
-    *spot = *fresh;
+    memcpy(spot, fresh, offsetof(lar_landing_spot, push)); /* the rest is not known yet */
     spot->most = value;
 }
 
@@ -104,6 +103,20 @@ void lar_landing_meet(lar_landing *landing, const double arm[3]) {
     }
 }
 
+static void find_ways(const lar_landing *landing, lar_landing_spot *spot) {
+    double beside[2][3];
+    memcpy(spot->way[0], landing->model->contact[spot->plane].normal, sizeof spot->way[0]);
+    along(spot->way[0], beside);
+    memcpy(spot->way[1], beside, sizeof beside);
+    for (int k = 0; k < 3; k++) {
+        lar_cross(spot->arm, spot->way[k], spot->lever[k]);
+        lar_symmetric_product(landing->inverse, spot->lever[k], spot->swing[k]);
+    }
+    spot->yields = yields(landing, spot, 0, 0);
+    spot->yields_beside = lar_greater(yields(landing, spot, 1, 1), yields(landing, spot, 2, 2)) +
+                          fabs(yields(landing, spot, 1, 2));
+}
+
 /* Every node once, and those alone that can give way. */
 static void settle(lar_landing *landing) {
     int count = 0;
@@ -114,13 +127,7 @@ static void settle(lar_landing *landing) {
             known = known ||
                     (landing->spot[i].node == spot.node && landing->spot[i].plane == spot.plane);
         if (known) continue;
-        const double *normal = landing->model->contact[spot.plane].normal;
-        double beside[2][3];
-        along(normal, beside);
-        spot.yields = yields(landing, spot.arm, normal, normal);
-        spot.yields_beside = lar_greater(yields(landing, spot.arm, beside[0], beside[0]),
-                                         yields(landing, spot.arm, beside[1], beside[1])) +
-                             fabs(yields(landing, spot.arm, beside[0], beside[1]));
+        find_ways(landing, &spot);
         if (spot.yields > 1e-9 / landing->sum->mass) landing->spot[count++] = spot;
     }
     landing->count = count;
@@ -128,44 +135,38 @@ static void settle(lar_landing *landing) {
 
 /* ---- impulses -------------------------------------------------------------------------------- */
 
-static double speed_along(const lar_landing *landing, const lar_landing_spot *spot,
-                          const double direction[3]) {
-    double swung[3];
-    lar_cross(landing->w, spot->arm, swung);
-    return lar_dot(direction, landing->v) + lar_dot(direction, swung);
-}
-
 /* Not below the plane at the end of the step; what is, by what turns have of the second order,
  * comes up in a few. Returns how much the impulse changed. */
 static double press(lar_landing *landing, lar_landing_spot *spot) {
     static const double RISE = 0.2, FASTEST = 0.1; /* [m/s] */
-    const double *normal = landing->model->contact[spot->plane].normal;
     const double wanted = spot->gap > 0 ? -spot->gap / landing->dt
                                         : lar_lesser(-RISE * spot->gap / landing->dt, FASTEST);
-    const double more = (wanted - speed_along(landing, spot, normal)) / spot->yields;
-    const double change = lar_greater(spot->push + more, 0) - spot->push;
-    double impulse[3];
-    for (int i = 0; i < 3; i++) impulse[i] = change * normal[i];
-    spot->push += change;
-    add_impulse(landing, spot->arm, impulse);
+    const double more = (wanted - speed_along(landing, spot, 0)) / spot->yields;
+    const double change = lar_greater(spot->push[0] + more, 0) - spot->push[0];
+    spot->push[0] += change;
+    add_impulse(landing, spot, 0, change);
     return fabs(change);
 }
 
 static void rub(lar_landing *landing, lar_landing_spot *spot) {
-    const lar_contact *plane = &landing->model->contact[spot->plane];
-    if (!(plane->friction > 0) || !(spot->yields_beside > 0)) return;
-    double beside[2][3], wanted[2], impulse[3] = {0};
-    along(plane->normal, beside);
+    const double friction = landing->model->contact[spot->plane].friction;
+    if (!(friction > 0) || !(spot->yields_beside > 0)) return;
+    double wanted[2];
     for (int k = 0; k < 2; k++)
-        wanted[k] = spot->rub[k] - speed_along(landing, spot, beside[k]) / spot->yields_beside;
+        wanted[k] = spot->push[1 + k] - speed_along(landing, spot, 1 + k) / spot->yields_beside;
     const double size = sqrt(wanted[0] * wanted[0] + wanted[1] * wanted[1]);
-    const double most = plane->friction * spot->push;
+    const double most = friction * spot->push[0];
     for (int k = 0; k < 2; k++) {
         if (size > most) wanted[k] *= most / size;
-        for (int i = 0; i < 3; i++) impulse[i] += (wanted[k] - spot->rub[k]) * beside[k][i];
-        spot->rub[k] = wanted[k];
+        add_impulse(landing, spot, 1 + k, wanted[k] - spot->push[1 + k]);
+        spot->push[1 + k] = wanted[k];
     }
-    add_impulse(landing, spot->arm, impulse);
+}
+
+/* What the body has got at a spot. */
+static void impulse_at(const lar_landing_spot *spot, double impulse[3]) {
+    for (int i = 0; i < 3; i++)
+        for (int k = 0; k < 3; k++) impulse[i] += spot->push[k] * spot->way[k][i];
 }
 
 void lar_landing_end(lar_landing *landing) {
@@ -180,20 +181,22 @@ void lar_landing_end(lar_landing *landing) {
             lar_landing_spot *spot = &landing->spot[n % 2 ? landing->count - 1 - k : k];
             most = lar_greater(most, press(landing, spot));
             rub(landing, spot);
-            all += spot->push;
+            all += spot->push[0];
+        }
+    }
+    for (int k = 0; k < landing->count; k++) {
+        const lar_landing_spot *spot = &landing->spot[k];
+        double impulse[3] = {0}, spin[3];
+        impulse_at(spot, impulse);
+        lar_cross(spot->arm, impulse, spin);
+        for (int i = 0; i < 3; i++) {
+            landing->sum->momentum[i] += impulse[i];
+            landing->sum->spin[i] += spin[i];
         }
     }
 }
 
 void lar_landing_on(const lar_landing *landing, int32_t node, double impulse[3]) {
-    for (int k = 0; k < landing->count; k++) {
-        const lar_landing_spot *spot = &landing->spot[k];
-        const double *normal = landing->model->contact[spot->plane].normal;
-        double beside[2][3];
-        if (spot->node != node) continue;
-        along(normal, beside);
-        for (int i = 0; i < 3; i++)
-            impulse[i] +=
-                spot->push * normal[i] + spot->rub[0] * beside[0][i] + spot->rub[1] * beside[1][i];
-    }
+    for (int k = 0; k < landing->count; k++)
+        if (landing->spot[k].node == node) impulse_at(&landing->spot[k], impulse);
 }

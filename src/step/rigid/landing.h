@@ -16,12 +16,16 @@ enum { LAR_LANDING_SPOTS = 17 }; /* of a plane */
 
 /* A node that may touch a plane within the step. */
 typedef struct lar_landing_spot {
-    int32_t node;                 /* the nth of the body's, from 1; 0: none */
-    int plane;                    /* the nth of the model's entries of contact */
-    double most;                  /* how far it goes in its direction [m] */
-    double arm[3], gap;           /* from sum->centre; above the plane [m] */
-    double push, rub[2];          /* impulses along its normal and along the plane [N s] */
+    int32_t node;       /* the nth of the body's, from 1; 0: none */
+    int plane;          /* the nth of the model's entries of contact */
+    double most;        /* how far it goes in its direction [m] */
+    double arm[3], gap; /* from sum->centre; above the plane [m] */
+    double push[3];     /* from here on of those that touch: impulses along its normal and along the
+                           plane [N s] */
     double yields, yields_beside; /* speed by an impulse of one [1/kg] */
+    double way[3][3];             /* unit, of these impulses */
+    double lever[3][3];           /* spin by one [m] */
+    double swing[3][3];           /* what the body turns by for it [1/(kg m)] */
 } lar_landing_spot;
 
 typedef struct lar_landing {
@@ -30,6 +34,7 @@ typedef struct lar_landing {
     lar_rigid_sum *sum;
     double dt, inverse[6]; /* of the inertia that is free to turn; else zero [1/(kg m^2)] */
     double v[3], w[3];     /* of the body within the step [m/s], [1/s] */
+    double light[3];       /* one over its mass along axes that are free [1/kg] */
     int32_t nodes;         /* seen so far */
     int count;
     lar_landing_spot spot[LAR_TOOL_PLANES_MAX * LAR_LANDING_SPOTS];
