@@ -73,6 +73,12 @@ static PyObject *model_repr(PyObject *me) {
                                 (int)lar_model_element_count(model));
 }
 
+static PyObject *itself(PyObject *me, PyObject *memo) {
+    (void)memo;
+    Py_INCREF(me);
+    return me;
+}
+
 static PyObject *model_reduce(PyObject *me, PyObject *nothing) {
     (void)nothing;
     PyObject *recipe = ((python_model *)me)->recipe;
@@ -352,6 +358,8 @@ static PyMethodDef model_methods[] = {
      "As Simulation.rays, against the surface when the nodes have moved by `displacements`, "
      "float64 "
      "[nodes, 3], such as those of Session.snapshot(); None: at rest."},
+    {"__deepcopy__", itself, METH_O,
+     "Itself, for it never changes: states in memory serve deep copies of a simulation."},
     {"__reduce__", model_reduce, METH_NOARGS,
      "For pickle: models of files are read again from the same path, models of arrays carry them."},
     {NULL, NULL, 0, NULL}};

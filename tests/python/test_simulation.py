@@ -1,6 +1,7 @@
 """class Simulation: the same bits as the command, states, tools, changes, what is refused."""
 
 import array
+import copy
 import gc
 import os
 import pickle
@@ -604,6 +605,16 @@ class Threads(unittest.TestCase):
             thread.join()
         self.assertEqual(errors, [])
         self.assertEqual(set(ends), {first.hash()})
+
+
+    def test_deep_copies_take_up_states(self):
+        first = lariat.Simulation(block())
+        first.advance(20)
+        state, twin = first.save(), copy.deepcopy(first)
+        self.assertIs(twin.model, first.model)
+        twin.advance(7)
+        twin.load(state)
+        self.assertEqual(twin.hash(), first.hash())
 
 
 class Arguments(unittest.TestCase):
