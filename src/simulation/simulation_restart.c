@@ -115,7 +115,10 @@ static void set_initial_velocities(lar_simulation *simulation) {
 lar_status lar_simulation_set_anew(lar_simulation *simulation, lar_error *error) {
     lar_state *state = &simulation->state;
     lar_simulation_set(simulation);
-    if (state->step > 0 || state->part > 0) return LAR_OK;
+    /* Several processors have the state, of which the whole may know nothing yet. */
+    if (lar_simulation_steps(simulation) > 0 || state->part > 0) return LAR_OK;
+    lar_status status = lar_simulation_gather(simulation, error);
+    if (status) return status;
     memset(state->v, 0, 3 * state->stride * sizeof *state->v);
     set_initial_velocities(simulation);
     state->external = 0;
