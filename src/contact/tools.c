@@ -178,6 +178,34 @@ void lar_tool_within(const lar_tool_motion *motion, uint64_t step, double part, 
     pose->opening = (1 - share) * motion->from.opening + share * motion->to.opening;
 }
 
+/* The same way once more. */
+static void go_on(lar_tool_motion *motion) {
+    const lar_tool_pose from = motion->from;
+    double back[4], turn[4];
+    motion->from = motion->to;
+    motion->end += motion->end - motion->start;
+    motion->start = (motion->start + motion->end) / 2;
+    for (int i = 0; i < 3; i++)
+        motion->to.position[i] += motion->from.position[i] - from.position[i];
+    lar_quaternion_inverse(from.orientation, back);
+    lar_quaternion_product(motion->from.orientation, back, turn);
+    lar_quaternion_product(turn, motion->from.orientation, motion->to.orientation);
+    lar_quaternion_normalise(motion->to.orientation);
+    motion->to.opening = fmin(1, fmax(0, 2 * motion->from.opening - from.opening));
+}
+
+bool lar_tools_go_on(const lar_tools *tools, uint64_t step, lar_tools *next) {
+    bool any = false;
+    for (int32_t i = 0; i < tools->count; i++) {
+        const lar_tool_motion *motion = &tools->motion[i];
+        if (!tools->follower[i].lagging || motion->end != step || motion->start >= step) continue;
+        if (!any) *next = *tools;
+        any = true;
+        go_on(&next->motion[i]);
+    }
+    return any;
+}
+
 void lar_tool_pose_now(const lar_tool_motion *motion, const lar_state *state, int32_t ahead,
                        double time_step, lar_tool_pose *pose) {
     int32_t part = state->part + ahead;

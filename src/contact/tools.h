@@ -269,6 +269,10 @@ static inline bool lar_tool_motion_free(const lar_tool_motion *motion) {
     return motion->start > motion->end;
 }
 
+/* For who looks before it is decided where tools go that are kept from their hands, and whose way
+ * has come to its end: as if they went on so. False: there are none, and nothing is written. */
+bool lar_tools_go_on(const lar_tools *tools, uint64_t step, lar_tools *next);
+
 /* The same at the state's part of a step, or `ahead` parts later. `time_step`: of a whole step. */
 void lar_tool_pose_now(const lar_tool_motion *motion, const lar_state *state, int32_t ahead,
                        double time_step, lar_tool_pose *pose);

@@ -382,28 +382,6 @@ void lar_domain_element(const lar_domain *domain, int32_t r, int32_t b, int lane
     }
 }
 
-/* Force units: the characteristic force, (K + 4 G/3) V^(2/3) of the stiffest element, is 2^45 to
- * 2^46 units, so rounding is 1e-14 of it and 2^8 times it still fits (docs/theory.md). */
-static void choose_scale(lar_domain *domain) {
-    const lar_model *model = domain->model;
-    double characteristic = DBL_MIN;
-    for (lar_gid e = 0; e < model->mesh.element_count; e++) {
-        double corner[8][3];
-        const lar_material *material = lar_model_material_of(model, e);
-        lar_mesh_corners(&model->mesh, e, corner);
-        double side = cbrt(lar_hexahedron_volume(corner));
-        double modulus =
-            lar_material_instant_bulk(material) + 4 * lar_material_instant_shear(material) / 3;
-        if (lar_fibre_here(&material->fibre))
-            modulus += lar_fibre_families(&material->fibre) * lar_fibre_modulus(&material->fibre) +
-                       fabs(material->fibre.along) + fabs(material->fibre.across);
-        characteristic = fmax(characteristic, modulus * side * side);
-    }
-    int exponent;
-    frexp(characteristic, &exponent);
-    domain->scale = ldexp(1, 46 - exponent);
-}
-
 static lar_status allocate_masses(lar_domain *domain, lar_error *error) {
     size_t nodes = (size_t)domain->layout.node_padded;
     domain->weight = domain->mass = lar_calloc_aligned(nodes, sizeof *domain->mass);
@@ -433,7 +411,7 @@ static lar_status spread_mass(lar_domain *domain, lar_error *error) {
 
 /* Constants of v' = keep v - push f + drift (docs/theory.md): central differences with damping c,
  *     m (v' - v)/dt + c m (v' + v)/2 = -f + m g. */
-static void prepare_motion(lar_domain *domain) {
+static void prepare_motion(lar_domain *domain, int finer) {
     const lar_model *model = domain->model;
     double dt = domain->time_step, half = 0.5 * model->damping * dt;
     double gravity[3], shortest = DBL_MAX;
@@ -448,7 +426,7 @@ static void prepare_motion(lar_domain *domain) {
         shortest = fmin(shortest, cbrt(lar_hexahedron_volume(corner)));
     }
     /* Between two looks of the monitor, no hourglass mode can grow beyond the integers. */
-    domain->leapfrog.speed = 256 * shortest / dt;
+    domain->leapfrog.speed = ldexp(256, -finer) * shortest / dt;
 }
 
 /* Where the largest nodal force of the model stands. */
@@ -489,8 +467,7 @@ lar_status lar_domain_create_styled(const lar_model *model, const lar_options *o
     if (!status) status = list_runs(domain, INT32_MAX, error);
     if (!status) {
         domain->room = lar_step_room_of(domain->time_step, domain->stable_step);
-        choose_scale(domain);
-        prepare_motion(domain);
+        prepare_motion(domain, lar_force_scale_choose(model, &domain->scale));
         status = lar_viscous_plan(domain, error);
         if (!status) status = lar_activation_plan(domain, error);
         if (!status && domain->kind == LAR_ELEMENT_HEX8)

@@ -96,6 +96,8 @@ lar_status lar_measure_scratch_create(const lar_domain *domain, const lar_tools 
     if (status) return status;
     scratch->force = lar_calloc_aligned(values, sizeof *scratch->force);
     scratch->tools = tools;
+    if (tools) scratch->next = lar_calloc(1, sizeof *scratch->next);
+    if (tools && !scratch->next) return lar_fail_memory(error, sizeof *scratch->next, "tools");
     if (tools && lar_free_bodies_any(domain->model)) {
         scratch->ahead = lar_calloc(1, sizeof *scratch->ahead);
         if (!scratch->ahead) return lar_fail_memory(error, sizeof *scratch->ahead, "free bodies");
@@ -107,6 +109,7 @@ lar_status lar_measure_scratch_create(const lar_domain *domain, const lar_tools 
 void lar_measure_scratch_destroy(lar_measure_scratch *scratch) {
     lar_interactions_destroy(&scratch->interactions);
     free(scratch->force);
+    free(scratch->next);
     free(scratch->ahead);
     *scratch = (lar_measure_scratch){0};
 }
@@ -127,6 +130,10 @@ static void enter_look(const lar_domain *domain, lar_measure_scratch *scratch,
                 .context = lar_domain_context(domain),
                 .state = *state};
     l->state.force = scratch->force;
+    if (scratch->tools)
+        l->interactions->tool_contact.tools =
+            lar_tools_go_on(scratch->tools, state->step, scratch->next) ? scratch->next
+                                                                        : scratch->tools;
     lar_step_enter(domain, l->interactions, &l->context, &l->state);
     lar_gravity_at(domain->model, lar_settings_of(l->interactions), lar_state_time(domain, state),
                    l->context.mean_step, l->gravity);
@@ -139,7 +146,7 @@ static void begin_look(const lar_domain *domain, lar_measure_scratch *scratch,
     enter_look(domain, scratch, state, l);
     lar_step_forces(domain, l->interactions, &l->state, &ignored);
     if (!scratch->ahead) return;
-    *scratch->ahead = *scratch->tools;
+    *scratch->ahead = *l->interactions->tool_contact.tools;
     const lar_leapfrog leapfrog =
         lar_step_leapfrog_at(domain, l->interactions, &l->context, &l->state);
     lar_free_bodies_go(domain, &l->interactions->notes, &l->state, &leapfrog, scratch->ahead, NULL);
@@ -484,7 +491,7 @@ static void add_landings(const look *l, lar_measure_scratch *scratch, double tim
     const lar_landed landed = {times * (1 + half) / h, force};
     const lar_leapfrog leapfrog =
         lar_step_leapfrog_at(l->domain, l->interactions, &l->context, &l->state);
-    *scratch->ahead = *scratch->tools;
+    *scratch->ahead = *l->interactions->tool_contact.tools;
     lar_free_bodies_go(l->domain, supports_of(l), &l->state, &leapfrog, scratch->ahead, &landed);
 }
 

@@ -11,6 +11,7 @@ typedef struct lar_measure_scratch {
     lar_interactions interactions;
     int64_t *force;         /* [3][stride of the state] force units, zero between two looks */
     const lar_tools *tools; /* NULL: none */
+    lar_tools *next;        /* these, where some go on (lar_tools_go_on); NULL: there are none */
     lar_tools *ahead;       /* these, and where free bodies will have gone; NULL: there are none */
 } lar_measure_scratch;
 

@@ -1,5 +1,6 @@
 #include "step/stable_step.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -197,4 +198,39 @@ lar_step_room lar_step_room_of(double time_step, double stable_step) {
     room.max = fmax(MAX, room.rest);
     room.springs = fmin(SPRINGS, room.max - room.rest);
     return room;
+}
+
+/* ---- force units ------------------------------------------------------------------------------
+ */
+
+/* By how many powers of two units are finer where soft tissue is beside what is far stiffer in
+ * shear, which strains by nothing like one: of metal, bone and glass less room is enough. */
+static int finer_by(double stiff, double soft) {
+    enum { NOTHING = 5, MOST = 8 };
+    const int more = (int)floor(log2(stiff / soft)) - NOTHING;
+    return more < 0 ? 0 : more > MOST ? MOST : more;
+}
+
+int lar_force_scale_choose(const lar_model *model, double *scale) {
+    double characteristic = DBL_MIN, stiff = 0, weakest = INFINITY, soft = INFINITY;
+    for (lar_gid e = 0; e < model->mesh.element_count; e++) {
+        double corner[8][3];
+        const lar_material *material = lar_model_material_of(model, e);
+        lar_mesh_corners(&model->mesh, e, corner);
+        double side = cbrt(lar_hexahedron_volume(corner));
+        double modulus =
+            lar_material_instant_bulk(material) + 4 * lar_material_instant_shear(material) / 3;
+        if (lar_fibre_here(&material->fibre))
+            modulus += lar_fibre_families(&material->fibre) * lar_fibre_modulus(&material->fibre) +
+                       fabs(material->fibre.along) + fabs(material->fibre.across);
+        const double force = modulus * side * side, shear = lar_material_instant_shear(material);
+        if (force > characteristic) stiff = shear;
+        characteristic = fmax(characteristic, force);
+        weakest = fmin(weakest, force);
+        soft = fmin(soft, shear);
+    }
+    int exponent, finer = finer_by(fmin(characteristic / weakest * soft, stiff), soft);
+    frexp(characteristic, &exponent);
+    *scale = ldexp(1, 46 + finer - exponent);
+    return finer;
 }

@@ -170,7 +170,7 @@ static void impulse_at(const lar_landing_spot *spot, double impulse[3]) {
 }
 
 void lar_landing_end(lar_landing *landing) {
-    enum { SWEEPS = 60 };
+    enum { SWEEPS = 400 };
     static const double LITTLE = 1e-12; /* of all impulses */
     settle(landing);
     double most = INFINITY, all = 0;
