@@ -120,7 +120,8 @@ typedef struct look {
     lar_interactions *interactions;
     lar_condition_context context;
     lar_state state;
-    double gravity[3]; /* at the time of the state [m/s^2] */
+    const lar_tools *tools; /* of the state; the look may have others */
+    double gravity[3];      /* at the time of the state [m/s^2] */
 } look;
 
 static void enter_look(const lar_domain *domain, lar_measure_scratch *scratch,
@@ -128,7 +129,8 @@ static void enter_look(const lar_domain *domain, lar_measure_scratch *scratch,
     *l = (look){.domain = domain,
                 .interactions = &scratch->interactions,
                 .context = lar_domain_context(domain),
-                .state = *state};
+                .state = *state,
+                .tools = scratch->tools};
     l->state.force = scratch->force;
     if (scratch->tools)
         l->interactions->tool_contact.tools =
@@ -154,6 +156,7 @@ static void begin_look(const lar_domain *domain, lar_measure_scratch *scratch,
 }
 
 static void end_look(look *l) {
+    l->interactions->tool_contact.tools = l->tools;
     memset(l->state.force, 0, 3 * l->state.stride * sizeof *l->state.force);
 }
 
