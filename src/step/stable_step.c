@@ -206,7 +206,7 @@ lar_step_room lar_step_room_of(double time_step, double stable_step) {
 /* By how many powers of two units are finer where soft tissue is beside what is far stiffer in
  * shear, which strains by nothing like one: of metal, bone and glass less room is enough. */
 static int finer_by(double stiff, double soft) {
-    enum { NOTHING = 5, MOST = 8 };
+    enum { NOTHING = 5, MOST = 4 };
     const int more = (int)floor(log2(stiff / soft)) - NOTHING;
     return more < 0 ? 0 : more > MOST ? MOST : more;
 }

@@ -60,7 +60,7 @@ lar_step_room lar_step_room_of(double time_step, double stable_step);
 
 /* Force units: the characteristic force, (K + 4 G/3) V^(2/3) of the stiffest element, is 2^45 to
  * 2^46 units, so rounding is 1e-14 of it and 2^8 times it still fits (docs/theory.md); or up to
- * 2^54. Returns by how many powers more. */
+ * 2^50. Returns by how many powers more. */
 int lar_force_scale_choose(const lar_model *model, double *scale);
 
 #endif
