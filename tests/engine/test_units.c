@@ -2,6 +2,7 @@
 #include "engine/engine_test.h"
 
 #include "engine/body_contact_test.h"
+#include "step/stable_step.h"
 
 /* A block that falls on a cushion from a height, at 1 m/s; `length`, `modulus` and `density`: units
  * of the deck in a metre, a pascal and a kilogram per cubic metre. */
@@ -56,9 +57,36 @@ static void a_fall_is_one_in_metres_and_in_millimetres(void **unused) {
     assert_below(fabs(deepest[1][1] - deepest[0][1]), 1e-4 * fabs(deepest[0][0]));
 }
 
+/* Units of force go by the stiffest element; they are finer where tissue is beside what is far
+ * stiffer, and the same for tissue alone. */
+static void metal_has_finer_units(void **unused) {
+    (void)unused;
+    static const double shear[] = {2e3, 1e5, 2e5, 8e5, 8e10};
+    static const int finer[] = {0, 0, 1, 3, 4};
+    for (int i = 0; i < 5; i++) {
+        const brick gel = {{2, 2, 2}, 0.01, 0, LAR_LAW_neo_hookean, 2e3, 2e4, 1000};
+        lar_model *model = empty_model(&gel);
+        double scale;
+        add_brick(model, &gel, (double[]){0, 0, 0});
+        const int32_t elements = model->mesh.element_count;
+        lar_material *other = LAR_MODEL_APPEND(model, material);
+        *other = model->material[0];
+        other->name = NULL;
+        lar_material_from_shear_bulk(other, shear[i], 10 * shear[i]);
+        add_brick(model, &gel, (double[]){0.1, 0, 0});
+        for (int32_t e = elements; e < model->mesh.element_count; e++)
+            model->element_material[e] = 1;
+        assert_int_equal(lar_force_scale_choose(model, &scale), finer[i]);
+        const double units = scale * (10 + 4.0 / 3) * shear[i] * 0.01 * 0.01;
+        assert_true(units >= ldexp(1, 45 + finer[i]) && units <= ldexp(1, 46 + finer[i]));
+        lar_model_destroy(model);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_fall_is_one_in_metres_and_in_millimetres),
+        cmocka_unit_test(metal_has_finer_units),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
