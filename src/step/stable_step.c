@@ -204,10 +204,12 @@ lar_step_room lar_step_room_of(double time_step, double stable_step) {
  */
 
 /* By how many powers of two units are finer where soft tissue is beside what is far stiffer in
- * shear, which strains by nothing like one: of metal, bone and glass less room is enough. */
+ * shear: metal, bone and glass strain by less than tissue, and less room is enough for them. */
 static int finer_by(double stiff, double soft) {
     enum { NOTHING = 5, MOST = 4 };
-    const int more = (int)floor(log2(stiff / soft)) - NOTHING;
+    int exponent; /* of a number from a half to one */
+    frexp(stiff / soft, &exponent);
+    const int more = exponent - 1 - NOTHING;
     return more < 0 ? 0 : more > MOST ? MOST : more;
 }
 

@@ -104,7 +104,9 @@ static double largest(double a[MOTIONS][MOTIONS]) {
                 for (int j = 0; j < MOTIONS; j++) square[i][k] += a[i][j] * a[j][k];
         memcpy(a, square, sizeof square);
     }
-    return size * pow(trace((const double(*)[MOTIONS])a), 1.0 / (1 << TWICE));
+    double root = trace((const double(*)[MOTIONS])a);
+    for (int n = 0; n < TWICE; n++) root = sqrt(root); /* the same bits everywhere */
+    return size * root;
 }
 
 /* ---- all of them ----------------------------------------------------------------------------- */
@@ -134,6 +136,17 @@ static int32_t mark(const lar_move *move, lar_contact_surface *s) {
     return count;
 }
 
+/* Points of edges are bound as little as their nodes. */
+static void bind_points(lar_contact_surface *s) {
+    for (int32_t n = s->node_count; n < s->point_count; n++) {
+        const lar_contact_point *point = &s->point[n - s->node_count];
+        float bound = s->node[point->node[0]].bound;
+        for (int i = 1; i < point->count; i++)
+            bound = s->node[point->node[i]].bound < bound ? s->node[point->node[i]].bound : bound;
+        s->node[n].bound = bound;
+    }
+}
+
 void lar_free_bodies_firm(const lar_domain *domain, lar_contact_surface *s) {
     static const double MOST = 64;
     const lar_model *model = domain->model;
@@ -155,5 +168,7 @@ void lar_free_bodies_firm(const lar_domain *domain, lar_contact_surface *s) {
         }
         any = true;
     }
-    if (any) lar_contact_edges_fit(s);
+    if (!any) return;
+    lar_contact_edges_fit(s);
+    bind_points(s);
 }
