@@ -25,6 +25,9 @@ static const double GRASP_SHARE = 0.5;
 static const double SOUND_RATE = 0.5, PINCH = 0.5;
 /* Of what contact pushes in an interval: less and a tool swings between hand and tissue. */
 static const double DRAG = 16;
+/* Free bodies bear the limit at a depth of so many radii, and what they push back with in an
+ * interval counts as often. */
+static const double FIRM = 0.03, FIRM_DRAG = 4;
 
 uint64_t lar_tool_interval(double time_step) {
     static const double SECONDS = 4e-4;
@@ -51,6 +54,8 @@ void lar_tool_limits_set(const lar_tissue_scale *scale, lar_tool_list *list) {
                                     .lever = fmax(tool->radius, 0.5 * tool->length),
                                     .travel = 0.5 * tool->spread * tool->length,
                                     .drag = DRAG * scale->stiffness * scale->interval};
+        limits->firm = scale->firm ? limits->force / (FIRM * tool->radius) : 0;
+        limits->firm_drag = FIRM_DRAG * limits->firm * scale->interval;
         limits->grasp_force = GRASP_SHARE * limits->force;
         limits->pinch =
             fmin(limits->grasp_force, PINCH * scale->shear * tool->radius * tool->length);
@@ -286,7 +291,7 @@ static bool follow(const lar_tool *tool, const lar_tool_limits *limits, lar_tool
     lar_tool_at(&follower->hand, step, time_step, &hand, NULL);
     lar_tool_at(&follower->hand, until, time_step, &then, NULL);
     double steps = (double)(until - step), seconds = steps * time_step;
-    const follow_law law = {.drag = limits->drag * tools->hardness[index],
+    const follow_law law = {.drag = fmax(limits->drag * tools->hardness[index], limits->firm_drag),
                             .carries = carries(mean, limits, motion),
                             .seconds = seconds,
                             .farthest = fmin(SHARE * tool->radius * steps, FASTEST * seconds)};

@@ -32,6 +32,7 @@ typedef struct lar_tissue_scale {
     double edge;      /* mean length of an element's edges at the surface [m] */
     double stiffness; /* of contact with tools at a node of the surface, mean [N/m] */
     double interval;  /* [s] */
+    bool firm;        /* there are free bodies */
 } lar_tissue_scale;
 
 /* Limits for all tools of a list. Without a surface (edge 0) there are none. */

@@ -5,119 +5,11 @@
 #include <string.h>
 
 #include "base/vector.h"
-#include "contact/search/symmetry.h"
 #include "contact/tool_contact_face.h"
 #include "contact/tool_friction.h"
 #include "contact/touch_list.h"
 
 /* ---- set-up -------------------------------------------------------------------------------- */
-
-static bool mine(const lar_model *model, const lar_condition_share *share, int32_t face) {
-    return !share || share->presses[model->surface.element[face]] == share->thread;
-}
-
-/* Faster than any hand moves; and, in stiff or light bodies, than their nodes go to and fro before
- * a tool that presses them, from step to step: by depth over time step, which goes with that of
- * pressure waves. Without the second the spring would push in every other step, for ever. */
-static double lets_go(const lar_model *model, const lar_material *material) {
-    static const double HANDS = 0.5, WAVES = 0.02; /* [m/s]; of their speed */
-    double modulus =
-        lar_material_instant_bulk(material) + 4.0 / 3 * lar_material_instant_shear(material);
-    double waves = WAVES * sqrt(modulus / material->density);
-    return model->own_units ? waves : fmax(HANDS, waves);
-}
-
-/* What lies in a plane of symmetry takes next to nothing from its corners: only tools that are
- * behind that plane meet it. */
-static const double CUT_SHARE = 1.0 / 64;
-
-static void add_face(const lar_model *model, const int32_t *local, const uint8_t *faces_at,
-                     int32_t face, bool cut, lar_tool_faces *faces) {
-    lar_tool_contact_face *f = &faces->face[faces->face_count++];
-    *f = (lar_tool_contact_face){.of = face};
-    for (int a = 0; a < 4; a++) {
-        int32_t node = model->surface.corner[face][a];
-        f->node[a] = local[node];
-        f->share[a] = cut ? CUT_SHARE : 1.0 / faces_at[node];
-        memcpy(f->rest[a], model->mesh.position[node], sizeof f->rest[a]);
-    }
-    for (int a = 0; a < 4; a++) {
-        double square = 0;
-        for (int i = 0; i < 3; i++) {
-            double d = f->rest[(a + 1) % 4][i] - f->rest[a][i];
-            square += d * d;
-        }
-        f->edge = fmax(f->edge, sqrt(square));
-    }
-    f->lets_go = lets_go(model, lar_model_material_of(model, model->surface.element[face]));
-}
-
-/* Corners of own faces that other threads move. */
-static void list_foreign(const lar_model *model, const int32_t *local,
-                         const lar_condition_share *share, uint8_t *marked, lar_tool_faces *faces) {
-    memset(marked, 0, (size_t)model->mesh.node_count);
-    for (int32_t f = 0; f < faces->face_count; f++)
-        for (int a = 0; a < 4; a++) {
-            int32_t node = model->surface.corner[faces->face[f].of][a];
-            if (share->holds[node] == share->thread || marked[node]) continue;
-            marked[node] = 1;
-            faces->foreign[faces->foreign_count++] = local[node];
-        }
-}
-
-static lar_status allocate_faces(const lar_model *model, int32_t count, lar_tool_faces *faces,
-                                 lar_error *error) {
-    faces->face = lar_calloc((size_t)count, sizeof *faces->face);
-    faces->foreign = lar_calloc((size_t)model->surface.node_count, sizeof *faces->foreign);
-    faces->face_of = lar_calloc((size_t)model->surface.face_count, sizeof *faces->face_of);
-    faces->weights = lar_calloc(1, sizeof *faces->weights);
-    if (faces->face && faces->foreign && faces->face_of && faces->weights) return LAR_OK;
-    return lar_fail_memory(error, (size_t)count * sizeof *faces->face, "the faces before tools");
-}
-
-LAR_SETUP lar_status lar_tool_faces_create(const lar_model *model, const int32_t *local,
-                                           const lar_condition_share *share, lar_tool_faces *faces,
-                                           lar_error *error) {
-    const lar_surface *surface = &model->surface;
-    int32_t count = 0;
-    *faces = (lar_tool_faces){0};
-    for (int32_t f = 0; f < surface->face_count; f++) count += mine(model, share, f);
-    uint8_t *marked = lar_calloc((size_t)model->mesh.node_count, sizeof *marked);
-    if (!marked) return lar_fail_memory(error, (size_t)model->mesh.node_count, "the surface");
-    lar_symmetry symmetry;
-    lar_status status = allocate_faces(model, count, faces, error);
-    if (!status) status = lar_symmetry_find(model, &symmetry, error);
-    if (!status) {
-        for (int32_t f = 0; f < surface->face_count; f++)
-            for (int a = 0; a < 4 && !lar_symmetry_cuts(&symmetry, model, f); a++)
-                marked[surface->corner[f][a]]++;
-        for (int32_t f = 0; f < surface->face_count; f++)
-            if (mine(model, share, f))
-                add_face(model, local, marked, f, lar_symmetry_cuts(&symmetry, model, f), faces);
-        for (int n = 2; n <= LAR_POINTS_ALONG_EDGE; n++)
-            lar_tool_contact_grid(n, &faces->weights->of[n]);
-        status = lar_tool_faces_group(faces, error);
-    }
-    if (!status) {
-        for (int32_t f = 0; f < surface->face_count; f++) faces->face_of[f] = -1;
-        for (int32_t f = 0; f < count; f++) faces->face_of[faces->face[f].of] = f;
-        if (share) list_foreign(model, local, share, marked, faces);
-    }
-    free(marked);
-    if (status) lar_tool_faces_destroy(faces);
-    return status;
-}
-
-void lar_tool_faces_destroy(lar_tool_faces *faces) {
-    free(faces->face);
-    free(faces->group);
-    free(faces->foreign);
-    free(faces->face_of);
-    free(faces->weights);
-    free(faces->rub);
-    free(faces->rub_at);
-    *faces = (lar_tool_faces){0};
-}
 
 static lar_status allocate(lar_tool_contact *contact, lar_error *error) {
     size_t count = (size_t)contact->faces->face_count, groups = (size_t)contact->faces->group_count;
@@ -293,27 +185,85 @@ static int64_t whole_units(double units) {
     return fabs(units) < 0x1p56 ? llrint(units) : 0;
 }
 
-static void touch_near(lar_tool_contact *contact, const lar_condition_context *context,
+/* Of a tool that is as hard as it is, on tissue and on free bodies. */
+typedef struct tool_laws {
+    lar_contact_law tissue, free;
+} tool_laws;
+
+/* The i-th near face before a tool; the rest of the patch is filled in when it is pushed. False: it
+ * is too far away for that. */
+static bool come_near(lar_tool_contact *contact, const lar_condition_context *context,
+                      const lar_state *state, int32_t tool, int32_t i,
+                      lar_tool_contact_patch *patch) {
+    lar_tool_vicinity *vicinity = &contact->vicinity[tool];
+    if (vicinity->path < vicinity->look[i] && !contact->always) return false;
+    patch->face = &contact->faces->face[vicinity->near[i]];
+    patch->body = &vicinity->body;
+    patch->radius = contact->list->tool[tool].radius;
+    patch->hard = 1;
+    patch->outside = contact->tools->motion[tool].outside;
+    patch->rate_of = 1 / context->time_step;
+    patch->touches = NULL;
+    double center[3];
+    lar_tool_contact_corners(patch->face, state, patch->x);
+    double size = lar_tool_contact_ball_of((const double(*)[3])patch->x, center);
+    double gap = lar_tool_contact_distance(&vicinity->body, patch->radius, center) - size;
+    contact->seen.tested++;
+    vicinity->look[i] = vicinity->path + lar_tool_contact_clear(gap, patch->radius);
+    if (gap > 0) return false;
+    for (int a = 0; a < 4; a++) lar_state_velocity(state, patch->face->node[a], patch->v[a]);
+    return true;
+}
+
+/* What a free body bears of a tool, in parts of springs that move all of it at once in a step,
+ * beside those that are fitted to its nodes: all tools half as much as these. And no more than is
+ * good for the tool. */
+static double bears_of(const lar_tool_contact *contact, int32_t tool, int32_t body,
+                       const lar_contact_law *law) {
+    static const double ALL = 0.5;
+    const lar_tool_list *list = contact->list;
+    int32_t count = 0;
+    for (int32_t t = 0; t < list->count; t++) count += lar_tool_touches(&list->tool[t]);
+    return lar_lesser(ALL / count,
+                      list->limits[tool].firm / (law->stiffness * contact->faces->heavy[body]));
+}
+
+/* Whoever sees all faces of free bodies sums up what the tool asks of them. */
+static void weigh_near(lar_tool_contact *contact, const lar_condition_context *context,
                        const lar_state *state, int32_t tool, const lar_contact_law *law) {
+    const lar_tool_vicinity *vicinity = &contact->vicinity[tool];
+    lar_bearing *bearing = &contact->bearing[tool];
+    *bearing = (lar_bearing){0};
+    for (int32_t i = 0; i < vicinity->near_count; i++) {
+        const int32_t body = contact->faces->face[vicinity->near[i]].body;
+        lar_tool_contact_patch patch;
+        if (body < 0 || !come_near(contact, context, state, tool, i, &patch)) continue;
+        lar_tool_contact_push_face(&patch, law, context->springs, contact->faces->weights);
+        bearing->asked[body] += lar_tool_contact_asked(&patch);
+        bearing->deep[body] = lar_greater(bearing->deep[body], patch.ahead);
+    }
+    for (int32_t body = 0; body < LAR_TOOLS_MAX; body++)
+        if (bearing->asked[body] > 0) bearing->asked[body] /= bears_of(contact, tool, body, law);
+}
+
+static void harden(const lar_tool_contact *contact, const lar_condition_context *context,
+                   int32_t tool, const lar_contact_law *law, lar_tool_contact_patch *patch) {
+    const lar_bearing *bearing = lar_tool_bearing(contact, tool);
+    lar_tool_contact_push_face(patch, law, context->springs, contact->faces->weights);
+    patch->hard = lar_tool_contact_hardness(patch, bearing->asked[patch->face->body]);
+}
+
+static void touch_near(lar_tool_contact *contact, const lar_condition_context *context,
+                       const lar_state *state, int32_t tool, const tool_laws *laws) {
     lar_tool_vicinity *vicinity = &contact->vicinity[tool];
     for (int32_t i = 0; i < vicinity->near_count; i++) {
-        if (vicinity->path < vicinity->look[i] && !contact->always) continue;
-        lar_tool_contact_patch patch; /* the rest is filled in */
-        patch.face = &contact->faces->face[vicinity->near[i]];
-        patch.body = &vicinity->body;
-        patch.radius = contact->list->tool[tool].radius;
-        patch.outside = contact->tools->motion[tool].outside;
-        patch.rate_of = 1 / context->time_step;
+        lar_tool_contact_patch patch;
+        if (!come_near(contact, context, state, tool, i, &patch)) continue;
+        const bool free = patch.face->body >= 0;
+        if (free) harden(contact, context, tool, &laws->free, &patch);
         patch.touches = touches_of(contact, tool);
-        double center[3];
-        lar_tool_contact_corners(patch.face, state, patch.x);
-        double size = lar_tool_contact_ball_of((const double(*)[3])patch.x, center);
-        double gap = lar_tool_contact_distance(&vicinity->body, patch.radius, center) - size;
-        contact->seen.tested++;
-        vicinity->look[i] = vicinity->path + lar_tool_contact_clear(gap, patch.radius);
-        if (gap > 0) continue;
-        for (int a = 0; a < 4; a++) lar_state_velocity(state, patch.face->node[a], patch.v[a]);
-        lar_tool_contact_push_face(&patch, law, context->springs, contact->faces->weights);
+        lar_tool_contact_push_face(&patch, free ? &laws->free : &laws->tissue, context->springs,
+                                   contact->faces->weights);
         vicinity->look[i] = vicinity->path + lar_tool_contact_clear(patch.closest, patch.radius);
         lar_tool_sum *sum = &contact->sum[tool];
         sum->behind |= patch.behind;
@@ -419,7 +369,7 @@ static double step_travel(const lar_tool_contact *contact, const lar_condition_c
 }
 
 static void apply_tool(lar_tool_contact *contact, const lar_condition_context *context,
-                       const lar_state *state, int32_t t, double travel, lar_contact_law law) {
+                       const lar_state *state, int32_t t, double travel, tool_laws laws) {
     const lar_tool *tool = &contact->list->tool[t];
     lar_tool_vicinity *vicinity = &contact->vicinity[t];
     int32_t serial = lar_spare_serial(contact->list, contact->tools, t);
@@ -431,8 +381,10 @@ static void apply_tool(lar_tool_contact *contact, const lar_condition_context *c
         lar_tool_contact_search(
             contact, t, state,
             travel + lar_tool_way(vicinity->body.now, vicinity->body.next, vicinity->body.count));
-    law.stiffness *= contact->tools->hardness[t];
-    touch_near(contact, context, state, t, &law);
+    laws.tissue.stiffness *= contact->tools->hardness[t];
+    laws.free.stiffness *= contact->tools->hardness[t];
+    if (contact->faces->weighs) weigh_near(contact, context, state, t, &laws.free);
+    touch_near(contact, context, state, t, &laws);
     contact->seen.possible += (uint64_t)contact->faces->face_count;
 }
 
@@ -461,8 +413,10 @@ void lar_tool_contact_apply(lar_tool_contact *contact, const lar_condition_conte
     clear_loaded(contact);
     if (contact->faces->face_count == 0) return;
     lar_contact_law law = lar_contact_law_for(context->whole_step, context->stable_step);
-    lar_contact_law tool_law = lar_contact_tool_law_for(context->whole_step, context->stable_step);
-    tool_law.lead *= context->time_step / context->whole_step;
+    tool_laws laws = {lar_contact_tool_law_for(context->whole_step, context->stable_step),
+                      lar_contact_free_law_for(context->whole_step)};
+    laws.tissue.lead *= context->time_step / context->whole_step;
+    laws.free.lead *= context->time_step / context->whole_step;
     double travel = step_travel(contact, context, state);
     bool known = isfinite(travel);
     if (!known) lar_tool_contact_forget(contact);
@@ -471,7 +425,7 @@ void lar_tool_contact_apply(lar_tool_contact *contact, const lar_condition_conte
     for (int32_t t = 0; t < contact->list->count; t++) {
         contact->sum[t].touching = contact->sum[t].held = 0;
         if (lar_tool_touches(&contact->list->tool[t]))
-            apply_tool(contact, context, state, t, known ? travel : 0, tool_law);
+            apply_tool(contact, context, state, t, known ? travel : 0, laws);
     }
     apply_grasps(contact, context, state, &law);
     add_forces(contact, state);

@@ -55,6 +55,9 @@ typedef struct lar_tool_contact_face {
     double rest[4][3]; /* positions at rest [m] */
     double edge;       /* the longest at rest [m] */
     double lets_go;    /* what leaves a tool faster is pushed with less [m/s] */
+    double wall;       /* where the wall begins, in radii of the tool (tool_contact_face.h) */
+    int32_t body;      /* the tool that moves a free body whose face it is, or -1; then also */
+    double yields[4];  /* how a push at a corner, along the normal, moves the body there [1/kg] */
 } lar_tool_contact_face;
 
 /* Weights of the corners in the points of a face, n x n of them (lar_tool_contact_points). */
@@ -73,6 +76,7 @@ typedef struct lar_tool_rub_node {
     double rest[3]; /* [m] */
     int32_t node;   /* of the model */
     int32_t grip;   /* of a free body: its place in the history (history/tool_grip.h); else -1 */
+    int32_t body;   /* then: the tool that moves it */
     uint8_t held;   /* LAR_AXIS bits of the axes that its supports hold */
 } lar_tool_rub_node;
 
@@ -85,7 +89,9 @@ typedef struct lar_tool_faces {
     int32_t *foreign;              /* [foreign_count] local nodes: corners that others move */
     lar_point_weights *weights;    /* NULL: no faces */
     int32_t rub_count, local_count;
-    bool grips;             /* whether one of them is a free body's */
+    bool grips;                  /* whether one of them is a free body's */
+    bool weighs;                 /* all that is of free bodies is among them, and something is */
+    double heavy[LAR_TOOLS_MAX]; /* then: the masses of the bodies, by the tools that move them */
     lar_tool_rub_node *rub; /* [rub_count] moved by the thread; NULL: no tool has friction. Of all
                                nodes of the processor there are `local_count` */
     int32_t *rub_at;        /* [local_count] index into `rub`; -1: none */
@@ -149,16 +155,25 @@ typedef struct lar_tool_contact {
     int32_t rubbed_count;
     lar_tool_rubbed *rubbed; /* [rubbed_count] of [faces->rub_count] */
     lar_tool_vicinity vicinity[LAR_TOOLS_MAX];
+    lar_bearing bearing[LAR_TOOLS_MAX]; /* where `faces->weighs`, in the step under way */
     lar_touch_list *touches; /* who looks wants to know where a tool touches; NULL in steps */
     double travel;           /* how far any corner can have gone, begun anew now and then [m] */
     uint64_t moved;          /* the step that the thread's nodes were last moved to */
 } lar_tool_contact;
+
+/* In the step under way. */
+static inline const lar_bearing *lar_tool_bearing(const lar_tool_contact *contact, int32_t tool) {
+    return contact->faces->weighs ? &contact->bearing[tool] : &contact->tools->bearing[tool];
+}
 
 /* Of the whole model, or with a share (NULL: all) of one thread. */
 lar_status lar_tool_faces_create(const lar_model *model, const int32_t *local,
                                  const lar_condition_share *share, lar_tool_faces *faces,
                                  lar_error *error);
 void lar_tool_faces_destroy(lar_tool_faces *faces); /* idempotent */
+
+/* What has been found out of free bodies' faces, of all, told to those of a thread. */
+void lar_tool_faces_yield_as(const lar_tool_faces *whole, lar_tool_faces *faces);
 
 /* What it is given outlives it; `list` and `tools` may be NULL. Knows nothing yet. */
 lar_status lar_tool_contact_create(const lar_tool_faces *faces, const lar_planes *planes,

@@ -38,9 +38,6 @@ double lar_grasp_stiffness_limit(const lar_tool_contact_face *face, double radiu
            lar_tool_contact_point_mass(face, mass, lar_tool_contact_points(face, radius));
 }
 
-/* Where the wall begins, in radii of the tool. */
-static const double WALL = 0.2;
-
 /* The triangle that a point of the face is in: its first corner. */
 static int triangle_at(const double weight[4]) {
     int a = 0;
@@ -123,6 +120,7 @@ static double push_point(lar_tool_contact_patch *patch, const lar_contact_law *l
         rate += normal[i] * ((begin + along * (end - begin)) * patch->rate_of - v[i]);
     }
     double force = not_thrown(patch->face, rate) * lar_contact_force(law, mass, depth, rate);
+    patch->ahead = lar_greater(patch->ahead, depth + law->lead * rate);
     const double n[3] = {normal[0], normal[1], normal[2]};
     double share[4];
     for (int a = 0; a < 4; a++) share[a] = weight[a] * force;
@@ -137,6 +135,14 @@ static double push_point(lar_tool_contact_patch *patch, const lar_contact_law *l
     return force;
 }
 
+/* A point with springs fitted to a mass is so deep. */
+static void note_spring(lar_tool_contact_patch *patch, const double weight[4], double mass,
+                        double depth) {
+    const double *yields = patch->face->yields;
+    patch->deep = lar_greater(patch->deep, depth);
+    for (int a = 0; a < 4; a++) patch->moves += mass * weight[a] * yields[a];
+}
+
 /* A point of the grid that is in segment s or close to it. */
 static void touch_point(lar_tool_contact_patch *patch, const lar_contact_law *law, int32_t s,
                         const lar_face_grid *grid, const lar_face_near *near, int p) {
@@ -147,8 +153,9 @@ static void touch_point(lar_tool_contact_patch *patch, const lar_contact_law *la
     for (int a = 0; a < 4; a++) weight[a] = grid->weight[a][p];
     double share = facing(patch, normal, -1, weight);
     if (share == 0) return;
+    if (patch->face->body >= 0) note_spring(patch, weight, patch->mass, depth);
     patch->depth = lar_greater(patch->depth, share * depth);
-    patch->covered += lar_lesser(1, depth / (WALL * patch->radius));
+    patch->covered += lar_lesser(1, depth / (patch->face->wall * patch->radius));
     double force =
         push_point(patch, law, s, near->along[p], weight, normal, share * patch->mass, depth);
     if (patch->touches) note_point(patch, s, weight, normal, force, share * depth);
@@ -210,7 +217,7 @@ static double touch_wall(lar_tool_contact_patch *patch, const lar_contact_law *l
                          const double *mass, int32_t s, double free_share) {
     lar_face_segment closest[4];
     wall_part parts[4];
-    const double reach = (1 - WALL) * patch->radius;
+    const double wall = patch->face->wall * patch->radius, reach = patch->radius - wall;
     double all = 0;
     double min = lar_face_segment_closest(&patch->body->now[s], (const double(*)[3])patch->x, reach,
                                           closest);
@@ -224,10 +231,12 @@ static double touch_wall(lar_tool_contact_patch *patch, const lar_contact_law *l
         const double depth = patch->radius - at->distance;
         if (!(part->count > 0)) continue;
         patch->depth = lar_greater(patch->depth, part->share * depth);
+        const double bears = patch->hard * wall_mass(patch->face, mass, at->weight);
         double share = free_share * part->share * part->count / all;
-        double force = push_point(patch, law, s, at->along, at->weight, at->normal,
-                                  share * wall_mass(patch->face, mass, at->weight),
-                                  depth - WALL * patch->radius);
+        if (patch->face->body >= 0)
+            note_spring(patch, at->weight, free_share * part->count / all * bears, depth);
+        double force = push_point(patch, law, s, at->along, at->weight, at->normal, share * bears,
+                                  depth - wall);
         if (patch->touches)
             note_point(patch, s, at->weight, at->normal, force, part->share * depth);
     }
@@ -255,7 +264,7 @@ static double touch_walls(lar_tool_contact_patch *patch, const lar_contact_law *
     double free_share = 1 - patch->covered / (n * n), between = spacing(patch, n), gap = INFINITY;
     for (int32_t s = 0; s < patch->body->count; s++) {
         double distance = sqrt(patch->min[s]) - patch->radius;
-        double own = distance - between + WALL * patch->radius;
+        double own = distance - between + patch->face->wall * patch->radius;
         if (own < 0)
             own = free_share > 0 ? touch_wall(patch, law, mass, s, free_share) : -patch->radius;
         gap = lar_lesser(gap, own);
@@ -269,9 +278,10 @@ void lar_tool_contact_push_face(lar_tool_contact_patch *patch, const lar_contact
                                 const double *mass, const lar_point_weights *weights) {
     const lar_tool_contact_face *face = patch->face;
     int n = lar_tool_contact_points(face, patch->radius);
-    patch->mass = lar_tool_contact_point_mass(face, mass, n);
+    patch->mass = patch->hard * lar_tool_contact_point_mass(face, mass, n);
     patch->covered = patch->depth = patch->squeeze = patch->jaw[0] = patch->jaw[1] = 0;
     patch->touching = patch->behind = 0;
+    patch->deep = patch->ahead = patch->moves = 0;
     memset(patch->force, 0, sizeof patch->force);
     lar_face_normal((const double(*)[3])patch->x, patch->out);
     double size = lar_length(patch->out);
@@ -280,4 +290,13 @@ void lar_tool_contact_push_face(lar_tool_contact_patch *patch, const lar_contact
     patch->closest = touch_walls(patch, law, mass, n);
     for (int32_t s = 0; s < patch->body->count; s++)
         patch->closest = lar_lesser(patch->closest, sqrt(patch->min[s]) - patch->radius);
+}
+
+double lar_tool_contact_asked(const lar_tool_contact_patch *patch) {
+    return patch->moves * patch->deep * patch->deep;
+}
+
+double lar_tool_contact_hardness(const lar_tool_contact_patch *patch, double asked) {
+    const double square = patch->deep * patch->deep;
+    return asked > 0 && square > asked ? square / asked : 1;
 }

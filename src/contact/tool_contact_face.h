@@ -25,6 +25,11 @@ typedef struct lar_tool_contact_patch { /* one face before one tool */
     double closest;     /* distance of the closest point [m] */
     double covered;     /* how many of the points are as deep in the tool as the wall */
     double depth;       /* the deepest point [m] */
+    double hard;        /* of a free body's face: how many times as stiff it is; else 1 */
+    double deep;        /* as `depth`, whether or not the point is let go [m] */
+    double ahead;       /* the deepest, a lead on, as springs push [m] */
+    double moves;       /* how springs of unit stiffness per mass would move the body that they
+                           push: the sum of their masses times face->yields */
     double squeeze;     /* of the jaws, as a force at their ends [N] */
     double jaw[2];      /* on each jaw, outwards [N] */
     int32_t touching;
@@ -40,6 +45,16 @@ double lar_tool_contact_point_mass(const lar_tool_contact_face *face, const doub
 /* The stiffness of a hold of a point of the face that the step bears [N/m]. */
 double lar_grasp_stiffness_limit(const lar_tool_contact_face *face, double radius,
                                  const lar_contact_law *law, const double *mass);
+
+/* How hard a tool is for a free body. Springs fitted to the nodes' masses are soft beside all that
+ * is behind them (step/rigid/firm.h). What the body bears of a tool, springs of `bears` times its
+ * own inertia, is shared out among the faces f that it touches by how deep they are,
+ *
+ *     moves_f hard_f = moves_f d_f^2 / asked,      asked = sum over f of moves_f d_f^2 / bears,
+ *
+ * so that no force jumps where the tool comes to another face. Of a patch whose `hard` is 1. */
+double lar_tool_contact_asked(const lar_tool_contact_patch *patch);
+double lar_tool_contact_hardness(const lar_tool_contact_patch *patch, double asked);
 
 /* Fills in the forces on the corners of a face [N] whose places `x` and velocities `v` are known,
  * and what the tool has of them. `weights`: of the points (lar_tool_contact.weights). */

@@ -25,23 +25,22 @@ LAR_SETUP static void find_nodes(const lar_model *model, const int32_t *local,
     }
 }
 
-/* Which of them are free bodies'. */
-LAR_SETUP static lar_status find_grips(const lar_model *model, const int32_t *local,
-                                       lar_tool_faces *faces, lar_error *error) {
-    const int32_t count = lar_grips_list(model, NULL);
-    int32_t *node = count > 0 ? lar_calloc((size_t)count, sizeof *node) : NULL;
-    if (count == 0) return LAR_OK;
-    if (!node)
-        return lar_fail_memory(error, (size_t)count * sizeof *node, "the nodes before tools");
-    lar_grips_list(model, node);
-    for (int32_t i = 0; i < count; i++) {
-        const int32_t n = local[node[i]], at = n < 0 ? -1 : faces->rub_at[n];
-        if (at < 0) continue;
-        faces->rub[at].grip = i;
-        faces->grips = true;
+/* Which of them are free bodies', in the order of lar_grips_list. */
+LAR_SETUP static void find_grips(const lar_model *model, const int32_t *local,
+                                 lar_tool_faces *faces) {
+    int32_t grip = 0;
+    if (lar_grips_list(model, NULL) == 0) return;
+    for (int m = 0; m < model->move_count; m++) {
+        const lar_move *move = &model->move[m];
+        if (!move->tool || !model->tool[move->tool - 1].free) continue;
+        for (int32_t k = 0; k < move->nodes.count; k++, grip++) {
+            const int32_t n = local[move->nodes.node[k]], at = n < 0 ? -1 : faces->rub_at[n];
+            if (at < 0) continue;
+            faces->rub[at].grip = grip;
+            faces->rub[at].body = move->tool - 1;
+            faces->grips = true;
+        }
     }
-    free(node);
-    return LAR_OK;
 }
 
 LAR_SETUP lar_status lar_tool_friction_list(const lar_model *model, const int32_t *local,
@@ -71,7 +70,7 @@ LAR_SETUP lar_status lar_tool_friction_list(const lar_model *model, const int32_
         int32_t at = faces->rub_at[constraint->node];
         if (at >= 0) faces->rub[at].held |= (uint8_t)(LAR_AXIS_X << constraint->axis);
     }
-    if (!status) status = find_grips(model, local, faces, error);
+    if (!status) find_grips(model, local, faces);
     free(node);
     return status;
 }
@@ -305,24 +304,36 @@ static inline rough_tool *take_up(const lar_tool_contact *contact,
     return tool;
 }
 
+/* Of the spring that a node hangs on, pressed along its normal with so much [N/m]. */
+static double stiffness_of(const lar_tool_contact *contact, const lar_condition_context *context,
+                           int32_t tool, int32_t node, const double press[3],
+                           const lar_contact_law *law) {
+    const int32_t body = contact->faces->rub[contact->faces->rub_at[node]].body;
+    const double own = context->tools->hardness[tool] * law->stiffness * context->springs[node];
+    const double deep =
+        contact->list->tool[tool].friction * lar_tool_bearing(contact, tool)->deep[body];
+    return deep > 0 ? lar_greater(own, lar_length(press) / deep) : own;
+}
+
 /* What the node remembers pulls in lane t in place of what it would need. */
-__attribute__((noinline, cold)) static void hang_on(const lar_condition_context *context,
+__attribute__((noinline, cold)) static void hang_on(const lar_tool_contact *contact,
+                                                    const lar_condition_context *context,
                                                     const lar_state *state, const rough_tool *tool,
                                                     const double tip[3], lar_tool_rubbed *rubbed,
                                                     lar_tool_rubs *rubs, int32_t t) {
-    lar_contact_law law = lar_contact_tool_law_for(context->whole_step, context->stable_step);
-    lar_grip grip = {.tool = tool->tool, .mass = context->springs[rubbed->node]};
+    const lar_contact_law law = lar_contact_free_law_for(context->whole_step);
+    const double dt = context->time_step;
+    lar_grip grip = {.tool = tool->tool};
     double pull[3], force[3][4] = {{0}}, x[4][3] = {{0}};
     lar_tool_pushes pushes;
-    law.lead *= context->time_step / context->whole_step;
-    law.stiffness *= context->tools->hardness[tool->tool];
     for (int i = 0; i < 3; i++) {
         grip.press[i] = rubs->press[i][t] / context->scale;
         grip.slide[i] = rubs->v[i][t] - rubs->velocity[i][t];
         x[0][i] = tip[i] + rubs->arm[i][t];
     }
-    lar_tool_grip_pull(&grip, &law, context->time_step, lar_grip_of(state, rubbed->grip),
-                       rubbed->stick, pull);
+    grip.stiffness = stiffness_of(contact, context, tool->tool, rubbed->node, grip.press, &law);
+    lar_tool_grip_pull(&grip, law.lead * dt / context->whole_step, dt,
+                       lar_grip_of(state, rubbed->grip), rubbed->stick, pull);
     for (int i = 0; i < 3; i++) force[i][0] = pull[i];
     lar_tool_push_lanes(context->scale, (const double(*)[4])force, (const double(*)[3])x, tip,
                         &pushes);
@@ -337,7 +348,8 @@ __attribute__((noinline, cold)) static void hang_on(const lar_condition_context 
 static inline void hand_over(const lar_tool_contact *contact, const lar_condition_context *context,
                              lar_tool_rubbed *rubbed, rough_tool *tool, lar_tool_rubs *rubs,
                              int32_t t, lar_state *state) {
-    if (rubbed->grip >= 0) hang_on(context, state, tool, tool->now.position, rubbed, rubs, t);
+    if (rubbed->grip >= 0)
+        hang_on(contact, context, state, tool, tool->now.position, rubbed, rubs, t);
 #pragma GCC unroll 3
     for (int i = 0; i < 3; i++) {
         rubbed->force[i] = (int64_t)rubs->friction.force[i][t];

@@ -180,6 +180,12 @@ typedef struct lar_spare_tool {
     lar_tool_pose rest;
 } lar_spare_tool;
 
+/* What a tool asks of the free bodies that it touches, by the tool that moves them. */
+typedef struct lar_bearing {
+    double asked[LAR_TOOLS_MAX]; /* as a part of what there is [m^2] */
+    double deep[LAR_TOOLS_MAX];  /* the deepest of its springs, as they push [m] */
+} lar_bearing;
+
 typedef struct lar_tools {
     int32_t count, grasp_count;
     lar_step_division division;
@@ -191,6 +197,8 @@ typedef struct lar_tools {
     lar_spare_tool spare[LAR_SPARES_MAX];
     lar_tool_motion motion[LAR_TOOLS_MAX]; /* where tools really go */
     double hardness[LAR_TOOLS_MAX];        /* how many times as stiff as at rest they are */
+    lar_bearing bearing[LAR_TOOLS_MAX]; /* of the step that comes, for threads that do not see all
+                                           that a tool touches (contact/tool_bearing.h) */
     lar_grasp grasps[LAR_GRASPS_MAX];
     lar_tool_follower follower[LAR_TOOLS_MAX]; /* of processor zero only, */
     lar_heavy_list strained;                   /* as this, */
@@ -207,6 +215,8 @@ typedef struct lar_tool_limits {
     double pinch;       /* the same where elements are crushed [N] */
     double travel;      /* of a jaw's end from open to closed [m] */
     double drag;        /* of a tool on its own way [N s/m] */
+    double firm;        /* how hard it is at most for free bodies [N/m]; 0: there are none */
+    double firm_drag;   /* its drag beside these is no less [N s/m] */
 } lar_tool_limits;
 
 enum { LAR_HANDS_MAX = 4 };

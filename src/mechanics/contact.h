@@ -35,6 +35,11 @@ lar_contact_law lar_contact_law_for(double time_step, double stable_step);
  * bodies need as well: where a tool is, no other body is. */
 lar_contact_law lar_contact_tool_law_for(double time_step, double stable_step);
 
+/* The same on free bodies, whose elements do not strain and take nothing of a step. */
+static inline lar_contact_law lar_contact_free_law_for(double time_step) {
+    return lar_contact_tool_law_for(time_step, INFINITY);
+}
+
 /* How stiff springs should be beside tissue, per mass and stable step of its own elements; they are
  * in series with its layers. `confined`: lar_material_confined, by which the stable step knows
  * tissue as stiffer than it is when it is pressed. */

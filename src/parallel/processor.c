@@ -214,6 +214,8 @@ static lar_status create_worker(const lar_schedule *schedule, const lar_processo
         status = lar_surroundings_add_contact(setting->whole->model, layout->local, &share,
                                               contact->list, &worker->surroundings, error);
     if (!status)
+        lar_tool_faces_yield_as(&setting->whole->surroundings.faces, &worker->surroundings.faces);
+    if (!status)
         status = lar_interactions_create(&worker->surroundings, contact->tools, contact->always,
                                          &worker->interactions, error);
     return status;

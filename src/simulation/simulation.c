@@ -13,6 +13,7 @@
 #include "step/domain_share.h"
 #include "step/mass/heavier.h"
 #include "step/rigid/firm.h"
+#include "step/rigid/free_body.h"
 #include "step/viscous_history.h"
 #include "step/measure.h"
 
@@ -79,7 +80,8 @@ static void set_tool_limits(const lar_domain *domain, lar_tool_list *list) {
     lar_contact_law law = lar_contact_tool_law_for(domain->time_step, domain->stable_step);
     lar_tissue_scale scale = {.shear = INFINITY,
                               .interval =
-                                  (double)lar_tool_interval(domain->time_step) * domain->time_step};
+                                  (double)lar_tool_interval(domain->time_step) * domain->time_step,
+                              .firm = lar_free_bodies_any(model)};
     double edges = 0, mass = 0;
     for (int32_t f = 0; f < surface->face_count; f++) {
         scale.shear =
@@ -167,6 +169,7 @@ static lar_status compile(const lar_model *model, const lar_options *options,
         status = lar_surroundings_add_bodies(model, domain->mass, domain->layout.local,
                                              domain->time_step, domain->stable_step,
                                              &domain->surroundings, error);
+    if (!status) status = lar_free_bodies_yield(domain, &domain->surroundings.faces, error);
     if (!status) lar_free_bodies_firm(domain, &domain->surroundings.bodies.surface);
     if (!status) lar_history_plan_nodes(domain, &domain->surroundings.bodies.surface);
     if (!status) status = check_damping(domain, error);

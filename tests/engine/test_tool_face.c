@@ -17,7 +17,8 @@ typedef struct lone_face {
 } lone_face;
 
 static void make(const double corner[4][3], lone_face *f) {
-    *f = (lone_face){.face = {.node = {0, 1, 2, 3}, .edge = 0.02}, .body = {.count = 1}};
+    *f = (lone_face){.face = {.node = {0, 1, 2, 3}, .edge = 0.02, .wall = 0.2, .body = -1},
+                     .body = {.count = 1}};
     for (int a = 0; a < 4; a++) {
         f->face.share[a] = 1;
         f->mass[a] = 1e-3;
@@ -30,8 +31,12 @@ static void make(const double corner[4][3], lone_face *f) {
 static double pushed(lone_face *f, const double tip[3], const double end[3],
                      const double direction[3]) {
     const lar_contact_law law = {.stiffness = 1e6};
-    lar_tool_contact_patch patch = {
-        .face = &f->face, .body = &f->body, .radius = RADIUS, .rate_of = 1e4, .closest = INFINITY};
+    lar_tool_contact_patch patch = {.face = &f->face,
+                                    .body = &f->body,
+                                    .radius = RADIUS,
+                                    .rate_of = 1e4,
+                                    .hard = 1,
+                                    .closest = INFINITY};
     memcpy(f->body.now[0].end[0], tip, sizeof f->body.now[0].end[0]);
     memcpy(f->body.now[0].end[1], end, sizeof f->body.now[0].end[1]);
     f->body.next[0] = f->body.now[0];

@@ -23,10 +23,10 @@ static void across(const double v[3], const double way[3], double out[3]) {
     for (int i = 0; i < 3; i++) out[i] = v[i] - way[i] * through;
 }
 
-void lar_tool_grip_pull(const lar_grip *grip, const lar_contact_law *law, double dt,
+void lar_tool_grip_pull(const lar_grip *grip, double lead, double dt,
                         const double had[LAR_STICK_VALUES], double next[LAR_STICK_VALUES],
                         double force[3]) {
-    const double stiffness = law->stiffness * grip->mass, most = lar_length(grip->press);
+    const double stiffness = grip->stiffness, most = lar_length(grip->press);
     double way[3], slip[3] = {0}, moved[3], pull[3];
     for (int i = 0; i < 3; i++) way[i] = grip->press[i] / most;
     across(grip->slide, way, moved);
@@ -34,7 +34,7 @@ void lar_tool_grip_pull(const lar_grip *grip, const lar_contact_law *law, double
         across(had, way, slip);
         for (int i = 0; i < 3; i++) slip[i] += dt * moved[i];
     }
-    for (int i = 0; i < 3; i++) pull[i] = stiffness * (slip[i] + law->lead * moved[i]);
+    for (int i = 0; i < 3; i++) pull[i] = stiffness * (slip[i] + lead * moved[i]);
     const double wanted = lar_length(pull), held = stiffness * lar_length(slip);
     for (int i = 0; i < 3; i++) {
         force[i] = -(wanted > most ? most / wanted : 1) * pull[i];

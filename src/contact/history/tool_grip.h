@@ -9,9 +9,9 @@
  * that of the nodes that are held. So it hangs on a spring, as where bodies rub on each other
  * (body_friction.h), never stronger than the cone: what sticks does not creep.
  *
- * The springs are as stiff as those that push the node off the tool. As they are fitted to the
- * nodes' masses, which are parts of the body's, and whose moments are parts of its inertia, the body
- * bears all of them at once.
+ * The springs are as stiff as those that push the node off the tool, which the body bears all at
+ * once: pressed with F by a tool that is d deep in the body, F / d, or what the node's mass bears
+ * if that is more.
  *
  * Four numbers for each node of a free body, the first of a state's history:
  *
@@ -35,14 +35,14 @@ static inline double *lar_grip_of(const lar_state *state, int32_t grip) {
 /* A node that a tool presses. */
 typedef struct lar_grip {
     int32_t tool;
-    double mass;     /* that its spring is fitted to [kg] */
-    double press[3]; /* along the normal, as long as friction may be strong [N] */
-    double slide[3]; /* its velocity against the tool [m/s] */
+    double stiffness; /* of its spring [N/m] */
+    double press[3];  /* along the normal, as long as friction may be strong [N] */
+    double slide[3];  /* its velocity against the tool [m/s] */
 } lar_grip;
 
 /* The force on the node [N], and what it remembers next: it `had` that. `dt`: of the step or part
- * under way [s]. */
-void lar_tool_grip_pull(const lar_grip *grip, const lar_contact_law *law, double dt,
+ * under way [s]; `lead` [s]: how much sooner it pulls (mechanics/contact.h). */
+void lar_tool_grip_pull(const lar_grip *grip, double lead, double dt,
                         const double had[LAR_STICK_VALUES], double next[LAR_STICK_VALUES],
                         double force[3]);
 

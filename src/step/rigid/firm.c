@@ -1,12 +1,13 @@
 #include "step/rigid/firm.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/vector.h"
 #include "contact/contact_surface.h"
 #include "mechanics/contact.h"
-#include "step/rigid/inertia.h"
+#include "step/rigid/free_body.h"
 
 enum { MOTIONS = 6 };
 
@@ -145,6 +146,63 @@ static void bind_points(lar_contact_surface *s) {
             bound = s->node[point->node[i]].bound < bound ? s->node[point->node[i]].bound : bound;
         s->node[n].bound = bound;
     }
+}
+
+/* Of a unit push at a corner. */
+static double yield_at(const lar_rigid_sum *body, const lar_tool *tool, const double yields[6],
+                       const double place[3], const double normal[3]) {
+    double r[3], turn[3], turned[3], yield = 0;
+    lar_minus(place, body->centre, r);
+    lar_cross(r, normal, turn);
+    lar_symmetric_product(yields, turn, turned);
+    for (int i = 0; i < 3; i++)
+        if (tool->free >> i & 1) yield += normal[i] * normal[i] / body->mass;
+    return yield + lar_dot(turn, turned);
+}
+
+/* A tool begins to push where it touches, with the closest point of the face: rigid bodies do not
+ * take the shape of what presses on them. */
+static void make_firm(const lar_rigid_sum *body, const lar_tool *tool, int32_t index,
+                      lar_tool_contact_face *face) {
+    static const double WALL = 0.002;
+    double yields[6], normal[3];
+    lar_rigid_sum_yields(body, tool, yields);
+    lar_face_normal((const double(*)[3])face->rest, normal);
+    const double area = lar_length(normal);
+    if (!(area > 0)) return;
+    for (int i = 0; i < 3; i++) normal[i] /= area;
+    face->wall = WALL;
+    face->body = index;
+    for (int a = 0; a < 4; a++)
+        face->yields[a] = yield_at(body, tool, yields, face->rest[a], normal);
+}
+
+lar_status lar_free_bodies_yield(const lar_domain *domain, lar_tool_faces *faces,
+                                 lar_error *error) {
+    const lar_model *model = domain->model;
+    const size_t nodes = (size_t)model->mesh.node_count;
+    if (faces->face_count == 0 || !lar_free_bodies_any(model)) return LAR_OK;
+    uint8_t *of = lar_calloc(nodes, sizeof *of); /* the tool that moves a node, and one */
+    if (!of) return lar_fail_memory(error, nodes, "free bodies");
+    for (int m = 0; m < model->move_count; m++) {
+        const lar_move *move = &model->move[m];
+        const int32_t index = move->tool - 1;
+        lar_rigid_sum body;
+        if (!move->tool || !model->tool[index].free) continue;
+        sum_at_rest(domain, move, &model->tool[index], &body);
+        faces->heavy[index] = body.mass;
+        for (int32_t k = 0; k < move->nodes.count; k++)
+            of[move->nodes.node[k]] = (uint8_t)move->tool;
+        for (int32_t f = 0; f < faces->face_count; f++) {
+            const int32_t *corner = model->surface.corner[faces->face[f].of];
+            bool all = true;
+            for (int a = 0; a < 4; a++) all = all && of[corner[a]] == move->tool;
+            if (all) make_firm(&body, &model->tool[index], index, &faces->face[f]);
+            faces->weighs = faces->weighs || all;
+        }
+    }
+    free(of);
+    return LAR_OK;
 }
 
 void lar_free_bodies_firm(const lar_domain *domain, lar_contact_surface *s) {

@@ -17,6 +17,10 @@
 
 #include "step/domain.h"
 
+/* Tells the faces before tools which of them are free bodies', and how these yield there: of a unit
+ * push along the normal g^T M^-1 g. Once. */
+lar_status lar_free_bodies_yield(const lar_domain *domain, lar_tool_faces *faces, lar_error *error);
+
 /* Fits the masses of free bodies' contact nodes, and of points of edges. Once, behind
  * lar_contact_surface_fit. */
 void lar_free_bodies_firm(const lar_domain *domain, lar_contact_surface *surface);
