@@ -1,5 +1,5 @@
-/* Friction of tools on free bodies: what is held does not creep, what slides has Coulomb's force,
- * and the bits are the same everywhere. */
+/* Tools on free bodies: what is touched is felt, what is held does not creep, what slides has
+ * Coulomb's force, and the bits are the same everywhere. */
 #include "engine/engine_test.h"
 
 #include "engine/body_contact_test.h"
@@ -91,6 +91,42 @@ static void what_slides_has_coulombs_force(void **unused) {
     finish(s, model);
 }
 
+/* Balls of 4 mm press a stone of n^3 elements from both sides, at a height: what one feels [N]. */
+static double press_balls(int n, double height, double depth) {
+    const brick b = {{n, n, n}, 0.02 / n, 0, LAR_LAW_neo_hookean, 2e4, 2e5, 2000};
+    lar_model *model = empty_model(&b);
+    add_brick(model, &b, (double[]){-half, -half, -half});
+    for (int i = 0; i < RODS; i++) {
+        const double x = (i ? 1 : -1) * (half + radius + outside);
+        add_tool(model, i ? "right" : "left", LAR_TOOL_SPHERE, x, height, height);
+        model->tool[i].radius = radius;
+    }
+    bind_nodes(model, 0, (n + 1) * (n + 1) * (n + 1));
+    lar_options options = lar_options_default();
+    options.time_step = 1e-4;
+    lar_simulation *s = start_with(model, options);
+    for (int i = 0; i < RODS; i++)
+        place_tool(s, i, (i ? 1 : -1) * (half + radius - depth), height, height, 1, 200);
+    advance(s, 600);
+    lar_tool_force felt;
+    assert_int_equal(lar_simulation_tool_force(s, 1, &felt, NULL), LAR_OK);
+    finish(s, model);
+    return felt.force[0];
+}
+
+/* A ball that is small beside a face is felt as soon as it touches, wherever on it, and as hard on
+ * a coarse stone as on a fine one: what it moves is all of it. */
+static void what_is_touched_is_felt(void **unused) {
+    (void)unused;
+    const double like = press_balls(4, 0, 5e-5);
+    for (int n = 2; n <= 8; n *= 2)
+        for (int k = 0; k < 3; k++) {
+            const double force = press_balls(n, 0.00125 * k, 5e-5);
+            print_message("%d^3 elements, %.2f mm beside the middle: %.3f N\n", n, 1.25 * k, force);
+            assert_true(force > 0.3 * like && force < 3 * like);
+        }
+}
+
 static uint64_t hash_with(lar_options options, bool saves) {
     lar_model *model = held_stone(0.5);
     lar_simulation *s = start_with(model, options);
@@ -125,6 +161,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_is_held_does_not_creep),
         cmocka_unit_test(what_slides_has_coulombs_force),
+        cmocka_unit_test(what_is_touched_is_felt),
         cmocka_unit_test(bits_are_the_same_everywhere),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
