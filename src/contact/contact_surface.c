@@ -182,6 +182,21 @@ static lar_status list_faces(workspace *d, lar_error *error) {
     return LAR_OK;
 }
 
+/* Bodies of a contact with a distance keep no more. */
+static void take_distances(const workspace *d) {
+    for (int i = 0; i < d->model->contact_count; i++) {
+        const lar_contact *contact = &d->model->contact[i];
+        for (int32_t k = 0; k < contact->face_count + contact->against_count; k++) {
+            const int32_t of = k < contact->face_count ? contact->face[k]
+                                                       : contact->against[k - contact->face_count];
+            const int32_t face = d->face_of[lar_surface_find(&d->model->surface, of)];
+            if (!(contact->distance > 0) || face < 0) continue;
+            double *clear = &d->surface->body[d->surface->face[face].body].clear;
+            *clear = fmin(*clear, contact->distance);
+        }
+    }
+}
+
 /* Bodies count from 0, in the order of their first nodes. */
 static lar_status number_bodies(workspace *d, lar_error *error) {
     lar_contact_surface *s = d->surface;
@@ -204,6 +219,7 @@ static lar_status number_bodies(workspace *d, lar_error *error) {
         body->reach[0] = fmin(body->reach[0], 0.5 * deep);
         body->reach[1] = fmin(body->reach[1], deep);
     }
+    take_distances(d);
     s->reach = INFINITY;
     for (int32_t b = 0; b < s->body_count; b++) {
         s->reach = fmin(s->reach, s->body[b].reach[0]);

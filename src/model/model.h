@@ -89,6 +89,8 @@ typedef struct lar_contact {
     int32_t *face, *against;
     double through[3], normal[3]; /* of a plane; the unit normal points to where bodies may be */
     double friction;              /* Coulomb's coefficient */
+    double distance;              /* from which bodies push each other, at most [m]; 0: it goes by
+                                     their elements and the step */
 } lar_contact;
 
 /* Tools of a model and bytes of their names. A simulation takes four hands besides. */

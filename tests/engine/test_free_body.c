@@ -271,6 +271,47 @@ static void it_lies_on_what_bears_it(void **unused) {
     finish(simulation, model);
 }
 
+/* A stone above a slot between two walls that nothing moves, with so much room on both sides. How
+ * far up it is after 0.15 s [m]. */
+static double fall_in(double room, double distance) {
+    const brick wall = {{4, 4, 4}, 0.005, 0, LAR_LAW_neo_hookean, 2e4, 2e5, 1000};
+    const brick peg = {{2, 4, 4}, 0.005, 0, LAR_LAW_neo_hookean, 2e4, 2e5, 1000};
+    lar_model *model = empty_model(&wall);
+    add_brick(model, &wall, (double[]){-0.025 - room, -0.01, -0.02});
+    add_brick(model, &wall, (double[]){0.005 + room, -0.01, -0.02});
+    const int32_t walls = model->mesh.element_count;
+    const int32_t first = add_brick(model, &peg, (double[]){-0.005, -0.01, 0.002});
+    lar_node_list held = {first, lar_calloc((size_t)first, sizeof *held.node)};
+    for (int32_t n = 0; n < first; n++) held.node[n] = n;
+    fix_nodes(model, held, LAR_AXIS_ALL);
+    bind_nodes(model, first, model->mesh.node_count);
+    lar_contact *contact = LAR_MODEL_APPEND(model, contact);
+    contact->kind = LAR_CONTACT_BETWEEN;
+    contact->distance = distance;
+    contact->face = outer_faces(model, 0, walls, &contact->face_count);
+    contact->against =
+        outer_faces(model, walls, model->mesh.element_count, &contact->against_count);
+    model->gravity[2] = -9.81;
+    model->damping = 2;
+    lar_simulation *simulation = start(model);
+    while (lar_simulation_time(simulation) < 0.15) advance(simulation, 10);
+    if (distance > 0) assert_below(lar_simulation_contact_distance(simulation), 1.001 * distance);
+    const double way = node_u(simulation, first)[2];
+    finish(simulation, model);
+    return way;
+}
+
+/* Bodies push each other from a distance on, which a clearance may be smaller than: then the
+ * contact says which it is to be. */
+static void it_falls_through_a_narrow_slot(void **unused) {
+    (void)unused;
+    const double caught = fall_in(0.0005, 0), falls = fall_in(0.0005, 1e-4);
+    print_message("0.5 mm of room: %.2f mm down, with a distance of 0.1 mm %.2f mm\n", 1e3 * caught,
+                  1e3 * falls);
+    assert_true(caught > -0.002);
+    assert_true(falls < -0.05);
+}
+
 /* Thrown down it is thrown back; contact and what holds it together give nothing. */
 static void it_bounces_and_gains_nothing(void **unused) {
     (void)unused;
@@ -483,6 +524,7 @@ int main(void) {
         cmocka_unit_test(turns_solve_their_equation),
         cmocka_unit_test(it_swings_on_a_hinge),
         cmocka_unit_test(it_lies_on_what_bears_it),
+        cmocka_unit_test(it_falls_through_a_narrow_slot),
         cmocka_unit_test(it_bounces_and_gains_nothing),
         cmocka_unit_test(bits_are_the_same_everywhere),
         cmocka_unit_test(it_goes_where_it_may),

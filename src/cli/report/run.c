@@ -354,7 +354,7 @@ static void print_contact(const run_report *report, const lar_energy *energy, FI
     if (distance > 0)
         fprintf(out,
                 "%-17sbodies push each other from %.2g %s on, before they touch: gaps that matter "
-                "take thinner elements and smaller steps, or bodies that touch at rest\n",
+                "take a smaller distance in the contact, or bodies that touch at rest\n",
                 "", unit.per_metre * distance, unit.name);
     print_softness(report, energy, &info, out);
     print_through(report, &info, out);

@@ -57,8 +57,18 @@ static lar_status read_plane(lar_scene *scene, const lar_yaml *entry, const lar_
     return status ? status : read_faces(scene, faces, &contact->face, &contact->face_count);
 }
 
+static lar_status read_distance(lar_scene *scene, const lar_yaml *entry, lar_contact *contact) {
+    const lar_yaml *node = lar_yaml_get(entry, "distance");
+    if (!node) return LAR_OK;
+    if (contact->kind == LAR_CONTACT_PLANE)
+        return lar_scene_fail(scene, node, LAR_ERROR_MODEL,
+                              "a plane pushes what touches it, at no distance; leave it out");
+    return lar_scene_positive(scene, node, LAR_IN_METRES, &contact->distance);
+}
+
 static lar_status read_contact_entry(lar_scene *scene, const lar_yaml *entry) {
-    static const char *const keys[] = {"self", "between", "faces", "plane", "friction", NULL};
+    static const char *const keys[] = {"self",     "between",  "faces", "plane",
+                                       "friction", "distance", NULL};
     lar_status status = lar_scene_keys(scene, entry, "a contact entry", keys);
     if (status) return status;
     const lar_yaml *self = lar_yaml_get(entry, "self"), *between = lar_yaml_get(entry, "between");
@@ -77,6 +87,7 @@ static lar_status read_contact_entry(lar_scene *scene, const lar_yaml *entry) {
     else
         status = read_plane(scene, entry, faces, contact);
     if (!status) status = lar_scene_friction(scene, entry, &contact->friction);
+    if (!status) status = read_distance(scene, entry, contact);
     char problem[LAR_PROBLEM_SIZE];
     if (!status && lar_contact_problem(scene->model, contact, problem))
         status = lar_scene_fail(scene, entry, LAR_ERROR_MODEL, "%s", problem);
