@@ -382,7 +382,7 @@ static void apply_tool(lar_tool_contact *contact, const lar_condition_context *c
             contact, t, state,
             travel + lar_tool_way(vicinity->body.now, vicinity->body.next, vicinity->body.count));
     laws.tissue.stiffness *= contact->tools->hardness[t];
-    laws.free.stiffness *= contact->tools->hardness[t];
+    laws.free.stiffness *= lar_hardness_on_free(contact->tools, t, context);
     if (contact->faces->weighs) weigh_near(contact, context, state, t, &laws.free);
     touch_near(contact, context, state, t, &laws);
     contact->seen.possible += (uint64_t)contact->faces->face_count;

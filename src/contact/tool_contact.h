@@ -166,6 +166,13 @@ static inline const lar_bearing *lar_tool_bearing(const lar_tool_contact *contac
     return contact->faces->weighs ? &contact->bearing[tool] : &contact->tools->bearing[tool];
 }
 
+/* How many times as stiff a tool is on free bodies: no more than parts of a step bear. */
+static inline double lar_hardness_on_free(const lar_tools *tools, int32_t tool,
+                                          const lar_condition_context *context) {
+    const double parts = context->whole_step / context->time_step;
+    return fmin(tools->hardness[tool], parts * parts);
+}
+
 /* Of the whole model, or with a share (NULL: all) of one thread. */
 lar_status lar_tool_faces_create(const lar_model *model, const int32_t *local,
                                  const lar_condition_share *share, lar_tool_faces *faces,

@@ -309,7 +309,8 @@ static double stiffness_of(const lar_tool_contact *contact, const lar_condition_
                            int32_t tool, int32_t node, const double press[3],
                            const lar_contact_law *law) {
     const int32_t body = contact->faces->rub[contact->faces->rub_at[node]].body;
-    const double own = context->tools->hardness[tool] * law->stiffness * context->springs[node];
+    const double own = lar_hardness_on_free(context->tools, tool, context) * law->stiffness *
+                       context->springs[node];
     const double deep =
         contact->list->tool[tool].friction * lar_tool_bearing(contact, tool)->deep[body];
     return deep > 0 ? lar_greater(own, lar_length(press) / deep) : own;
