@@ -132,6 +132,22 @@ bool lar_contact_problem(const lar_model *model, const lar_contact *contact,
     return plane_problem(model, contact, problem);
 }
 
+bool lar_restitution_problem(const lar_model *model, char problem[LAR_PROBLEM_SIZE]) {
+    for (int i = 0; i < model->contact_count; i++) {
+        bool stops = !(model->contact[i].restitution > 0);
+        for (int t = 0; t < model->tool_count; t++)
+            stops = stops || (i < 32 && model->tool[t].planes >> i & 1);
+        if (stops) continue;
+        snprintf(
+            problem, LAR_PROBLEM_SIZE,
+            "contact entry %d: restitution is of rigid bodies with the key free, and the plane "
+            "is before none",
+            i + 1);
+        return true;
+    }
+    return false;
+}
+
 /* ---- tools ---------------------------------------------------------------------------------- */
 
 bool lar_tool_name_problem(const char *name, char problem[LAR_PROBLEM_SIZE]) {

@@ -39,4 +39,7 @@ double lar_tool_gap(const lar_model *model, const lar_tool *tool, int32_t *face)
 /* What is wrong with Coulomb's coefficient of a plane or a tool; NULL: nothing. */
 const char *lar_friction_problem(double friction);
 
+/* Of planes with restitution, once all tools are known. */
+bool lar_restitution_problem(const lar_model *model, char problem[LAR_PROBLEM_SIZE]);
+
 #endif

@@ -472,6 +472,8 @@ static lar_status check_contacts(const lar_model *model, lar_error *error) {
         if (lar_contact_problem(model, &model->contact[i], problem))
             return lar_fail(error, LAR_ERROR_MODEL, "%s: contact entry %d: %s",
                             lar_model_source(model), i + 1, problem);
+    if (lar_restitution_problem(model, problem))
+        return lar_fail(error, LAR_ERROR_MODEL, "%s: %s", lar_model_source(model), problem);
     return LAR_OK;
 }
 

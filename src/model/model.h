@@ -89,6 +89,7 @@ typedef struct lar_contact {
     int32_t *face, *against;
     double through[3], normal[3]; /* of a plane; the unit normal points to where bodies may be */
     double friction;              /* Coulomb's coefficient */
+    double restitution;           /* of free rigid bodies on a plane, 0 to 1 */
     double distance;              /* from which bodies push each other, at most [m]; 0: it goes by
                                      their elements and the step */
 } lar_contact;

@@ -210,6 +210,7 @@ static uint64_t hash_contacts(const lar_model *model) {
         hash = hash_doubles(hash_doubles(hash, c->through, 3), c->normal, 3);
         if (c->friction > 0) hash = lar_hash_double(hash, c->friction);
         if (c->distance > 0) hash = lar_hash_double(hash, c->distance);
+        if (c->restitution > 0) hash = lar_hash_double(hash, c->restitution);
     }
     return hash;
 }

@@ -454,6 +454,44 @@ static void planes_rub_as_coulomb_says(void **unused) {
     }
 }
 
+/* How high the bottom of a stone comes again that falls from 0.1 m, in parts of that, and the most
+ * that it has of the energy that it began with. */
+static double bounce(double restitution, double *most) {
+    static const double height = 0.1, gravity = 9.81;
+    const brick even = {{2, 3, 5}, 0.01, 0, LAR_LAW_neo_hookean, 2e3, 2e4, 1000};
+    lar_model *model = empty_model(&even);
+    add_brick(model, &even, (double[]){0, 0, 0});
+    bind_nodes(model, 0, model->mesh.node_count);
+    stand_before(model, (double[]){0, 0, -height}, (double[]){0, 0, 1}, 0.3);
+    model->contact[0].restitution = restitution;
+    model->gravity[2] = -gravity;
+    lar_simulation *simulation = start(model);
+    double account, highest = 0, mass = 0.02 * 0.03 * 0.05 * 1000;
+    *most = 0;
+    while (lar_simulation_time(simulation) < 0.4) {
+        advance(simulation, 1);
+        const double z = node_u(simulation, 0)[2] + height;
+        const double energy = energy_of(simulation, &account) + mass * gravity * z;
+        *most = fmax(*most, energy / (mass * gravity * height));
+        if (lar_simulation_time(simulation) > 0.15) highest = fmax(highest, z);
+    }
+    finish(simulation, model);
+    return highest / height;
+}
+
+/* Planes throw back as Newton's restitution says, and give nothing. */
+static void planes_throw_back(void **unused) {
+    (void)unused;
+    for (int k = 0; k <= 4; k++) {
+        const double part = 0.25 * k;
+        double most, high = bounce(part, &most);
+        print_message("restitution %.2f: comes to %.4f of its height, energy %.6f\n", part, high,
+                      most);
+        assert_below(fabs(high - part * part), 0.02);
+        assert_below(most, 1 + 1e-9);
+    }
+}
+
 /* Thrown into a corner of three planes, a tilted stone comes to rest there, with all of its weight
  * on them; it is below them by what turns have of the second order, and gains nothing. */
 static void three_planes_stop_it(void **unused) {
@@ -529,6 +567,7 @@ int main(void) {
         cmocka_unit_test(bits_are_the_same_everywhere),
         cmocka_unit_test(it_goes_where_it_may),
         cmocka_unit_test(planes_rub_as_coulomb_says),
+        cmocka_unit_test(planes_throw_back),
         cmocka_unit_test(three_planes_stop_it),
         cmocka_unit_test(its_nodes_are_not_held_one_by_one),
     };

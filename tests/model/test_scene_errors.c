@@ -455,6 +455,10 @@ static void test_contact(void **state) {
         {"contact: [{self: true, distance: near}]\n", "4:34", "distance: expected"},
         {"contact: [{faces: all, distance: 1, plane: {through: [0, 0, 0], normal: [0, 0, 1]}}]\n",
          "4:34", "a plane pushes what touches it, at no distance; leave it out"},
+        {"contact: [{self: true, restitution: 0.5}]\n", "4:37", "restitution is of planes"},
+        {"contact: [{faces: all, restitution: 1.5, plane: {through: [0, 0, 0], normal: [0, 0, 1]}}]"
+         "\n",
+         "4:37", "restitution is 1.5; it must be from 0 to 1"},
         {"contact: [{faces: all, plane: [0, 0, 1]}]\n", "4:31", "the plane of a contact"},
         {PLANE("normal: [0, 0, 1]"), "4:31", "needs the key \"through\""},
         {PLANE("through: [0, 0, 0]"), "4:31", "needs the key \"normal\""},

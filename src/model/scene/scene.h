@@ -85,17 +85,18 @@ lar_status lar_scene_need(const lar_scene *scene, const lar_yaml *mapping, const
                           const char *key, const char *example, const lar_yaml **value);
 
 /* What a number is, for messages. */
-#define LAR_IN_PASCAL   "a number in pascal (SI units), for example 4.0e3"
-#define LAR_IN_METRES   "a number in metres (SI units), for example 0.01"
-#define LAR_IN_SECONDS  "a number in seconds (SI units), for example 0.2"
-#define LAR_IN_DENSITY  "a number in kg/m^3 (SI units), for example 1050"
-#define LAR_IN_NEWTON   "three numbers in newton (SI units), for example [0, 0, -0.1]"
-#define LAR_IN_POSITION "three numbers in metres (SI units), for example [0, 0, 0.01]"
-#define LAR_IN_VELOCITY "three numbers in m/s (SI units), for example [0, 0, 0.5]"
-#define LAR_A_DIRECTION "three numbers, a direction, for example [0, 0, 1]"
-#define LAR_IN_DEGREES  "a number in degrees, for example 60"
-#define LAR_A_FRICTION  "a number from 0 to 5, for example 0.3"
-#define LAR_IN_GRAVITY  "three numbers in m/s^2 (SI units), for example [0, 0, -9.81]"
+#define LAR_IN_PASCAL     "a number in pascal (SI units), for example 4.0e3"
+#define LAR_IN_METRES     "a number in metres (SI units), for example 0.01"
+#define LAR_IN_SECONDS    "a number in seconds (SI units), for example 0.2"
+#define LAR_IN_DENSITY    "a number in kg/m^3 (SI units), for example 1050"
+#define LAR_IN_NEWTON     "three numbers in newton (SI units), for example [0, 0, -0.1]"
+#define LAR_IN_POSITION   "three numbers in metres (SI units), for example [0, 0, 0.01]"
+#define LAR_IN_VELOCITY   "three numbers in m/s (SI units), for example [0, 0, 0.5]"
+#define LAR_A_DIRECTION   "three numbers, a direction, for example [0, 0, 1]"
+#define LAR_IN_DEGREES    "a number in degrees, for example 60"
+#define LAR_A_FRICTION    "a number from 0 to 5, for example 0.3"
+#define LAR_A_RESTITUTION "a number from 0 to 1, for example 0.5"
+#define LAR_IN_GRAVITY    "three numbers in m/s^2 (SI units), for example [0, 0, -9.81]"
 
 /* A finite number that is written without quotes and unit. */
 lar_status lar_scene_number(const lar_scene *scene, const lar_yaml *node, const char *expected,

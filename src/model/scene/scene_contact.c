@@ -66,9 +66,22 @@ static lar_status read_distance(lar_scene *scene, const lar_yaml *entry, lar_con
     return lar_scene_positive(scene, node, LAR_IN_METRES, &contact->distance);
 }
 
+static lar_status read_restitution(lar_scene *scene, const lar_yaml *entry, lar_contact *contact) {
+    const lar_yaml *node = lar_yaml_get(entry, "restitution");
+    if (!node) return LAR_OK;
+    if (contact->kind != LAR_CONTACT_PLANE)
+        return lar_scene_fail(scene, node, LAR_ERROR_MODEL,
+                              "restitution is of planes; leave it out");
+    lar_status status = lar_scene_number(scene, node, LAR_A_RESTITUTION, &contact->restitution);
+    if (status || (contact->restitution >= 0 && contact->restitution <= 1)) return status;
+    return lar_scene_fail(scene, node, LAR_ERROR_MODEL,
+                          "restitution is %.40s; it must be from 0 to 1, for example 0.5",
+                          node->text);
+}
+
 static lar_status read_contact_entry(lar_scene *scene, const lar_yaml *entry) {
-    static const char *const keys[] = {"self",     "between",  "faces", "plane",
-                                       "friction", "distance", NULL};
+    static const char *const keys[] = {"self",     "between",  "faces",       "plane",
+                                       "friction", "distance", "restitution", NULL};
     lar_status status = lar_scene_keys(scene, entry, "a contact entry", keys);
     if (status) return status;
     const lar_yaml *self = lar_yaml_get(entry, "self"), *between = lar_yaml_get(entry, "between");
@@ -88,6 +101,7 @@ static lar_status read_contact_entry(lar_scene *scene, const lar_yaml *entry) {
         status = read_plane(scene, entry, faces, contact);
     if (!status) status = lar_scene_friction(scene, entry, &contact->friction);
     if (!status) status = read_distance(scene, entry, contact);
+    if (!status) status = read_restitution(scene, entry, contact);
     char problem[LAR_PROBLEM_SIZE];
     if (!status && lar_contact_problem(scene->model, contact, problem))
         status = lar_scene_fail(scene, entry, LAR_ERROR_MODEL, "%s", problem);

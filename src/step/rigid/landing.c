@@ -65,7 +65,7 @@ void lar_landing_begin(const lar_model *model, const lar_tool *tool, lar_rigid_s
 
 static void keep_farther(lar_landing_spot *spot, double value, const lar_landing_spot *fresh) {
     if (spot->node > 0 && !(value > spot->most)) return;
-    memcpy(spot, fresh, offsetof(lar_landing_spot, push)); /* the rest is not known yet */
+    memcpy(spot, fresh, offsetof(lar_landing_spot, came)); /* the rest is not known yet */
     spot->most = value;
 }
 
@@ -128,6 +128,7 @@ static void settle(lar_landing *landing) {
                     (landing->spot[i].node == spot.node && landing->spot[i].plane == spot.plane);
         if (known) continue;
         find_ways(landing, &spot);
+        for (int i = 0; i < 3; i++) spot.came[i] = speed_along(landing, &spot, i);
         if (spot.yields > 1e-9 / landing->sum->mass) landing->spot[count++] = spot;
     }
     landing->count = count;
@@ -135,12 +136,27 @@ static void settle(lar_landing *landing) {
 
 /* ---- impulses -------------------------------------------------------------------------------- */
 
+/* Speed away from the plane of what would come below it, and faster than what lies there and falls
+ * for a few steps. Restitution is of the speed in the middle of the step: what falls gains half of
+ * what gravity gives in one before, and loses half behind. */
+static double thrown_back(const lar_landing *landing, const lar_landing_spot *spot) {
+    static const double STEPS = 4;
+    const lar_contact *plane = &landing->model->contact[spot->plane];
+    const double falls = -landing->dt * lar_dot(landing->model->gravity, plane->normal);
+    const double down = -spot->came[0], half = 0.5 * lar_greater(0, falls);
+    if (!(plane->restitution > 0) || !(down > STEPS * fabs(falls))) return 0;
+    if (!(down * landing->dt > spot->gap)) return 0;
+    return lar_greater(0, plane->restitution * (down - half) - half);
+}
+
 /* Not below the plane at the end of the step; what is, by what turns have of the second order,
  * comes up in a few. Returns how much the impulse changed. */
 static double press(lar_landing *landing, lar_landing_spot *spot) {
     static const double RISE = 0.2, FASTEST = 0.1; /* [m/s] */
-    const double wanted = spot->gap > 0 ? -spot->gap / landing->dt
-                                        : lar_lesser(-RISE * spot->gap / landing->dt, FASTEST);
+    double wanted = spot->gap > 0 ? -spot->gap / landing->dt
+                                  : lar_lesser(-RISE * spot->gap / landing->dt, FASTEST);
+    const double back = landing->bounces ? thrown_back(landing, spot) : 0;
+    if (back > 0) wanted = lar_greater(wanted, back);
     const double more = (wanted - speed_along(landing, spot, 0)) / spot->yields;
     const double change = lar_greater(spot->push[0] + more, 0) - spot->push[0];
     spot->push[0] += change;
@@ -169,10 +185,10 @@ static void impulse_at(const lar_landing_spot *spot, double impulse[3]) {
         for (int k = 0; k < 3; k++) impulse[i] += spot->push[k] * spot->way[k][i];
 }
 
-void lar_landing_end(lar_landing *landing) {
+/* Sweeps over all of them until nothing changes. */
+static void find_impulses(lar_landing *landing) {
     enum { SWEEPS = 400 };
     static const double LITTLE = 1e-12; /* of all impulses */
-    settle(landing);
     double most = INFINITY, all = 0;
     for (int n = 0; n < SWEEPS && most > LITTLE * all; n++) {
         most = all = 0;
@@ -183,6 +199,38 @@ void lar_landing_end(lar_landing *landing) {
             rub(landing, spot);
             all += spot->push[0];
         }
+    }
+}
+
+/* What the impulses have given the body [J]. */
+static double given(const lar_landing *landing) {
+    double sum = 0;
+    for (int k = 0; k < landing->count; k++)
+        for (int i = 0; i < 3; i++) {
+            const lar_landing_spot *spot = &landing->spot[k];
+            sum += 0.5 * spot->push[i] * (spot->came[i] + speed_along(landing, spot, i));
+        }
+    return sum;
+}
+
+static void take_back(lar_landing *landing) {
+    for (int k = 0; k < landing->count; k++)
+        for (int i = 0; i < 3; i++) {
+            add_impulse(landing, &landing->spot[k], i, -landing->spot[k].push[i]);
+            landing->spot[k].push[i] = 0;
+        }
+}
+
+void lar_landing_end(lar_landing *landing) {
+    settle(landing);
+    landing->bounces = false;
+    for (int k = 0; k < landing->count; k++)
+        landing->bounces = landing->bounces || thrown_back(landing, &landing->spot[k]) > 0;
+    find_impulses(landing);
+    if (landing->bounces && given(landing) > 0) {
+        take_back(landing);
+        landing->bounces = false;
+        find_impulses(landing);
     }
     for (int k = 0; k < landing->count; k++) {
         const lar_landing_spot *spot = &landing->spot[k];

@@ -1,6 +1,7 @@
 /* Planes stop free bodies as bodies: where nodes would come below a plane within the step, impulses
  * at these take from momentum and spin what would take them there, and by Coulomb's friction what
- * goes along the plane. Inelastic, as planes are for nodes.
+ * goes along the plane. Inelastic, as planes are for nodes, or by Newton's restitution; where that
+ * and friction together would give energy, inelastic (Kane and Levinson 1985).
  *
  * The impulses of all nodes in touch are found together, by sweeps over them, each with what the
  * others leave (projected Gauss-Seidel; Jourdan, Alart and Jean 1998). Before a plane a body is its
@@ -20,8 +21,8 @@ typedef struct lar_landing_spot {
     int plane;          /* the nth of the model's entries of contact */
     double most;        /* how far it goes in its direction [m] */
     double arm[3], gap; /* from sum->centre; above the plane [m] */
-    double push[3];     /* from here on of those that touch: impulses along its normal and along the
-                           plane [N s] */
+    double came[3];     /* from here on of those that touch: how fast, before all impulses [m/s] */
+    double push[3];     /* impulses along its normal and along the plane [N s] */
     double yields, yields_beside; /* speed by an impulse of one [1/kg] */
     double way[3][3];             /* unit, of these impulses */
     double lever[3][3];           /* spin by one [m] */
@@ -35,6 +36,7 @@ typedef struct lar_landing {
     double dt, inverse[6]; /* of the inertia that is free to turn; else zero [1/(kg m^2)] */
     double v[3], w[3];     /* of the body within the step [m/s], [1/s] */
     double light[3];       /* one over its mass along axes that are free [1/kg] */
+    bool bounces;          /* a spot is thrown back */
     int32_t nodes;         /* seen so far */
     int count;
     lar_landing_spot spot[LAR_TOOL_PLANES_MAX * LAR_LANDING_SPOTS];
