@@ -211,11 +211,29 @@ static void test_thin_tools(void **state) {
     lar_model_destroy(model);
 }
 
+/* A plane stops the bodies whose faces its entry names, and no others, however the scene is
+ * written: in one line, here. */
+static void test_planes_of_bodies(void **state) {
+    (void)state;
+    lar_model *model = scene(
+        HEAD MATERIAL
+        "contact: [{faces: bottom, plane: {through: [0, 0, -1], normal: [0, 0, 1]}}, {faces: all, "
+        "restitution: 0.5, plane: {through: [0, 0, -2], normal: [0, 0, 1]}}]\n"
+        "tools: [{name: base, shape: rigid, nodes: {box: [[-1, -1, -1], [1, 1, 0.001]]}, free: "
+        "all}, "
+        "{name: top, shape: rigid, nodes: {box: [[-1, -1, 0.019], [1, 1, 1]]}, free: all}]\n");
+    assert_int_equal(model->tool[0].planes, 3);
+    assert_int_equal(model->tool[1].planes, 2);
+    same(model->contact[1].restitution, 0.5);
+    lar_model_destroy(model);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_contact),     cmocka_unit_test(test_tools),
-        cmocka_unit_test(test_rigid_tools), cmocka_unit_test(test_tools_beside_the_body),
-        cmocka_unit_test(test_thin_tools),  cmocka_unit_test(test_free_bodies),
+        cmocka_unit_test(test_contact),          cmocka_unit_test(test_tools),
+        cmocka_unit_test(test_rigid_tools),      cmocka_unit_test(test_tools_beside_the_body),
+        cmocka_unit_test(test_thin_tools),       cmocka_unit_test(test_free_bodies),
+        cmocka_unit_test(test_planes_of_bodies),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -274,12 +274,24 @@ static void find_reach(const lar_model *model, lar_tool *tool) {
                             distance_of(model->mesh.position[nodes->node[k]], tool->rest.position));
 }
 
-static bool is_before(const lar_scene *scene, const lar_yaml *entry, const lar_contact *plane) {
-    const lar_mesh *mesh = &scene->model->mesh;
+/* Which nodes are those of free bodies, or of the one that is the last to have been read. */
+static lar_status mark_nodes(lar_scene *scene, bool last, bool **marked) {
+    const lar_model *model = scene->model;
+    const size_t nodes = (size_t)model->mesh.node_count;
+    *marked = lar_calloc(nodes, sizeof **marked);
+    if (!*marked) return lar_scene_no_memory(scene, nodes);
+    for (int m = last ? model->move_count - 1 : 0; m < model->move_count; m++) {
+        const lar_move *move = &model->move[m];
+        if (!last && !(move->tool && model->tool[move->tool - 1].free)) continue;
+        for (int32_t k = 0; k < move->nodes.count; k++) (*marked)[move->nodes.node[k]] = true;
+    }
+    return LAR_OK;
+}
+
+static bool is_before(const lar_mesh *mesh, const bool *marked, const lar_contact *plane) {
     for (int32_t k = 0; k < 4 * plane->face_count; k++) {
         const int32_t face = plane->face[k / 4];
-        const int32_t node = mesh->element[face / 6][lar_face_node[face % 6][k % 4]];
-        if (scene->axis_line[3 * (size_t)node] == entry->line) return true;
+        if (marked[mesh->element[face / 6][lar_face_node[face % 6][k % 4]]]) return true;
     }
     return false;
 }
@@ -289,18 +301,22 @@ static lar_status find_planes(lar_scene *scene, const lar_yaml *entry, lar_tool 
     enum { BITS = 32 };
     const lar_model *model = scene->model;
     int count = 0;
-    for (int i = 0; i < model->contact_count; i++) {
+    bool *marked;
+    lar_status status = mark_nodes(scene, true, &marked);
+    for (int i = 0; !status && i < model->contact_count; i++) {
         const lar_contact *plane = &model->contact[i];
-        if (plane->kind != LAR_CONTACT_PLANE || !is_before(scene, entry, plane)) continue;
+        if (plane->kind != LAR_CONTACT_PLANE || !is_before(&model->mesh, marked, plane)) continue;
         if (++count > LAR_TOOL_PLANES_MAX || i >= BITS)
-            return lar_scene_fail(scene, entry, LAR_ERROR_UNSUPPORTED,
-                                  "\"%s\" is before more than %d planes, or behind %d other "
-                                  "entries of contact; name only its own surface with those that "
-                                  "stop it, and put their entries first",
-                                  tool->name, LAR_TOOL_PLANES_MAX, BITS);
-        tool->planes |= 1u << i;
+            status = lar_scene_fail(scene, entry, LAR_ERROR_UNSUPPORTED,
+                                    "\"%s\" is before more than %d planes, or behind %d other "
+                                    "entries of contact; name only its own surface with those that "
+                                    "stop it, and put their entries first",
+                                    tool->name, LAR_TOOL_PLANES_MAX, BITS);
+        else
+            tool->planes |= 1u << i;
     }
-    return LAR_OK;
+    free(marked);
+    return status;
 }
 
 /* A point of space about which it turns, and an axis through it. */
@@ -383,10 +399,12 @@ static lar_status read_tool(lar_scene *scene, const lar_yaml *entry) {
     return status;
 }
 
-static double longest_edge(const lar_model *model) {
+/* But for free bodies', whose faces feel tools everywhere. */
+static double longest_edge(const lar_model *model, const bool *marked) {
     double longest = 0;
     for (int32_t f = 0; f < model->surface.face_count; f++)
         for (int a = 0; a < 4; a++) {
+            if (marked[model->surface.corner[f][a]]) continue;
             const double *p = model->mesh.position[model->surface.corner[f][a]];
             const double *q = model->mesh.position[model->surface.corner[f][(a + 1) % 4]];
             longest = fmax(longest, distance_of(p, q));
@@ -398,8 +416,9 @@ static double longest_edge(const lar_model *model) {
  * is room for a tool of that radius. */
 static lar_status notice_thin_tools(lar_scene *scene) {
     lar_model *model = scene->model;
-    double edge = longest_edge(model), room = edge / 6 * sqrt(0.5);
-    lar_status status = LAR_OK;
+    bool *marked;
+    lar_status status = mark_nodes(scene, false, &marked);
+    double edge = status ? 0 : longest_edge(model, marked), room = edge / 6 * sqrt(0.5);
     for (int i = 0; !status && i < model->tool_count; i++)
         if (model->tool[i].shape != LAR_TOOL_RIGID && model->tool[i].radius < room)
             status = lar_model_notice(
@@ -408,6 +427,7 @@ static lar_status notice_thin_tools(lar_scene *scene) {
                 "%.3g m: large faces feel it only where it meets one of their 36 points; give it "
                 "a radius of %.2g m, or refine the mesh",
                 scene->path, model->tool[i].name, model->tool[i].radius, edge, 1.05 * room);
+    free(marked);
     return status;
 }
 
