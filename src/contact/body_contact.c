@@ -165,12 +165,12 @@ typedef struct spring {
 /* The one acts from the contact distance on, the other, which is all that is left of the stiffness,
  * behind the face. */
 static void springs_of(const lar_body_contact *contact, int32_t node, int32_t face, double mass,
-                       double depth, double offset, spring two[2]) {
+                       double hard, double depth, double offset, spring two[2]) {
     const lar_contact_surface *s = contact->surface;
     double standoff = lar_contact_standoff(s, &s->node[node], &s->face[face]);
-    double part = lar_contact_softness(s, node, face, standoff, contact->law.stiffness);
-    two[0] = (spring){part * mass, depth + (standoff - offset)};
-    two[1] = (spring){(1 - part) * mass, depth};
+    double part = lar_contact_softness(s, node, face, standoff, hard * contact->law.stiffness);
+    two[0] = (spring){part * hard * mass, depth + (standoff - offset)};
+    two[1] = (spring){(1 - part) * hard * mass, depth};
 }
 
 /* How far a spring is pressed in where a sharp edge pushes like any other place [m]. */
@@ -368,7 +368,9 @@ static bool push(lar_body_contact *contact, const lar_state *state, int32_t g, i
     const lar_contact_node *own_node = &surface->node[node], *corner = &surface->node[f->corner[0]];
     double moved = lar_contact_moved_mass(own_node, corner, contact->held, &point.mass);
     spring two[2];
-    springs_of(contact, node, face, moved, depth, offset, two);
+    const double hard =
+        own || !lar_contact_of_rigid(surface, own_node, f, contact->held) ? 1 : contact->rigid;
+    springs_of(contact, node, face, moved, hard, depth, offset, two);
     const meeting m = {
         x, &known, closest, full_of(contact, node, face), rate, f->fades && !own && !s->flush};
     double energy = 0, force = press(contact, &m, two, &energy, t);
@@ -395,7 +397,7 @@ static bool push(lar_body_contact *contact, const lar_state *state, int32_t g, i
                          .speed = (const double(*)[3])known.v,
                          .weight = closest->weight,
                          .press = together * fmax(force, 0),
-                         .mass = lar_contact_rub_mass(own_node, corner, moved)};
+                         .mass = hard * lar_contact_rub_mass(own_node, corner, moved)};
     if (!lar_body_friction_rub(contact, state, &rub, t->fade)) return true;
     t->rubs = t->fading < 0 && t->count == 1 && t->face[0] == face;
     if (!t->rubs) t->fading = face;

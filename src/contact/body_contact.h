@@ -143,6 +143,7 @@ typedef struct lar_body_contact_search_state {
 typedef struct lar_body_contact {
     const lar_contact_surface *surface; /* NULL: nothing to do */
     lar_contact_law law;
+    double rigid; /* how many times as stiff it is between rigid bodies */
     double time_step;
     const uint8_t *held; /* as in the context of the step under way */
     lar_contact_view view;

@@ -320,6 +320,7 @@ lar_status lar_body_contact_create(const lar_contact_tree *tree, const int32_t *
         return status;
     }
     contact->law = lar_contact_law_for(time_step, stable_step);
+    contact->rigid = lar_contact_law_for(time_step, INFINITY).stiffness / contact->law.stiffness;
     contact->time_step = time_step;
     contact->list = search_state->search->list;
     search_state->always = search_always;

@@ -216,11 +216,11 @@ static bool come_near(lar_tool_contact *contact, const lar_condition_context *co
 }
 
 /* What a free body bears of a tool, in parts of springs that move all of it at once in a step,
- * beside those that are fitted to its nodes: all tools half as much as these. And no more than is
+ * beside those that are fitted to its nodes: all tools two fifths of these. And no more than is
  * good for the tool. */
 static double bears_of(const lar_tool_contact *contact, int32_t tool, int32_t body,
                        const lar_contact_law *law) {
-    static const double ALL = 0.5;
+    static const double ALL = 0.4;
     const lar_tool_list *list = contact->list;
     int32_t count = 0;
     for (int32_t t = 0; t < list->count; t++) count += lar_tool_touches(&list->tool[t]);

@@ -254,6 +254,7 @@ static lar_status create_contact(const lar_body_contact *whole, int32_t thread, 
     uint8_t *keeps = lar_calloc(nodes, 1);
     *contact = (lar_body_contact){.surface = surface,
                                   .law = whole->law,
+                                  .rigid = whole->rigid,
                                   .time_step = whole->time_step,
                                   .view = {.local = exchange->local, .slot = exchange->slot},
                                   .adds_node = adds_node,

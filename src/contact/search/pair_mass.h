@@ -14,6 +14,19 @@ static inline bool lar_contact_still(const lar_contact_node *node, const uint8_t
            (!held || (held[node->node] & LAR_AXIS_ALL) == LAR_AXIS_ALL);
 }
 
+/* Neither a node of a free body nor one that stands still has elements that take of a step; whether
+ * both are of that kind. */
+static inline bool lar_contact_of_rigid(const lar_contact_surface *surface,
+                                        const lar_contact_node *node, const lar_contact_face *face,
+                                        const uint8_t *held) {
+    bool rigid = node->bound > 0 || lar_contact_still(node, held);
+    for (int a = 0; a < 4 && rigid; a++) {
+        const lar_contact_node *corner = &surface->node[face->corner[a]];
+        rigid = corner->bound > 0 || lar_contact_still(corner, held);
+    }
+    return rigid;
+}
+
 /* A point of a surface, of its corners. */
 typedef struct lar_point_mass {
     double light; /* one over its mass [1/kg] */
