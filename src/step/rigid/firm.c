@@ -148,7 +148,8 @@ static void bind_points(lar_contact_surface *s) {
     }
 }
 
-/* Of a unit push at a corner. */
+/* Of a unit push at a corner; no less than what all of the mass yields, also where a joint bears the
+ * push. */
 static double yield_at(const lar_rigid_sum *body, const lar_tool *tool, const double yields[6],
                        const double place[3], const double normal[3]) {
     double r[3], turn[3], turned[3], yield = 0;
@@ -157,7 +158,7 @@ static double yield_at(const lar_rigid_sum *body, const lar_tool *tool, const do
     lar_symmetric_product(yields, turn, turned);
     for (int i = 0; i < 3; i++)
         if (tool->free >> i & 1) yield += normal[i] * normal[i] / body->mass;
-    return yield + lar_dot(turn, turned);
+    return lar_greater(yield + lar_dot(turn, turned), 1 / body->mass);
 }
 
 /* A tool begins to push where it touches, with the closest point of the face: rigid bodies do not
