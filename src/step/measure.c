@@ -132,10 +132,11 @@ static void enter_look(const lar_domain *domain, lar_measure_scratch *scratch,
                 .state = *state,
                 .tools = scratch->tools};
     l->state.force = scratch->force;
-    if (scratch->tools)
-        l->interactions->tool_contact.tools =
-            lar_tools_go_on(scratch->tools, state->step, scratch->next) ? scratch->next
-                                                                        : scratch->tools;
+    const lar_tools *tools = scratch->tools;
+    if (tools && (lar_tools_go_on(tools, state->step, scratch->next) ||
+                  lar_free_bodies_divide(tools, state, scratch->next)))
+        tools = scratch->next;
+    l->interactions->tool_contact.tools = tools;
     lar_step_enter(domain, l->interactions, &l->context, &l->state);
     lar_gravity_at(domain->model, lar_settings_of(l->interactions), lar_state_time(domain, state),
                    l->context.mean_step, l->gravity);

@@ -76,7 +76,8 @@ static void sum_nodes(const lar_domain *domain, const lar_condition_notes *notes
 /* ---- what the body does ---------------------------------------------------------------------- */
 
 void lar_free_body_turn(const lar_rigid_sum *sum, const double axis[3], double dt, double v[3]) {
-    enum { TIMES = 12 }; /* each brings it closer by a factor of |v| or more */
+    enum { TIMES = 12 };             /* each brings it closer by a factor of |v| or more */
+    static const double QUARTER = 2; /* of a circle: beyond that momentum says nothing */
     double inverse[6], carried[3], across[3];
     memset(v, 0, 3 * sizeof *v);
     if (!lar_inertia_invert(sum->inertia, axis, inverse)) return;
@@ -86,6 +87,8 @@ void lar_free_body_turn(const lar_rigid_sum *sum, const double axis[3], double d
         for (int i = 0; i < 3; i++)
             across[i] = (1 + 0.25 * lar_dot(v, v)) * dt * sum->spin[i] - 0.5 * across[i];
         lar_symmetric_product(inverse, across, v);
+        const double size = lar_length(v);
+        for (int i = 0; i < 3 && size > QUARTER; i++) v[i] *= QUARTER / size;
     }
 }
 
@@ -182,4 +185,15 @@ bool lar_free_bodies_turn_far(const lar_tools *tools, uint64_t step, int32_t par
         far = lar_tool_motion_free(&tools->motion[i]) &&
               turn_of(&tools->motion[i]) * before > FAR * parts;
     return far;
+}
+
+bool lar_free_bodies_divide(const lar_tools *tools, const lar_state *state, lar_tools *divided) {
+    int32_t parts = tools->division.parts;
+    if (state->step > 0 || state->part > 0 || !lar_free_bodies_turn_far(tools, 0, parts))
+        return false;
+    while (parts < LAR_PARTS_MAX && lar_free_bodies_turn_far(tools, 0, parts))
+        parts = lar_more_parts(parts);
+    *divided = *tools;
+    divided->division.parts = parts;
+    return true;
 }

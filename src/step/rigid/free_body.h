@@ -50,6 +50,10 @@ void lar_free_bodies_start(const lar_domain *domain, const lar_condition_notes *
  * says the sine of the turn, and beyond a quarter of a circle nothing. */
 bool lar_free_bodies_turn_far(const lar_tools *tools, uint64_t step, int32_t parts);
 
+/* For who looks before the first step, when nobody has decided yet into how many parts it is
+ * divided: with as many as bodies ask for that spin fast. False: they ask for none. */
+bool lar_free_bodies_divide(const lar_tools *tools, const lar_state *state, lar_tools *divided);
+
 /* The Cayley vector of the turn of a body within dt, about `axis` where that is not zero. What is
  * as thin as a line turns about an axis only. */
 void lar_free_body_turn(const lar_rigid_sum *sum, const double axis[3], double dt, double v[3]);
