@@ -26,10 +26,13 @@ static double lets_go(const lar_model *model, const lar_material *material) {
  * behind that plane meet it. */
 static const double CUT_SHARE = 1.0 / 64;
 
+/* Where the wall of a face begins, in radii of the tool. */
+static const double WALL = 0.2;
+
 static void add_face(const lar_model *model, const int32_t *local, const uint8_t *faces_at,
                      int32_t face, bool cut, lar_tool_faces *faces) {
     lar_tool_contact_face *f = &faces->face[faces->face_count++];
-    *f = (lar_tool_contact_face){.of = face, .wall = 0.2, .body = -1};
+    *f = (lar_tool_contact_face){.of = face, .wall = WALL, .body = -1};
     for (int a = 0; a < 4; a++) {
         int32_t node = model->surface.corner[face][a];
         f->node[a] = local[node];
