@@ -495,6 +495,26 @@ static void planes_throw_back(void **unused) {
     }
 }
 
+/* What is pressed on a plane with many times its weight lies still, whatever that throws back. */
+static void what_is_pressed_lies_still(void **unused) {
+    (void)unused;
+    lar_model *model = stone_model();
+    add_tool(model, "press", LAR_TOOL_SPHERE, 0.01, 0.015, 0.0585);
+    stand_before(model, (double[]){0, 0, -0.001}, (double[]){0, 0, 1}, 0.3);
+    model->contact[0].restitution = 0.9;
+    model->gravity[2] = -9.81;
+    lar_simulation *simulation = start(model);
+    double account;
+    place_tool(simulation, 1, 0.01, 0.015, 0.055, 1, 200);
+    advance(simulation, 2000);
+    lar_tool_force felt;
+    assert_int_equal(lar_simulation_tool_force(simulation, 1, &felt, NULL), LAR_OK);
+    print_message("pressed with %.3g N, %.3g J\n", felt.force[2], energy_of(simulation, &account));
+    assert_true(felt.force[2] > 2 * 0.3);
+    assert_below(energy_of(simulation, &account), 1e-12);
+    finish(simulation, model);
+}
+
 /* Thrown into a corner of three planes, a tilted stone comes to rest there, with all of its weight
  * on them; it is below them by what turns have of the second order, and gains nothing. */
 static void three_planes_stop_it(void **unused) {
@@ -571,6 +591,7 @@ int main(void) {
         cmocka_unit_test(it_goes_where_it_may),
         cmocka_unit_test(planes_rub_as_coulomb_says),
         cmocka_unit_test(planes_throw_back),
+        cmocka_unit_test(what_is_pressed_lies_still),
         cmocka_unit_test(three_planes_stop_it),
         cmocka_unit_test(its_nodes_are_not_held_one_by_one),
     };

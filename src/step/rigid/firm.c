@@ -148,8 +148,8 @@ static void bind_points(lar_contact_surface *s) {
     }
 }
 
-/* Of a unit push at a corner; no less than what all of the mass yields, also where a joint bears the
- * push. */
+/* Of a unit push at a corner; no less than what all of the mass yields, also where a joint bears
+ * the push. */
 static double yield_at(const lar_rigid_sum *body, const lar_tool *tool, const double yields[6],
                        const double place[3], const double normal[3]) {
     double r[3], turn[3], turned[3], yield = 0;

@@ -63,8 +63,14 @@ static void sum_nodes(const lar_domain *domain, const lar_condition_notes *notes
             p[i] = mass * (leapfrog->keep * state->v[at] + leapfrog->drift[i] -
                            leapfrog->push * domain->push[n] * (double)state->force[at]);
         }
+        double had[3], had_turn[3];
+        lar_state_velocity(state, n, had);
+        for (int i = 0; i < 3; i++) had[i] *= mass;
+        lar_cross(r, had, had_turn);
         lar_cross(r, p, turn);
         for (int i = 0; i < 3; i++) {
+            sum->had[i] += had[i];
+            sum->had_spin[i] += had_turn[i];
             sum->momentum[i] += p[i];
             sum->spin[i] += turn[i];
             sum->inertia[i] += mass * (lar_dot(r, r) - r[i] * r[i]);

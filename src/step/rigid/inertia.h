@@ -10,6 +10,8 @@ typedef struct lar_rigid_sum {
     double momentum[3];     /* [kg m/s] */
     double spin[3];         /* angular momentum about `centre` [kg m^2/s] */
     double inertia[6];      /* about `centre`: xx yy zz xy yz zx [kg m^2] */
+    double had[3],
+        had_spin[3]; /* momentum and spin half a step before, without the step's forces */
 } lar_rigid_sum;
 
 /* a: xx yy zz xy yz zx. */

@@ -117,6 +117,24 @@ static void find_ways(const lar_landing *landing, lar_landing_spot *spot) {
                           fabs(yields(landing, spot, 1, 2));
 }
 
+/* Speed away from the plane of what would come below it, and came faster than what lies there falls
+ * in a few steps. Restitution is of the speed in the middle of the step: half of what the step's
+ * forces give comes before, and half behind. */
+static double thrown_back(const lar_landing *landing, const lar_landing_spot *spot) {
+    static const double STEPS = 4;
+    const lar_contact *plane = &landing->model->contact[spot->plane];
+    const double down = -spot->came[0], least = STEPS * lar_length(landing->model->gravity);
+    double had = 0, had_turn[3];
+    if (!(plane->restitution > 0) || !(down * landing->dt > spot->gap)) return 0;
+    lar_symmetric_product(landing->inverse, landing->sum->had_spin, had_turn);
+    for (int i = 0; i < 3; i++)
+        had -= spot->way[0][i] * landing->sum->had[i] * landing->light[i] +
+               spot->lever[0][i] * had_turn[i];
+    if (!(had > least * landing->dt)) return 0;
+    const double half = 0.5 * lar_greater(0, down - had);
+    return lar_greater(0, plane->restitution * (down - half) - half);
+}
+
 /* Every node once, and those alone that can give way. */
 static void settle(lar_landing *landing) {
     int count = 0;
@@ -129,6 +147,7 @@ static void settle(lar_landing *landing) {
         if (known) continue;
         find_ways(landing, &spot);
         for (int i = 0; i < 3; i++) spot.came[i] = speed_along(landing, &spot, i);
+        spot.back = thrown_back(landing, &spot);
         if (spot.yields > 1e-9 / landing->sum->mass) landing->spot[count++] = spot;
     }
     landing->count = count;
@@ -136,27 +155,13 @@ static void settle(lar_landing *landing) {
 
 /* ---- impulses -------------------------------------------------------------------------------- */
 
-/* Speed away from the plane of what would come below it, and faster than what lies there and falls
- * for a few steps. Restitution is of the speed in the middle of the step: what falls gains half of
- * what gravity gives in one before, and loses half behind. */
-static double thrown_back(const lar_landing *landing, const lar_landing_spot *spot) {
-    static const double STEPS = 4;
-    const lar_contact *plane = &landing->model->contact[spot->plane];
-    const double falls = -landing->dt * lar_dot(landing->model->gravity, plane->normal);
-    const double down = -spot->came[0], half = 0.5 * lar_greater(0, falls);
-    if (!(plane->restitution > 0) || !(down > STEPS * fabs(falls))) return 0;
-    if (!(down * landing->dt > spot->gap)) return 0;
-    return lar_greater(0, plane->restitution * (down - half) - half);
-}
-
 /* Not below the plane at the end of the step; what is, by what turns have of the second order,
  * comes up in a few. Returns how much the impulse changed. */
 static double press(lar_landing *landing, lar_landing_spot *spot) {
     static const double RISE = 0.2, FASTEST = 0.1; /* [m/s] */
     double wanted = spot->gap > 0 ? -spot->gap / landing->dt
                                   : lar_lesser(-RISE * spot->gap / landing->dt, FASTEST);
-    const double back = landing->bounces ? thrown_back(landing, spot) : 0;
-    if (back > 0) wanted = lar_greater(wanted, back);
+    if (landing->bounces && spot->back > 0) wanted = lar_greater(wanted, spot->back);
     const double more = (wanted - speed_along(landing, spot, 0)) / spot->yields;
     const double change = lar_greater(spot->push[0] + more, 0) - spot->push[0];
     spot->push[0] += change;
@@ -225,7 +230,7 @@ void lar_landing_end(lar_landing *landing) {
     settle(landing);
     landing->bounces = false;
     for (int k = 0; k < landing->count; k++)
-        landing->bounces = landing->bounces || thrown_back(landing, &landing->spot[k]) > 0;
+        landing->bounces = landing->bounces || landing->spot[k].back > 0;
     find_impulses(landing);
     if (landing->bounces && given(landing) > 0) {
         take_back(landing);

@@ -22,6 +22,7 @@ typedef struct lar_landing_spot {
     double most;        /* how far it goes in its direction [m] */
     double arm[3], gap; /* from sum->centre; above the plane [m] */
     double came[3];     /* from here on of those that touch: how fast, before all impulses [m/s] */
+    double back;        /* how fast the plane throws it back; 0: it does not [m/s] */
     double push[3];     /* impulses along its normal and along the plane [N s] */
     double yields, yields_beside; /* speed by an impulse of one [1/kg] */
     double way[3][3];             /* unit, of these impulses */
