@@ -351,9 +351,11 @@ static void closest_ago(const lar_body_contact *contact, const lar_state *state,
     lar_contact_place(contact, state, group->node, x, v);
     place_before(v, past, x);
     const bool flush = lar_offset_is_flush(contact, state, g);
+    int32_t hidden = flush ? contact->surface->flush_first[group->node] : 0;
     for (int32_t i = 0; i < group->count; i++) {
         all[i].point.distance = INFINITY;
-        if (flush && lar_flush_hides(contact->surface, group->node, face[i])) continue;
+        if (flush && lar_flush_hides_next(contact->surface, group->node, face[i], &hidden))
+            continue;
         if (!is_seen(s, i)) continue;
         lar_contact_corners(contact, state, face[i], corner, speed);
         for (int a = 0; a < 4; a++) place_before(speed[a], past, corner[a]);

@@ -207,6 +207,14 @@ bool lar_flush_hides(const lar_contact_surface *s, int32_t node, int32_t face) {
     return hides;
 }
 
+bool lar_flush_hides_next(const lar_contact_surface *s, int32_t node, int32_t face, int32_t *next) {
+    const int32_t body = s->face[face].body, end = s->flush_first[node + 1];
+    int32_t at = *next;
+    while (at < end && (s->flush[at] < face || s->face[s->flush[at]].body != body)) at++;
+    *next = at;
+    return at < end && s->flush[at] == face;
+}
+
 /* ---- past an edge -------------------------------------------------------------------------- */
 
 /* Whether a face has all corners that the closest point of another one is made of. */

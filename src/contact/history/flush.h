@@ -38,6 +38,11 @@ bool lar_flush_at_rest(const lar_contact_surface *surface, int32_t node, int32_t
 /* Whether a face is one that it does not see as long as it is flush. */
 bool lar_flush_hides(const lar_contact_surface *surface, int32_t node, int32_t face);
 
+/* The same for one face of a body after the other, ascending: *next is surface->flush_first[node]
+ * before the first one. */
+bool lar_flush_hides_next(const lar_contact_surface *surface, int32_t node, int32_t face,
+                          int32_t *next);
+
 /* Who slides off what it is flush with, past an edge of that where only hidden faces go on. There
  * it stands on the plane of the last face, less and less: the closest point stays on the edge, and
  * would hold it back like a nail. */

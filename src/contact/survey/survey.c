@@ -132,8 +132,10 @@ static void survey_group(lar_body_contact *contact, const lar_state *state, int3
     if (!s->flush || !lar_flush_hides(contact->surface, group->node, face[first]))
         distance_of_first =
             survey_face(contact, state, g, face[first], s, corner_of_first, &of_first);
+    int32_t hidden = s->flush ? contact->surface->flush_first[group->node] : 0;
     for (int32_t i = 0; i < group->count; i++) {
-        if (s->flush && lar_flush_hides(contact->surface, group->node, face[i])) continue;
+        if (s->flush && lar_flush_hides_next(contact->surface, group->node, face[i], &hidden))
+            continue;
         if (i != first && soon < away[i]) {
             if (away[i] < s->next) s->next = away[i];
             continue;
