@@ -443,6 +443,8 @@ static bool in_contact(lar_body_contact *contact, const lar_state *state, int32_
     lar_survey s;
     lar_rim rim;
     int32_t face = lar_survey_closest(contact, state, g, &s, &point);
+    if (s.flush && group->node < surface->node_count)
+        lar_offset_lose_flush(contact, state, group->node, lar_group_first(&contact->list, g));
     if (face >= 0 && touches(contact, state, group->node, face, &s, &point, &rim))
         return push(contact, state, g, face, &point, &s, &rim, t);
     if (lar_group_is_own(contact->surface, &contact->list, group)) {

@@ -164,7 +164,7 @@ typedef struct lar_body_contact {
     lar_body_contact_part *part; /* [list.group_room] */
     uint8_t *keeps;              /* [contact nodes] those that this thread moves; NULL: all */
     int32_t offset_count;
-    lar_penetration_offset *offset; /* [2 list.group_room] of these nodes, from when they move on */
+    lar_penetration_offset *offset; /* [3 list.group_room] of these nodes, from when they move on */
     lar_body_friction *friction;    /* NULL: no body is rough */
     bool fresh;                     /* no forces have been computed with the list */
     bool too_many_pairs;            /* there was no room for all pairs: the run must stop */
@@ -376,6 +376,12 @@ bool lar_offset_is_flush(const lar_body_contact *contact, const lar_state *state
  * beside it, or too far above. `face`: the closest one that it sees, or -1. */
 void lar_offset_stay_flush(lar_body_contact *contact, const lar_state *state, int32_t g,
                            int32_t face, const lar_face_point *closest);
+
+/* Bodies that are not listed any more are out of reach: a node that is flush has parted when it was
+ * so with one of these, unless it stands on another. To be asked in every step, or it would depend
+ * on the list when it parts. Its groups begin at `first`, if it has some. */
+void lar_offset_lose_flush(lar_body_contact *contact, const lar_state *state, int32_t node,
+                           int32_t first);
 
 /* The node of group g is not flush and touches nothing of that body: where it has been flush with
  * it and is straight before a face now, and near, it is so again. How far it may go before that has

@@ -44,16 +44,13 @@ static int32_t body_behind(const lar_body_contact *contact, int32_t n, double of
 }
 
 /* Of a node that is flush; `g` is of group_with. */
-static void look_at_flush(lar_body_contact *contact, int32_t n, int32_t g) {
+static void look_at_flush(lar_body_contact *contact, const lar_state *state, int32_t n, int32_t g) {
     int32_t at = 0, body = -1;
     while (lar_flush_next_body(contact->surface, n, &at, &body)) {
         int32_t found = group_with(contact, n, body, &g);
-        if (found < 0) {
-            lar_offset_part(contact, n);
-            return;
-        }
-        contact->due[found] = 0;
+        if (found >= 0) contact->due[found] = 0;
     }
+    lar_offset_lose_flush(contact, state, n, g);
 }
 
 void lar_body_contact_end_offsets(lar_body_contact *contact, const lar_state *state) {
@@ -63,7 +60,7 @@ void lar_body_contact_end_offsets(lar_body_contact *contact, const lar_state *st
         if (contact->keeps && !contact->keeps[n]) continue;
         int32_t local = contact->view.local[n];
         double before = fabs(state->level[local]);
-        if (!signbit(state->level[local])) look_at_flush(contact, n, g);
+        if (!signbit(state->level[local])) look_at_flush(contact, state, n, g);
         if (before == 0 || before == LAR_OFFSET_OUT) continue;
         int32_t found = group_with(contact, n, body_behind(contact, n, before), &g);
         if (found >= 0)
@@ -293,7 +290,7 @@ static lar_status allocate(lar_body_contact *contact, const int32_t *local, lar_
     contact->near = lar_calloc(groups, sizeof *contact->near);
     contact->away = lar_calloc(pairs, sizeof *contact->away);
     contact->part = lar_calloc(groups, sizeof *contact->part);
-    contact->offset = lar_calloc(2 * groups, sizeof *contact->offset);
+    contact->offset = lar_calloc(3 * groups, sizeof *contact->offset);
     if (!own || !search_state->x || !search_state->searched || !contact->due || !contact->last ||
         !contact->near || !contact->away || !contact->part || !contact->offset)
         return lar_fail_memory(error, groups * sizeof *contact->part, "contact of bodies");

@@ -43,6 +43,8 @@ typedef struct lar_contact_body {
     double standoff; /* the contact distance: how far apart it and others push each other already,
                         at most [m] */
     double firm;     /* springs beside it are at least so stiff, where the step bears it [1/s^2] */
+    bool cut;        /* by planes of symmetry: it ends there, */
+    double from[3], to[3]; /* and all of it is between these; INFINITY: there is none [m] */
 } lar_contact_body;
 
 /* Nodes of the faces below: "contact nodes". */
@@ -117,6 +119,12 @@ typedef struct lar_contact_list {
 static inline bool lar_group_is_own(const lar_contact_surface *surface,
                                     const lar_contact_list *list, const lar_contact_group *group) {
     return surface->face[list->face[group->first]].body == surface->node[group->node].body;
+}
+
+/* The first group of its node. */
+static inline int32_t lar_group_first(const lar_contact_list *list, int32_t g) {
+    while (g > 0 && list->group[g - 1].node == list->group[g].node) g--;
+    return g;
 }
 
 /* Without contacts of these kinds node_count is 0 and nothing is allocated. mass[local[node]] is

@@ -265,7 +265,7 @@ static lar_status create_contact(const lar_body_contact *whole, int32_t thread, 
                                   .near = lar_calloc(groups, sizeof *contact->near),
                                   .away = lar_calloc(pairs, sizeof *contact->away),
                                   .part = lar_calloc(groups, sizeof *contact->part),
-                                  .offset = lar_calloc(2 * groups, sizeof *contact->offset)};
+                                  .offset = lar_calloc(3 * groups, sizeof *contact->offset)};
     contact->list.group = lar_calloc(groups, sizeof *contact->list.group);
     contact->list.face = lar_calloc(pairs, sizeof *contact->list.face);
     contact->list.gap = lar_calloc(pairs, sizeof *contact->list.gap);

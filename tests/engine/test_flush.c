@@ -321,6 +321,46 @@ static void who_meets_along_a_line_stays(void **unused) {
     }
 }
 
+static bool has_parted(const lar_simulation *s, int32_t node) {
+    return signbit(s->state.level[s->domain.layout.local[node]]);
+}
+
+/* Two cubes stand on a slab, flush with it and each other, and one slides off. The lower corners of
+ * the side that they had in common are flush with the slab still, whether the cube that has gone is
+ * in the list or not. */
+static uint64_t one_has_gone(const lar_model *model, const brick *cube, int32_t stays, int always) {
+    lar_options options = lar_options_default();
+    options.search_always = always;
+    lar_simulation *s = start_with(model, options);
+    while (lar_simulation_time(s) < 0.2) advance(s, 20);
+    const uint64_t hash = lar_simulation_hash(s);
+    const lar_node_list side = brick_side(cube, 0, -1);
+    for (int32_t i = 0; i < side.count; i++) {
+        const int32_t node = stays + side.node[i];
+        const double y = model->mesh.position[node][1], z = model->mesh.position[node][2];
+        if (y == 0) assert_int_equal(has_parted(s, node), z > 0.011);
+    }
+    free(side.node);
+    lar_simulation_destroy(s);
+    return hash;
+}
+
+static void who_stands_on_another_stays_flush(void **unused) {
+    (void)unused;
+    const brick slab = {{8, 2, 2}, 0.005, 0, LAR_LAW_neo_hookean, 2e3, 2e4, 1000};
+    const brick cube = {{2, 2, 2}, 0.005, 0, LAR_LAW_neo_hookean, 2e3, 2e4, 1000};
+    lar_model *model = empty_model(&slab);
+    add_brick(model, &slab, (double[]){0, 0, 0});
+    const int32_t goes = add_brick(model, &cube, (double[]){0.01, 0, 0.01});
+    const int32_t stays = add_brick(model, &cube, (double[]){0, 0, 0.01});
+    touch_self(model);
+    fix_nodes(model, brick_side(&slab, 2, 0), LAR_AXIS_ALL);
+    throw_nodes(model, goes, stays, (double[]){0.1, 0, 0});
+    memcpy(model->gravity, (double[]){0, 0, -9.81}, 24);
+    assert_true(one_has_gone(model, &cube, stays, 0) == one_has_gone(model, &cube, stays, 1));
+    lar_model_destroy(model);
+}
+
 static void it_has_the_same_bits(void **unused) {
     (void)unused;
     static const halves run = {90, 260}; /* in the middle of parting */
@@ -397,6 +437,7 @@ int main(void) {
         cmocka_unit_test(an_oblique_cut_bears),
         cmocka_unit_test(who_meets_along_a_line_stays),
         cmocka_unit_test(who_slides_off_gains_nothing),
+        cmocka_unit_test(who_stands_on_another_stays_flush),
         cmocka_unit_test(it_has_the_same_bits),
         cmocka_unit_test(who_falls_straight_on_it_stays_out),
         cmocka_unit_test(files_hold_who_parted_and_is_behind),

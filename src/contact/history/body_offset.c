@@ -218,11 +218,10 @@ lar_joint lar_joint_of(const lar_body_contact *contact, const lar_state *state, 
     const int32_t node = list->group[g].node;
     lar_joint joint = LAR_JOINT_NONE;
     double normal[3];
-    int32_t h = g;
+    int32_t h = lar_group_first(list, g);
     if (!is_straight(point)) return LAR_JOINT_NONE;
     lar_face_normal(corner, normal);
     *within = within_edges(contact->surface, face, corner, point);
-    while (h > 0 && list->group[h - 1].node == node) h--;
     for (; h < list->group_count && list->group[h].node == node; h++) {
         const lar_contact_group *third = &list->group[h];
         if (h == g || lar_group_is_own(contact->surface, list, third)) continue;
@@ -394,26 +393,42 @@ static double reach_of(const lar_body_contact *contact, int32_t node, int32_t fa
     return lar_contact_reach(s, &s->node[node], &s->face[face]);
 }
 
-/* Whether the node of group g, which is flush, is near another body that it is flush with, or
+/* Whether a node that is flush is near a body that it is flush with, other than that of group g, or
  * stands on it. What it remembers is for all together: at a line where four blocks meet, two part
- * and each stays on what it stands on. */
-static bool stands_on_another(const lar_body_contact *contact, const lar_state *state, int32_t g) {
+ * and each stays on what it stands on. Its groups begin at `first`. */
+static bool stands_on_another(const lar_body_contact *contact, const lar_state *state, int32_t node,
+                              int32_t first, int32_t g) {
     const lar_contact_surface *s = contact->surface;
     const lar_contact_list *list = &contact->list;
-    const int32_t node = list->group[g].node;
-    int32_t h = g;
     closest_face now;
-    while (h > 0 && list->group[h - 1].node == node) h--;
-    for (; h < list->group_count && list->group[h].node == node; h++) {
-        const int32_t first = list->face[list->group[h].first];
-        if (h == g || !lar_flush_at_rest(s, node, s->face[first].body)) continue;
+    for (int32_t h = first; h < list->group_count && list->group[h].node == node; h++) {
+        const int32_t face = list->face[list->group[h].first];
+        if (h == g || !lar_flush_at_rest(s, node, s->face[face].body)) continue;
         closest_ago(contact, state, h, NULL, 0, &now);
-        const double near = LAR_FLUSH_NEAR * s->face[first].size;
-        if (now.point.distance < near ||
-            (is_behind(&now, reach_of(contact, node, first)) && is_straight(&now.point)))
+        /* Who is out of reach is not in every list. */
+        const double reach = reach_of(contact, node, face);
+        if (now.point.distance < fmin(LAR_FLUSH_NEAR * s->face[face].size, reach) ||
+            (is_behind(&now, reach) && is_straight(&now.point)))
             return true;
     }
     return false;
+}
+
+static bool is_listed(const lar_body_contact *contact, int32_t node, int32_t first, int32_t body) {
+    const lar_contact_list *list = &contact->list;
+    for (int32_t h = first; h < list->group_count && list->group[h].node == node; h++)
+        if (contact->surface->face[list->face[list->group[h].first]].body == body) return true;
+    return false;
+}
+
+void lar_offset_lose_flush(lar_body_contact *contact, const lar_state *state, int32_t node,
+                           int32_t first) {
+    int32_t at = 0, body = -1;
+    bool lost = false;
+    if (contact->keeps && !contact->keeps[node]) return;
+    while (!lost && lar_flush_next_body(contact->surface, node, &at, &body))
+        lost = !is_listed(contact, node, first, body);
+    if (lost && !stands_on_another(contact, state, node, first, -1)) lar_offset_part(contact, node);
 }
 
 void lar_offset_stay_flush(lar_body_contact *contact, const lar_state *state, int32_t g,
@@ -425,7 +440,8 @@ void lar_offset_stay_flush(lar_body_contact *contact, const lar_state *state, in
     double near = 0;
     if (face >= 0 && closest->height < 0) near = ROUNDING * s->face[face].size;
     if (face >= 0 && !(closest->height < 0)) near = near_of(s, node, face);
-    if ((face < 0 || !(closest->distance < near)) && !stands_on_another(contact, state, g))
+    if ((face < 0 || !(closest->distance < near)) &&
+        !stands_on_another(contact, state, node, lar_group_first(&contact->list, g), g))
         lar_offset_part(contact, node);
 }
 

@@ -144,14 +144,14 @@ static bool may_be_flush(const lar_contact_surface *s, const lar_contact_list *l
                          const around *faces, int32_t g) {
     const lar_contact_group *group = &list->group[g];
     const standing with = standing_of(s, list, faces, group);
-    int32_t parent[LAR_CONTACT_PARENTS], h = g;
+    int32_t parent[LAR_CONTACT_PARENTS];
     double weight[LAR_CONTACT_PARENTS];
     if (with != STRAIGHT) return with == NEAR;
     int count = lar_contact_parents(s, group->node, parent, weight);
     for (int k = 0; k < count && count > 1; k++)
         if (!lar_flush_at_rest(s, parent[k], s->face[list->face[group->first]].body)) return false;
-    while (h > 0 && list->group[h - 1].node == group->node) h--;
-    for (; h < list->group_count && list->group[h].node == group->node; h++)
+    for (int32_t h = lar_group_first(list, g);
+         h < list->group_count && list->group[h].node == group->node; h++)
         if (h != g && !lar_group_is_own(s, list, &list->group[h]) &&
             standing_of(s, list, faces, &list->group[h]) != AWAY)
             return false;
