@@ -197,6 +197,14 @@ static void take_distances(const workspace *d) {
     }
 }
 
+/* A face that is none in contact may be where its body, of that number, ends at a plane. */
+static void note_end(const workspace *d, int32_t f, int32_t number) {
+    if (number < 0) return;
+    lar_contact_body *body = &d->surface->body[number];
+    const bool ends = lar_symmetry_ends(&d->symmetry, d->model, f, body->from, body->to);
+    body->cut = body->cut || ends;
+}
+
 /* Bodies count from 0, in the order of their first nodes. */
 static lar_status number_bodies(workspace *d, lar_error *error) {
     lar_contact_surface *s = d->surface;
@@ -209,9 +217,15 @@ static lar_status number_bodies(workspace *d, lar_error *error) {
     s->body = lar_calloc((size_t)s->body_count, sizeof *s->body);
     if (!s->body) return lar_fail_memory(error, (size_t)s->body_count * sizeof *s->body, "bodies");
     for (int32_t b = 0; b < s->body_count; b++)
-        s->body[b] = (lar_contact_body){.reach = {INFINITY, INFINITY}, .clear = INFINITY};
+        s->body[b] = (lar_contact_body){.reach = {INFINITY, INFINITY},
+                                        .clear = INFINITY,
+                                        .from = {-INFINITY, -INFINITY, -INFINITY},
+                                        .to = {INFINITY, INFINITY, INFINITY}};
     for (int32_t f = 0; f < d->model->surface.face_count; f++) {
-        if (d->face_of[f] < 0) continue;
+        if (d->face_of[f] < 0) {
+            note_end(d, f, number[d->body[d->model->surface.corner[f][0]]]);
+            continue;
+        }
         lar_contact_face *face = &s->face[d->face_of[f]];
         face->body = s->node[face->corner[0]].body;
         lar_contact_body *body = &s->body[face->body];

@@ -67,6 +67,52 @@ static void half_a_wedge_is_pressed_in_with_half_the_force(void **unused) {
     assert_below(fabs(2 * force[1] / force[0] - 1), 5e-3);
 }
 
+/* A plate on a block is led down and across the plane where that ends, two rows of nodes beyond it:
+ * what the block feels across the plane and down [N]. */
+static void press_plate(double force[2]) {
+    static const brick block = {{8, 3, 4}, edge, 0, LAR_LAW_neo_hookean, 1e3, 9.6e3, 1000};
+    static const brick plate = {{4, 6, 1}, edge, 0, LAR_LAW_neo_hookean, 1e3, 9.6e3, 1000};
+    lar_model *model = empty_model(&block);
+    add_brick(model, &block, (double[]){-4 * edge, 0, -4 * edge});
+    const int32_t nodes = model->mesh.node_count, elements = model->mesh.element_count;
+    fix_nodes(model, brick_side(&block, 2, 0), LAR_AXIS_ALL);
+    fix_nodes(model, brick_side(&block, 1, 0), LAR_AXIS_Y);
+    add_brick(model, &plate, (double[]){-2 * edge, 0.5 * edge, 0});
+    lar_node_list moved = {model->mesh.node_count - nodes, NULL}, across = moved, still = moved;
+    moved.node = lar_calloc((size_t)moved.count, sizeof(int32_t));
+    across.node = lar_calloc((size_t)across.count, sizeof(int32_t));
+    still.node = lar_calloc((size_t)still.count, sizeof(int32_t));
+    for (int32_t n = nodes; n < model->mesh.node_count; n++)
+        moved.node[n - nodes] = across.node[n - nodes] = still.node[n - nodes] = n;
+    fix_nodes(model, still, LAR_AXIS_X);
+    move_nodes(model, moved, LAR_AXIS_Z, -0.5 * edge, add_ramp(model, 0.05));
+    move_nodes(model, across, LAR_AXIS_Y, -2 * edge, add_ramp(model, 0.05));
+    touch_between(model, elements);
+    model->damping = 100;
+    lar_simulation *s = start(model);
+    while (lar_simulation_time(s) < 0.08) advance(s, 8);
+    double(*all)[3] = calloc((size_t)model->mesh.node_count, sizeof *all);
+    assert_non_null(all);
+    assert_int_equal(lar_simulation_nodal_forces(s, LAR_CAUSE_BODIES, 0, all, NULL), LAR_OK);
+    force[0] = force[1] = 0;
+    for (int32_t n = 0; n < nodes; n++) {
+        force[0] += all[n][1];
+        force[1] -= all[n][2];
+    }
+    free(all);
+    finish(s, model);
+}
+
+static void nothing_is_pushed_across_the_plane(void **unused) {
+    (void)unused;
+    double force[2];
+    press_plate(force);
+    print_message("a plate beyond the plane: %.4f mN across, %.4f down\n", 1e3 * force[0],
+                  1e3 * force[1]);
+    assert_true(force[1] > 0);
+    assert_below(fabs(force[0]), 0.05 * force[1]);
+}
+
 /* A sphere in the plane of symmetry. */
 static void half_a_sphere_is_as_hard(void **unused) {
     (void)unused;
@@ -109,6 +155,7 @@ static void who_is_far_away_is_not_inside(void **unused) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(half_a_wedge_is_pressed_in_with_half_the_force),
+        cmocka_unit_test(nothing_is_pushed_across_the_plane),
         cmocka_unit_test(half_a_sphere_is_as_hard),
         cmocka_unit_test(who_is_far_away_is_not_inside),
     };

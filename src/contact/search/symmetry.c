@@ -3,9 +3,13 @@
 #include <math.h>
 #include <stdlib.h>
 
+static double tie_of(const lar_symmetry *s, int axis) {
+    return 1e-6 * (s->end[3 + axis] - s->end[axis]);
+}
+
 static bool lies_at(const lar_symmetry *s, const lar_model *model, int32_t f, int end) {
     const int axis = end % 3;
-    const double tie = 1e-6 * (s->end[3 + axis] - s->end[axis]);
+    const double tie = tie_of(s, axis);
     bool lies = true;
     for (int a = 0; a < 4; a++) {
         const double x = model->mesh.position[model->surface.corner[f][a]][axis];
@@ -41,5 +45,19 @@ lar_status lar_symmetry_find(const lar_model *model, lar_symmetry *s, lar_error 
 bool lar_symmetry_cuts(const lar_symmetry *s, const lar_model *model, int32_t face) {
     bool cuts = false;
     for (int end = 0; end < 6; end++) cuts = cuts || (s->cut[end] && lies_at(s, model, face, end));
+    return cuts;
+}
+
+bool lar_symmetry_ends(const lar_symmetry *s, const lar_model *model, int32_t face, double from[3],
+                       double to[3]) {
+    bool cuts = false;
+    for (int end = 0; end < 6; end++) {
+        if (!s->cut[end] || !lies_at(s, model, face, end)) continue;
+        cuts = true;
+        if (end < 3)
+            from[end] = s->end[end] - tie_of(s, end);
+        else
+            to[end - 3] = s->end[end] + tie_of(s, end - 3);
+    }
     return cuts;
 }

@@ -21,4 +21,8 @@ lar_status lar_symmetry_find(const lar_model *model, lar_symmetry *symmetry, lar
 /* Whether a face of the model's surface lies in one of these planes, whatever holds it. */
 bool lar_symmetry_cuts(const lar_symmetry *symmetry, const lar_model *model, int32_t face);
 
+/* The same; then moves the ends of its body there. */
+bool lar_symmetry_ends(const lar_symmetry *symmetry, const lar_model *model, int32_t face,
+                       double from[3], double to[3]);
+
 #endif

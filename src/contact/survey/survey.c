@@ -316,10 +316,28 @@ static bool is_in_joint(const lar_body_contact *contact, int32_t g, const lar_su
     return s->beyond || s->min <= s->beside + LAR_JOINT_STEP * contact->surface->face[face].size;
 }
 
+/* Whether the node of group g is beyond a plane of symmetry, where the body ends. Of its mirror
+ * image there are no faces: the last ones before the plane would push it across the plane, as deep
+ * as it is beyond. */
+static bool is_beyond_end(const lar_body_contact *contact, const lar_state *state, int32_t g,
+                          lar_survey *s) {
+    const lar_contact_group *group = &contact->list.group[g];
+    const int32_t face = contact->list.face[group->first];
+    const lar_contact_body *body = &contact->surface->body[contact->surface->face[face].body];
+    bool beyond = false;
+    if (!body->cut || lar_same_body(contact, group->node, face)) return false;
+    lar_contact_place(contact, state, group->node, s->x, NULL);
+    for (int i = 0; i < 3; i++) beyond = beyond || s->x[i] < body->from[i] || s->x[i] > body->to[i];
+    return beyond;
+}
+
 int32_t lar_survey_closest(lar_body_contact *contact, const lar_state *state, int32_t g,
                            lar_survey *s, lar_face_point *point) {
     const lar_contact_group *group = &contact->list.group[g];
-    s->inside = false;
+    s->inside = s->flush = false;
+    s->before = s->gap = INFINITY;
+    contact->due[g] = 0;
+    if (is_beyond_end(contact, state, g, s)) return -1;
     s->joints = true;
     survey_group(contact, state, g, s);
     /* Who was farther than a face that is not seen now may be the closest one. */
