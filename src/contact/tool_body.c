@@ -151,6 +151,9 @@ typedef struct follow_law {
     double drag, seconds; /* [N s/m], of the interval */
     double farthest;      /* way in the interval [m] */
     double carries;       /* the part of its drag that it goes with, but does not turn or close */
+    double way[3];        /* of the hand meanwhile: that goes, turns and closes it, as far as the
+                             tool goes with it [m] */
+    double room;          /* how much farther each of them may be [m] */
 } follow_law;
 
 static double dot(int count, const double *a, const double *b) {
@@ -185,6 +188,13 @@ static bool go(const follow_law *law, int count, const double *gap, const double
     for (int i = 0; i < count; i++)
         way[i] = law->seconds / law->drag * (drawn[i] * share + against[i]) + helped * pushed[i];
     return shorten(law, count, way) && share == 1 && sqrt(dot(count, gap, gap)) <= law->farthest;
+}
+
+/* Of the hand's ways the one that belongs to these coordinates. */
+static follow_law with_hand(const follow_law *law, int which) {
+    follow_law goes = *law;
+    goes.farthest = fmax(law->farthest, law->way[which] + fmin(law->farthest, law->room));
+    return goes;
 }
 
 /* Turns `from` by a small rotation vector. */
@@ -225,7 +235,8 @@ static void step_pose(const lar_tool *tool, const lar_tool_limits *limits, const
                       const follow_law *law, const lar_tool_pose *now, const lar_tool_pose *hand,
                       lar_tool_pose *next) {
     double gap[3], way[3], pushed[3], lever = limits->lever;
-    follow_law goes = *law;
+    follow_law goes = with_hand(law, 0);
+    const follow_law turns = with_hand(law, 1), closes = with_hand(law, 2);
     goes.drag *= law->carries;
     *next = *hand;
     lar_minus(hand->position, now->position, gap);
@@ -238,14 +249,14 @@ static void step_pose(const lar_tool *tool, const lar_tool_limits *limits, const
         gap[i] *= lever;
         pushed[i] = mean->excess * mean->torque[i] / lever;
     }
-    if (!go(law, 3, gap, pushed, draws(mean, limits, law, pushed), way)) {
+    if (!go(&turns, 3, gap, pushed, draws(mean, limits, law, pushed), way)) {
         for (int i = 0; i < 3; i++) way[i] /= lever;
         turn_by(now->orientation, way, next->orientation);
     }
     if (tool->shape != LAR_TOOL_GRASPER || !(limits->travel > 0)) return;
     gap[0] = limits->travel * (hand->opening - now->opening);
     pushed[0] = mean->opens * mean->squeeze;
-    if (!go(law, 1, gap, pushed, mean->touched ? mean->grasp_force : INFINITY, way))
+    if (!go(&closes, 1, gap, pushed, mean->touched ? mean->grasp_force : INFINITY, way))
         next->opening = fmin(1, fmax(0, now->opening + way[0] / limits->travel));
 }
 
@@ -273,6 +284,25 @@ static double carries(const mean_load *mean, const lar_tool_limits *limits,
     return fmin(1, fmax(LEAST, force / (LIGHT * limits->force)));
 }
 
+/* What touches nothing goes as fast as its hand, and faster until it is there: one that a blow has
+ * kept back for a millisecond would else be farther behind a faster hand for ever. */
+static void go_with(const lar_tool *tool, const lar_tool_limits *limits, const lar_tool_pose *from,
+                    const lar_tool_pose *to, double steps, follow_law *law) {
+    static const double HALF = 0.5; /* of its radius a tool may go in a step (lariat.h) */
+    const double most = HALF * tool->radius * steps;
+    double way[3], turn[3], all = 0;
+    lar_minus(to->position, from->position, way);
+    turn_between(from->orientation, to->orientation, turn);
+    law->way[0] = lar_length(way);
+    law->way[1] = limits->lever * lar_length(turn);
+    law->way[2] = limits->travel * fabs(to->opening - from->opening);
+    for (int i = 0; i < 3; i++) {
+        law->way[i] = fmin(law->way[i], most);
+        all += law->way[i];
+    }
+    law->room = fmax(0, most - all) / 3;
+}
+
 /* A tool that is kept from following goes its own way; one that has come back to its hand follows
  * again. Jaws that are opened at once are held back likewise, or what they let go would fly as if
  * nothing had held it. True when it goes elsewhere than before. */
@@ -291,10 +321,11 @@ static bool follow(const lar_tool *tool, const lar_tool_limits *limits, lar_tool
     lar_tool_at(&follower->hand, step, time_step, &hand, NULL);
     lar_tool_at(&follower->hand, until, time_step, &then, NULL);
     double steps = (double)(until - step), seconds = steps * time_step;
-    const follow_law law = {.drag = fmax(limits->drag * tools->hardness[index], limits->firm_drag),
-                            .carries = carries(mean, limits, motion),
-                            .seconds = seconds,
-                            .farthest = fmin(SHARE * tool->radius * steps, FASTEST * seconds)};
+    follow_law law = {.drag = fmax(limits->drag * tools->hardness[index], limits->firm_drag),
+                      .carries = carries(mean, limits, motion),
+                      .seconds = seconds,
+                      .farthest = fmin(SHARE * tool->radius * steps, FASTEST * seconds)};
+    if (!mean->touched) go_with(tool, limits, &hand, &then, steps, &law);
     step_pose(tool, limits, mean, &law, &now, &then, &next);
     bool held_back = follower->load > 1 || (slower && !same_pose(&next, &then)) ||
                      springs_open(tool, limits, mean, &law, &now, &then);

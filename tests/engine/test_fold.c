@@ -164,7 +164,7 @@ static lar_model *pressed_tool_model(const brick *b) {
 
 static same_bits body = {pressed_tool_model,
                          LAR_TEST_BUILD "/fold.checkpoint",
-                         {0xa882746e492e7d94, 0x03baa43ff0e6509a}};
+                         {0xa882746e492e7d94, 0x4c7fba840905b83d}};
 
 static void a_saved_run_goes_on(void **unused) {
     (void)unused;

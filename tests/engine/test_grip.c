@@ -157,12 +157,45 @@ static void bits_are_the_same_everywhere(void **unused) {
     }
 }
 
+/* A ball on a way at 1 m/s meets a stone that lies before it: the blow holds it back for a
+ * millisecond, then it is where it is led. Before, it went on at half the speed for ever. */
+static void a_fast_tool_catches_up(void **unused) {
+    (void)unused;
+    static const brick b = {{2, 2, 2}, 0.01, 0, LAR_LAW_neo_hookean, 1e5, 1e6, 2500};
+    lar_model *model = empty_model(&b);
+    add_brick(model, &b, (double[]){-half, -half, -half});
+    add_tool(model, "ball", LAR_TOOL_SPHERE, -half - 0.007, 0, -0.002);
+    model->tool[0].radius = 0.005;
+    bind_nodes(model, 0, 27);
+    lar_simulation *s = start(model);
+    const uint64_t steps = (uint64_t)(0.05 / lar_simulation_time_step(s));
+    const double way = (double)steps * lar_simulation_time_step(s); /* at 1 m/s */
+    lar_tool_force felt;
+    bool limited = false;
+    place_tool(s, 0, -half - 0.007 + way, 0, -0.002, 1, steps);
+    for (uint64_t i = 0; i < steps; i++) {
+        advance(s, 1);
+        assert_int_equal(lar_simulation_tool_force(s, 0, &felt, NULL), LAR_OK);
+        limited = limited || felt.limited;
+    }
+    lar_tool_pose pose;
+    assert_int_equal(lar_simulation_tool_pose(s, 0, &pose, NULL), LAR_OK);
+    print_message("the ball is %.3f mm from where it is led, the stone went %.1f mm\n",
+                  1e3 * felt.apart, 1e3 * node_u(s, 0)[0]);
+    assert_true(limited);
+    assert_true(!felt.limited && felt.apart == 0);
+    assert_below(fabs(pose.position[0] - (-half - 0.007 + way)), 1e-9);
+    assert_true(node_u(s, 0)[0] > 0.02);
+    finish(s, model);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_is_held_does_not_creep),
         cmocka_unit_test(what_slides_has_coulombs_force),
         cmocka_unit_test(what_is_touched_is_felt),
         cmocka_unit_test(bits_are_the_same_everywhere),
+        cmocka_unit_test(a_fast_tool_catches_up),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -167,6 +167,7 @@ static void write_tools(lar_json *json, const lar_simulation *simulation) {
         lar_json_integer(json, "touching", force.touching);
         lar_json_integer(json, "held", force.held);
         lar_json_number(json, "depth", force.depth);
+        lar_json_number(json, "apart", force.apart);
         lar_json_close(json);
     }
     lar_json_close(json);
@@ -378,7 +379,7 @@ static void print_depth(const run_report *report, const lar_tool_info *info,
             two_digits_of(0.5 * lar_simulation_time_step(report->simulation)));
 }
 
-/* Nothing of tools that neither touch nor hold. */
+/* Nothing of tools that neither touch nor hold, and are where they are led. */
 static void print_tools(const run_report *report, const lar_energy *energy, FILE *out) {
     static const double LATE = 0.1; /* radii */
     const lar_simulation *simulation = report->simulation;
@@ -388,7 +389,8 @@ static void print_tools(const run_report *report, const lar_energy *energy, FILE
         lar_tool_force force;
         if (!tool_of(simulation, i, &info, &force)) continue;
         const bool moves = info.shape == LAR_TOOL_RIGID;
-        if (force.touching == 0 && force.held == 0 && !moves) continue;
+        const bool late = force.limited && force.apart > LATE * info.radius;
+        if (force.touching == 0 && force.held == 0 && !moves && !late) continue;
         const double *f = force.force, *t = force.torque;
         fprintf(out, "%-17s%s: %.3g N", "tool", info.name,
                 sqrt(f[0] * f[0] + f[1] * f[1] + f[2] * f[2]));
@@ -397,7 +399,7 @@ static void print_tools(const run_report *report, const lar_energy *energy, FILE
             fprintf(out, " and %.3g N m on the nodes that it moves",
                     sqrt(t[0] * t[0] + t[1] * t[1] + t[2] * t[2]));
         if (force.held > 0) fprintf(out, ", holds %d points", (int)force.held);
-        if (force.limited && force.apart > LATE * info.radius)
+        if (late)
             fprintf(out, ", kept %.3g %s from where it is led", unit.per_metre * force.apart,
                     unit.name);
         fputc('\n', out);
