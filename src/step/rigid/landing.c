@@ -117,21 +117,30 @@ static void find_ways(const lar_landing *landing, lar_landing_spot *spot) {
                           fabs(yields(landing, spot, 1, 2));
 }
 
+/* How it comes, and half of what the step's forces have given it of that. */
+static void come(const lar_landing *landing, lar_landing_spot *spot) {
+    double turn[3];
+    lar_symmetric_product(landing->inverse, landing->sum->had_spin, turn);
+    for (int k = 0; k < 3; k++) {
+        double had = 0;
+        for (int i = 0; i < 3; i++)
+            had += spot->way[k][i] * landing->sum->had[i] * landing->light[i] +
+                   spot->lever[k][i] * turn[i];
+        spot->came[k] = speed_along(landing, spot, k);
+        spot->half[k] = 0.5 * (spot->came[k] - had);
+    }
+}
+
 /* Speed away from the plane of what would come below it, and came faster than what lies there falls
  * in a few steps. Restitution is of the speed in the middle of the step: half of what the step's
  * forces give comes before, and half behind. */
 static double thrown_back(const lar_landing *landing, const lar_landing_spot *spot) {
     static const double STEPS = 4;
     const lar_contact *plane = &landing->model->contact[spot->plane];
-    const double down = -spot->came[0], least = STEPS * lar_length(landing->model->gravity);
-    double had = 0, had_turn[3];
+    const double least = STEPS * lar_length(landing->model->gravity) * landing->dt;
+    const double down = -spot->came[0], half = lar_greater(0, -spot->half[0]);
     if (!(plane->restitution > 0) || !(down * landing->dt > spot->gap)) return 0;
-    lar_symmetric_product(landing->inverse, landing->sum->had_spin, had_turn);
-    for (int i = 0; i < 3; i++)
-        had -= spot->way[0][i] * landing->sum->had[i] * landing->light[i] +
-               spot->lever[0][i] * had_turn[i];
-    if (!(had > least * landing->dt)) return 0;
-    const double half = 0.5 * lar_greater(0, down - had);
+    if (!(down + 2 * spot->half[0] > least)) return 0;
     return lar_greater(0, plane->restitution * (down - half) - half);
 }
 
@@ -146,7 +155,7 @@ static void settle(lar_landing *landing) {
                     (landing->spot[i].node == spot.node && landing->spot[i].plane == spot.plane);
         if (known) continue;
         find_ways(landing, &spot);
-        for (int i = 0; i < 3; i++) spot.came[i] = speed_along(landing, &spot, i);
+        come(landing, &spot);
         spot.back = thrown_back(landing, &spot);
         if (spot.yields > 1e-9 / landing->sum->mass) landing->spot[count++] = spot;
     }
@@ -161,7 +170,8 @@ static double press(lar_landing *landing, lar_landing_spot *spot) {
     static const double RISE = 0.2, FASTEST = 0.1; /* [m/s] */
     double wanted = spot->gap > 0 ? -spot->gap / landing->dt
                                   : lar_lesser(-RISE * spot->gap / landing->dt, FASTEST);
-    if (landing->bounces && spot->back > 0) wanted = lar_greater(wanted, spot->back);
+    if (landing->bounces * spot->back > 0)
+        wanted = lar_greater(wanted, landing->bounces * spot->back);
     const double more = (wanted - speed_along(landing, spot, 0)) / spot->yields;
     const double change = lar_greater(spot->push[0] + more, 0) - spot->push[0];
     spot->push[0] += change;
@@ -207,15 +217,18 @@ static void find_impulses(lar_landing *landing) {
     }
 }
 
-/* What the impulses have given the body [J]. */
-static double given(const lar_landing *landing) {
-    double sum = 0;
+/* Whether the impulses have given the body energy, at its speeds in the middle of the step. */
+static bool gives(const lar_landing *landing) {
+    static const double ROUNDING = 1e-12;
+    double sum = 0, all = 0;
     for (int k = 0; k < landing->count; k++)
         for (int i = 0; i < 3; i++) {
             const lar_landing_spot *spot = &landing->spot[k];
-            sum += 0.5 * spot->push[i] * (spot->came[i] + speed_along(landing, spot, i));
+            const double came = spot->came[i] - spot->half[i];
+            sum += spot->push[i] * (came + (speed_along(landing, spot, i) - spot->half[i]));
+            all += fabs(spot->push[i] * came);
         }
-    return sum;
+    return sum > ROUNDING * all;
 }
 
 static void take_back(lar_landing *landing) {
@@ -226,17 +239,30 @@ static void take_back(lar_landing *landing) {
         }
 }
 
+/* With friction, or at several spots at once, what is thrown back as fast as restitution says may
+ * get more energy than it brought (Kane's paradox): then it is thrown back by the largest part of
+ * that with which it does not, to some thousandths. */
+static void throw_back(lar_landing *landing) {
+    enum { HALVINGS = 10 };
+    double less = 0, more = 1;
+    for (int n = 0; n < HALVINGS; n++) {
+        take_back(landing);
+        landing->bounces = 0.5 * (less + more);
+        find_impulses(landing);
+        *(gives(landing) ? &more : &less) = landing->bounces;
+    }
+    take_back(landing);
+    landing->bounces = less;
+    find_impulses(landing);
+}
+
 void lar_landing_end(lar_landing *landing) {
     settle(landing);
-    landing->bounces = false;
+    landing->bounces = 0;
     for (int k = 0; k < landing->count; k++)
-        landing->bounces = landing->bounces || landing->spot[k].back > 0;
+        if (landing->spot[k].back > 0) landing->bounces = 1;
     find_impulses(landing);
-    if (landing->bounces && given(landing) > 0) {
-        take_back(landing);
-        landing->bounces = false;
-        find_impulses(landing);
-    }
+    if (landing->bounces > 0 && gives(landing)) throw_back(landing);
     for (int k = 0; k < landing->count; k++) {
         const lar_landing_spot *spot = &landing->spot[k];
         double impulse[3] = {0}, spin[3];

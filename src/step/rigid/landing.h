@@ -22,6 +22,7 @@ typedef struct lar_landing_spot {
     double most;        /* how far it goes in its direction [m] */
     double arm[3], gap; /* from sum->centre; above the plane [m] */
     double came[3];     /* from here on of those that touch: how fast, before all impulses [m/s] */
+    double half[3];     /* of that, half of what the forces of the step have given [m/s] */
     double back;        /* how fast the plane throws it back; 0: it does not [m/s] */
     double push[3];     /* impulses along its normal and along the plane [N s] */
     double yields, yields_beside; /* speed by an impulse of one [1/kg] */
@@ -37,7 +38,7 @@ typedef struct lar_landing {
     double dt, inverse[6]; /* of the inertia that is free to turn; else zero [1/(kg m^2)] */
     double v[3], w[3];     /* of the body within the step [m/s], [1/s] */
     double light[3];       /* one over its mass along axes that are free [1/kg] */
-    bool bounces;          /* a spot is thrown back */
+    double bounces;        /* the part of restitution that spots are thrown back with */
     int32_t nodes;         /* seen so far */
     int count;
     lar_landing_spot spot[LAR_TOOL_PLANES_MAX * LAR_LANDING_SPOTS];
