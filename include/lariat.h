@@ -359,7 +359,7 @@ LAR_API lar_status lar_model_contact(const lar_model *model, int32_t index,
 
 /* Tools that a simulation has at most, places for those that are added included; of these places.
  */
-enum { LAR_TOOLS_MAX = 20, LAR_SPARES_MAX = 4 };
+enum { LAR_TOOLS_MAX = 40, LAR_SPARES_MAX = 4 };
 
 typedef enum lar_tool_shape {
     LAR_TOOL_SPHERE = 0, /* radius */

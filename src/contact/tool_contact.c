@@ -228,29 +228,38 @@ static double bears_of(const lar_tool_contact *contact, int32_t tool, int32_t bo
                       list->limits[tool].firm / (law->stiffness * contact->faces->heavy[body]));
 }
 
+static lar_bearing *bearing_for(lar_bearings *all, int32_t tool, int32_t body) {
+    int32_t i = all->count;
+    while (i > 0 && all->of[i - 1].tool == tool)
+        if (all->of[--i].body == body) return &all->of[i];
+    all->of[all->count] = (lar_bearing){.tool = tool, .body = body};
+    return &all->of[all->count++];
+}
+
 /* Whoever sees all faces of free bodies sums up what the tool asks of them. */
 static void weigh_near(lar_tool_contact *contact, const lar_condition_context *context,
                        const lar_state *state, int32_t tool, const lar_contact_law *law) {
     const lar_tool_vicinity *vicinity = &contact->vicinity[tool];
-    lar_bearing *bearing = &contact->bearing[tool];
-    *bearing = (lar_bearing){0};
+    const int32_t first = contact->bearings.count;
     for (int32_t i = 0; i < vicinity->near_count; i++) {
         const int32_t body = contact->faces->face[vicinity->near[i]].body;
         lar_tool_contact_patch patch;
         if (body < 0 || !come_near(contact, context, state, tool, i, &patch)) continue;
         lar_tool_contact_push_face(&patch, law, context->springs, contact->faces->weights);
-        bearing->asked[body] += lar_tool_contact_asked(&patch);
-        bearing->deep[body] = lar_greater(bearing->deep[body], patch.ahead);
+        lar_bearing *bearing = bearing_for(&contact->bearings, tool, body);
+        bearing->asked += lar_tool_contact_asked(&patch);
+        bearing->deep = lar_greater(bearing->deep, patch.ahead);
     }
-    for (int32_t body = 0; body < LAR_TOOLS_MAX; body++)
-        if (bearing->asked[body] > 0) bearing->asked[body] /= bears_of(contact, tool, body, law);
+    for (int32_t i = first; i < contact->bearings.count; i++)
+        contact->bearings.of[i].asked /= bears_of(contact, tool, contact->bearings.of[i].body, law);
 }
 
 static void harden(const lar_tool_contact *contact, const lar_condition_context *context,
                    int32_t tool, const lar_contact_law *law, lar_tool_contact_patch *patch) {
-    const lar_bearing *bearing = lar_tool_bearing(contact, tool);
+    const lar_bearing *bearing =
+        lar_bearing_of(lar_tool_bearings(contact), tool, patch->face->body);
     lar_tool_contact_push_face(patch, law, context->springs, contact->faces->weights);
-    patch->hard = lar_tool_contact_hardness(patch, bearing->asked[patch->face->body]);
+    if (bearing) patch->hard = lar_tool_contact_hardness(patch, bearing->asked);
 }
 
 static void touch_near(lar_tool_contact *contact, const lar_condition_context *context,
@@ -339,7 +348,7 @@ static void grasp_point(lar_tool_contact *contact, const lar_condition_context *
 static void apply_grasps(lar_tool_contact *contact, const lar_condition_context *context,
                          const lar_state *state, const lar_contact_law *law) {
     lar_grasp_motion motion[LAR_TOOLS_MAX];
-    for (int t = 0; t < LAR_TOOLS_MAX; t++) motion[t].known = false;
+    for (int t = 0; t < contact->tools->count; t++) motion[t].known = false;
     for (int32_t i = 0; i < contact->tools->grasp_count; i++) {
         const lar_grasp *grasp = &contact->tools->grasps[i];
         if (contact->faces->face_of[grasp->face] < 0) continue;
@@ -391,7 +400,7 @@ static void apply_tool(lar_tool_contact *contact, const lar_condition_context *c
 static void clear_loaded(lar_tool_contact *contact) {
     for (int32_t i = 0; i < contact->loaded_count; i++)
         contact->loaded_at[contact->loaded[i].face] = -1;
-    contact->loaded_count = contact->rubbed_count = 0;
+    contact->loaded_count = contact->rubbed_count = contact->bearings.count = 0;
     contact->seen.touching = 0;
     contact->seen.deepest_ever = fmax(contact->seen.deepest_ever, contact->seen.deepest);
     contact->seen.deepest = 0;

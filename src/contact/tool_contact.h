@@ -155,15 +155,15 @@ typedef struct lar_tool_contact {
     int32_t rubbed_count;
     lar_tool_rubbed *rubbed; /* [rubbed_count] of [faces->rub_count] */
     lar_tool_vicinity vicinity[LAR_TOOLS_MAX];
-    lar_bearing bearing[LAR_TOOLS_MAX]; /* where `faces->weighs`, in the step under way */
+    lar_bearings bearings;   /* where `faces->weighs`, in the step under way */
     lar_touch_list *touches; /* who looks wants to know where a tool touches; NULL in steps */
     double travel;           /* how far any corner can have gone, begun anew now and then [m] */
     uint64_t moved;          /* the step that the thread's nodes were last moved to */
 } lar_tool_contact;
 
 /* In the step under way. */
-static inline const lar_bearing *lar_tool_bearing(const lar_tool_contact *contact, int32_t tool) {
-    return contact->faces->weighs ? &contact->bearing[tool] : &contact->tools->bearing[tool];
+static inline const lar_bearings *lar_tool_bearings(const lar_tool_contact *contact) {
+    return contact->faces->weighs ? &contact->bearings : &contact->tools->bearings;
 }
 
 /* How many times as stiff a tool is on free bodies: no more than parts of a step bear. */
@@ -194,7 +194,7 @@ void lar_tool_contact_forget(lar_tool_contact *contact);
 
 /* Before a stretch of steps: the deepest points are asked for stretch by stretch. */
 static inline void lar_tool_contact_forget_depths(lar_tool_contact *contact) {
-    for (int i = 0; i < LAR_TOOLS_MAX; i++) {
+    for (int i = 0; contact->list && i < contact->list->count; i++) {
         lar_tool_sum *sum = &contact->sum[i];
         sum->depth = sum->clings = sum->behind = 0;
     }

@@ -311,8 +311,8 @@ static double stiffness_of(const lar_tool_contact *contact, const lar_condition_
     const int32_t body = contact->faces->rub[contact->faces->rub_at[node]].body;
     const double own = lar_hardness_on_free(context->tools, tool, context) * law->stiffness *
                        context->springs[node];
-    const double deep =
-        contact->list->tool[tool].friction * lar_tool_bearing(contact, tool)->deep[body];
+    const lar_bearing *bearing = lar_bearing_of(lar_tool_bearings(contact), tool, body);
+    const double deep = bearing ? contact->list->tool[tool].friction * bearing->deep : 0;
     return deep > 0 ? lar_greater(own, lar_length(press) / deep) : own;
 }
 

@@ -180,11 +180,31 @@ typedef struct lar_spare_tool {
     lar_tool_pose rest;
 } lar_spare_tool;
 
-/* What a tool asks of the free bodies that it touches, by the tool that moves them. */
+/* What a tool asks of a free body that it touches. */
 typedef struct lar_bearing {
-    double asked[LAR_TOOLS_MAX]; /* as a part of what there is [m^2] */
-    double deep[LAR_TOOLS_MAX];  /* the deepest of its springs, as they push [m] */
+    int32_t tool, body; /* and the tool that moves the body */
+    double asked;       /* as a part of what there is [m^2] */
+    double deep;        /* the deepest of its springs, as they push [m] */
 } lar_bearing;
+
+/* Of all tools: whatever touches is no free body. */
+enum { LAR_BEARINGS_MAX = LAR_TOOLS_MAX * LAR_TOOLS_MAX / 4 };
+typedef struct lar_bearings {
+    int32_t count;
+    lar_bearing of[LAR_BEARINGS_MAX];
+} lar_bearings;
+
+static inline bool lar_bearings_good(const lar_bearings *all) {
+    return all->count >= 0 && all->count <= LAR_BEARINGS_MAX;
+}
+
+/* NULL: it does not touch it. */
+static inline const lar_bearing *lar_bearing_of(const lar_bearings *all, int32_t tool,
+                                                int32_t body) {
+    for (int32_t i = 0; i < all->count; i++)
+        if (all->of[i].tool == tool && all->of[i].body == body) return &all->of[i];
+    return NULL;
+}
 
 typedef struct lar_tools {
     int32_t count, grasp_count;
@@ -197,8 +217,8 @@ typedef struct lar_tools {
     lar_spare_tool spare[LAR_SPARES_MAX];
     lar_tool_motion motion[LAR_TOOLS_MAX]; /* where tools really go */
     double hardness[LAR_TOOLS_MAX];        /* how many times as stiff as at rest they are */
-    lar_bearing bearing[LAR_TOOLS_MAX]; /* of the step that comes, for threads that do not see all
-                                           that a tool touches (contact/tool_bearing.h) */
+    lar_bearings bearings; /* of the step that comes, for threads that do not see all that a tool
+                              touches */
     lar_grasp grasps[LAR_GRASPS_MAX];
     lar_tool_follower follower[LAR_TOOLS_MAX]; /* of processor zero only, */
     lar_heavy_list strained;                   /* as this, */

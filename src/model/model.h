@@ -95,7 +95,7 @@ typedef struct lar_contact {
 } lar_contact;
 
 /* Tools of a model and bytes of their names. A simulation takes four hands besides. */
-enum { LAR_MODEL_TOOLS_MAX = 12, LAR_TOOL_PLANES_MAX = 12, LAR_TOOL_NAME_MAX = 63 };
+enum { LAR_MODEL_TOOLS_MAX = 32, LAR_TOOL_PLANES_MAX = 12, LAR_TOOL_NAME_MAX = 63 };
 
 enum { LAR_FREE_TURNS = 8 }; /* beside LAR_AXIS_X and so on; alone: about `point` */
 

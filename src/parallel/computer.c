@@ -205,7 +205,7 @@ static lar_status hear_all(lar_computer *computer, lar_fault *fault, lar_error *
         if (status) break;
         if (earlier(&answer->fault, fault)) *fault = answer->fault;
         lar_report own = {0}; /* a payload is aligned to 8 only */
-        if (answer->bytes == sizeof own) memcpy(&own, report, sizeof own);
+        if (lar_report_fits(report, answer->bytes)) memcpy(&own, report, answer->bytes);
         lar_report_join(&computer->report, &own);
     }
     return status;
@@ -339,7 +339,7 @@ static lar_status take_tools(lar_computer *computer, const void *payload, size_t
     memcpy(tools, payload, bytes);
     bool fits = tools->count == count && tools->grasp_count >= 0 &&
                 tools->grasp_count <= LAR_GRASPS_MAX && lar_tools_bytes(tools) == bytes &&
-                grasps_fit(computer, tools) &&
+                lar_bearings_good(&tools->bearings) && grasps_fit(computer, tools) &&
                 lar_settings_good(&tools->settings, computer->whole->time_step) &&
                 lar_forces_good(&tools->forces, computer->whole->model,
                                 lar_domain_force_max(computer->whole)) &&
@@ -369,8 +369,8 @@ static lar_status execute(lar_computer *computer, const lar_order *order, const 
         first_fault(computer, &answer.fault);
         answer.step = p->worker[0].state.step;
         if (status) return status;
-        return lar_control_answer(control, &answer, &computer->report, sizeof computer->report,
-                                  error);
+        return lar_control_answer(control, &answer, &computer->report,
+                                  lar_report_bytes(&computer->report), error);
     }
     if (order->kind == LAR_ORDER_SCATTER)
         status = lar_computer_take_state(computer, order->argument, payload, bytes, error);

@@ -150,8 +150,7 @@ static void begin_look(const lar_domain *domain, lar_measure_scratch *scratch,
     lar_step_forces(domain, l->interactions, &l->state, &ignored);
     if (!scratch->ahead) return;
     *scratch->ahead = *l->interactions->tool_contact.tools;
-    memcpy(scratch->ahead->bearing, l->interactions->tool_contact.bearing,
-           sizeof scratch->ahead->bearing);
+    scratch->ahead->bearings = l->interactions->tool_contact.bearings;
     const lar_leapfrog leapfrog =
         lar_step_leapfrog_at(domain, l->interactions, &l->context, &l->state);
     lar_free_bodies_go(domain, &l->interactions->notes, &l->state, &leapfrog, scratch->ahead, NULL);

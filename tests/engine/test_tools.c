@@ -282,8 +282,10 @@ static void forces_are_means_of_the_last_advance(void **unused) {
 static void long_advances_add_up(void **unused) {
     (void)unused;
     static lar_interactions interactions;
+    static const lar_tool_list list = {.count = 2};
     const lar_state state = {.contact = 0.25};
     lar_report sum = {0};
+    interactions.tool_contact.list = &list;
     interactions.tool_contact.sum[1] = (lar_tool_sum){.touching = 2};
     for (int step = 0; step < 1000; step++) {
         interactions.tool_contact.sum[1].force[0] -= (int64_t)1 << 60;

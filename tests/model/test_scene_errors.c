@@ -591,11 +591,11 @@ static void test_tools(void **state) {
          "4:9", "inside the body"},
     };
     REFUSES(extra, BASE);
-    char text[1000] = "tools:\n";
-    for (int i = 0; i < 13; i++)
+    char text[3000] = "tools:\n";
+    for (int i = 0; i < 33; i++)
         snprintf(text + strlen(text), 80,
                  "  - {name: t%d, shape: sphere, radius: 0.01, at: [0, 0, 1]}\n", i);
-    const wrong_scene many[] = {{text, "17:5", "there are more than 12 tools; remove some"}};
+    const wrong_scene many[] = {{text, "37:5", "there are more than 32 tools; remove some"}};
     REFUSES(many, BASE);
 }
 

@@ -29,7 +29,7 @@ TEST_UNUSED static lar_status parse(const char *text, size_t size, lar_error *er
 
 TEST_UNUSED static void refuses(const wrong_scene *wrong, size_t count, const char *before) {
     for (size_t i = 0; i < count; i++) {
-        char text[1500], start[40];
+        char text[4000], start[40];
         lar_error error = {0};
         snprintf(text, sizeof text, "%s%s", before, wrong[i].text);
         snprintf(start, sizeof start, "s.yaml:%s: ", wrong[i].place);
