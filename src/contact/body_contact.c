@@ -463,7 +463,7 @@ static bool in_contact(lar_body_contact *contact, const lar_state *state, int32_
         if (!(s.gap > -INFINITY) || past) return false;
         /* Past an edge it touches the plane of the face. */
         if (s.hidden >= 0) clear = fmin(clear, 0.25 * (point.height - standoff));
-        clear = 0.999 * fmin(clear, lar_survey_clear(contact, g, &s, &point)) / LAR_APPROACH;
+        clear = 0.999 * fmin(clear, lar_survey_clear(contact, state, g, &s, &point)) / LAR_APPROACH;
         if (clear > 0)
             contact->due[g] = fmax(contact->due[g], fmin(contact->travel + clear, s.next));
     }

@@ -150,12 +150,13 @@ typedef struct lar_body_contact {
     lar_contact_list list;            /* what this thread has to do with */
     uint8_t *adds_node, *adds_corner; /* [contact nodes], [contact faces]; NULL: all */
     double *due;                      /* [list.group_room] travel at which to look */
-    int32_t *last;                    /* [list.group_room] the closest face then, an entry */
-    double *away;                     /* [list.face_room] travel until which the face cannot
-                                         be the closest one within reach */
-    int32_t *near;                    /* [list.group_room] the groups that are due before */
-    int32_t near_count;               /* travel is at */
-    double travel, horizon;           /* [m] */
+    int32_t *last;      /* [list.group_room] the closest face then, an entry; ~ of it where the node
+                           was flush with the body */
+    double *away;       /* [list.face_room] travel until which the face cannot
+                           be the closest one within reach */
+    int32_t *near;      /* [list.group_room] the groups that are due before */
+    int32_t near_count; /* travel is at */
+    double travel, horizon; /* [m] */
     double moved; /* since the search, along any axis, by nodes of this thread, at most [m] */
     double way;   /* the same in the last step [m] */
     double need;  /* of a step, by springs that are harder than the law's (lar_contact_deep_need),
@@ -274,7 +275,8 @@ typedef struct lar_survey {
     bool inside;     /* it is behind one that it does not see: none that it is before counts */
     bool beyond;     /* it is in another body still, on the other side of a joint */
     bool joints;     /* closed joints are not in the way */
-    double beside;   /* how far from an edge those are, at least; INFINITY: there are none [m] */
+    double beside;   /* how far from an edge those are, at least, and a little; INFINITY: there are
+                        none [m] */
     double next;     /* travel at which the first of the others may matter [m] */
 } lar_survey;
 
@@ -284,8 +286,8 @@ int32_t lar_survey_closest(lar_body_contact *contact, const lar_state *state, in
 
 /* How far nodes may move against each other [m] until a node of another body that touches nothing,
  * before its closest face, is looked at again. */
-double lar_survey_clear(const lar_body_contact *contact, int32_t g, const lar_survey *s,
-                        const lar_face_point *point);
+double lar_survey_clear(const lar_body_contact *contact, const lar_state *state, int32_t g,
+                        const lar_survey *s, const lar_face_point *point);
 
 /* ---- offsets (history/body_offset.c) --------------------------------------------------------- */
 
@@ -325,6 +327,11 @@ typedef struct lar_edge_way {
  * goes. */
 double lar_looks_away(const lar_body_contact *contact, const lar_state *state, int32_t node,
                       const double corner[4][3], lar_edge_way *through);
+
+/* How far nodes may move against each other [m] until a face that does not look away from the body
+ * of that node may: both turn with it. 0: it does. */
+double lar_looks_on(const lar_body_contact *contact, const lar_state *state, int32_t node,
+                    const double corner[4][3]);
 
 /* A face that the node of group g, on a sharp edge, is behind may stand against one of a third body
  * that looks the other way: a joint that is closed, with nothing between. Through that nobody comes

@@ -132,9 +132,13 @@ double lar_offset_meet(lar_body_contact *contact, const lar_state *state, int32_
 
 /* ---- sharp edges ----------------------------------------------------------------------------- */
 
+/* Cosines of a face's normal with the ways from an edge into its body: a face that looks away has
+ * none above the one, and one below the other. */
+static const double AGAINST = 0.3, AWAY = -0.7;
+
 double lar_looks_away(const lar_body_contact *contact, const lar_state *state, int32_t node,
                       const double corner[4][3], lar_edge_way *through) {
-    static const double AGAINST = 0.3, AWAY = -0.7, SURE = 0.1, CLEAR = 0.15; /* cosines */
+    static const double SURE = 0.1, CLEAR = 0.15; /* cosines */
     const lar_contact_surface *s = contact->surface;
     const lar_contact_node *at = &s->node[node];
     int32_t parent[LAR_CONTACT_PARENTS];
@@ -166,6 +170,32 @@ double lar_looks_away(const lar_body_contact *contact, const lar_state *state, i
     return lar_ease((AWAY - least) / CLEAR) * lar_ease((AGAINST - most) / CLEAR);
 }
 
+double lar_looks_on(const lar_body_contact *contact, const lar_state *state, int32_t node,
+                    const double corner[4][3]) {
+    static const double ROUND = 0.5; /* cosines do not change evenly */
+    const lar_contact_node *at = &contact->surface->node[node];
+    int32_t parent[LAR_CONTACT_PARENTS];
+    double weight[LAR_CONTACT_PARENTS], from[3], to[3], way[3], across[2][3];
+    double against = -INFINITY, away = INFINITY, shortest = INFINITY;
+    lar_contact_parents(contact->surface, node, parent, weight);
+    lar_contact_place_of_node(contact, state, parent[0], from, NULL);
+    lar_face_normal(corner, way);
+    for (int k = 0; k < 2; k++) lar_minus(corner[2 + k], corner[k], across[k]);
+    const double turns = (lar_length(across[0]) + lar_length(across[1])) / lar_length(way);
+    for (int k = 0; k < 3 && at->inward[k] >= 0; k++) {
+        if (k == at->along) continue;
+        lar_contact_place_of_node(contact, state, at->inward[k], to, NULL);
+        lar_minus(to, from, to);
+        const double length = lar_length(to),
+                     cosine = lar_dot(way, to) / (lar_length(way) * length);
+        against = fmax(against, cosine - AGAINST);
+        away = fmin(away, cosine - AWAY);
+        shortest = fmin(shortest, length);
+    }
+    const double until = ROUND * fmin(fmax(against, away), 1) / (1 / shortest + turns);
+    return until > 0 ? until : 0; /* NAN: of what is crushed nothing is known */
+}
+
 /* How far within a body's edges a point of one of its faces is; INFINITY: it has none [m]. */
 static double within_edges(const lar_contact_surface *s, int32_t f, const double corner[4][3],
                            const lar_face_point *point) {
@@ -189,8 +219,8 @@ static double within_edges(const lar_contact_surface *s, int32_t f, const double
 static lar_joint joint_with(const lar_body_contact *contact, const lar_state *state, int32_t node,
                             int32_t f, const double x[3], const double normal[3], double height,
                             double within) {
-    static const double NEAR = 0.02;    /* of a face */
-    static const double AGAINST = -0.9; /* cosine */
+    static const double NEAR = 0.02;   /* of a face */
+    static const double FACING = -0.9; /* cosine */
     const double size = contact->surface->face[f].size, near = NEAR * size;
     double corner[4][3], way[3];
     lar_face_point point;
@@ -203,7 +233,7 @@ static lar_joint joint_with(const lar_body_contact *contact, const lar_state *st
     if (!is_straight(&point) || point.distance > reach || fabs(point.height + height) > near)
         return LAR_JOINT_NONE;
     lar_face_normal((const double(*)[3])corner, way);
-    if (!(lar_dot(way, normal) < AGAINST * lar_length(way) * lar_length(normal)))
+    if (!(lar_dot(way, normal) < FACING * lar_length(way) * lar_length(normal)))
         return LAR_JOINT_NONE;
     /* Where the one goes on beyond the other's edge, its side is in the way. */
     const double other = within_edges(contact->surface, f, (const double(*)[3])corner, &point);
@@ -331,6 +361,7 @@ static void place_before(const double v[3], double past, double x[3]) {
 typedef struct closest_face {
     lar_face_point point; /* distance INFINITY: there is none */
     double normal[3];     /* of any length */
+    double size;          /* of the face [m] */
 } closest_face;
 
 static bool is_seen(const lar_survey *s, int32_t entry) {
@@ -361,6 +392,7 @@ static void closest_ago(const lar_body_contact *contact, const lar_state *state,
         lar_face_closest(x, (const double(*)[3])corner,
                          LAR_FACE_TIE * contact->surface->face[face[i]].size, &all[i].point);
         lar_face_normal((const double(*)[3])corner, all[i].normal);
+        all[i].size = contact->surface->face[face[i]].size;
         min = fmin(min, all[i].point.distance);
     }
     *closest = (closest_face){.point.distance = INFINITY};
@@ -407,7 +439,7 @@ static bool stands_on_another(const lar_body_contact *contact, const lar_state *
         closest_ago(contact, state, h, NULL, 0, &now);
         /* Who is out of reach is not in every list. */
         const double reach = reach_of(contact, node, face);
-        if (now.point.distance < fmin(LAR_FLUSH_NEAR * s->face[face].size, reach) ||
+        if (now.point.distance < fmin(LAR_FLUSH_NEAR * now.size, reach) ||
             (is_behind(&now, reach) && is_straight(&now.point)))
             return true;
     }

@@ -96,13 +96,23 @@ static double away_until(double travel, double distance, double tie, const lar_s
 /* Where an edge comes in through a face, of the depth of the layer. */
 static const double ACROSS = 0.25;
 
+/* Who was flush with the body when its group was surveyed the last time did not look as far: all
+ * faces are to be looked at. Returns the face that was closest then. */
+static int32_t begin_with(lar_body_contact *contact, int32_t g, bool flush) {
+    const lar_contact_group *group = &contact->list.group[g];
+    const bool was_flush = contact->last[g] < 0;
+    if (was_flush != flush) contact->last[g] = ~contact->last[g];
+    for (int32_t i = 0; i < group->count && was_flush && !flush; i++)
+        contact->away[group->first + i] = 0;
+    return flush ? ~contact->last[g] : contact->last[g];
+}
+
 /* The one that was closest the last time goes first: most others then need no more than a look. */
 static void survey_group(lar_body_contact *contact, const lar_state *state, int32_t g,
                          lar_survey *s) {
     const lar_contact_group *group = &contact->list.group[g];
     const int32_t *face = contact->list.face + group->first;
     double *away = contact->away + group->first;
-    int32_t first = contact->last[g];
     s->reach = lar_contact_reach(contact->surface, &contact->surface->node[group->node],
                                  &contact->surface->face[face[0]]);
     s->above = fade_above(contact, group->node, face[0]);
@@ -112,6 +122,7 @@ static void survey_group(lar_body_contact *contact, const lar_state *state, int3
     s->min = s->gap = s->next = s->beside = INFINITY;
     s->count = 0;
     s->flush = lar_offset_is_flush(contact, state, g);
+    const int32_t first = begin_with(contact, g, s->flush);
     s->held =
         lar_same_body(contact, group->node, face[0]) ? contact->surface->node[group->node].held : 0;
     s->edge = !s->flush && !lar_same_body(contact, group->node, face[0]) &&
@@ -308,12 +319,33 @@ look_inside(lar_body_contact *contact, const lar_state *state, int32_t g, lar_su
     if (!s->inside) survey_again(contact, state, g, s);
 }
 
+/* How far from an edge the joints are of a survey that has met some, and a little. Only of those no
+ * farther than the closest face may be: of those farther away not all are looked at. */
+static void find_beside(const lar_body_contact *contact, const lar_state *state, int32_t g,
+                        lar_survey *s) {
+    const lar_contact_group *group = &contact->list.group[g];
+    const double far = lar_greater(s->min + s->fade, s->within);
+    s->beside = INFINITY;
+    for (int32_t k = 0; k < s->count; k++) {
+        const double(*corner)[3] = (const double(*)[3])s->corner[k];
+        const int32_t f = contact->list.face[group->first + s->entry[k]];
+        lar_face_point point;
+        double beside;
+        if (s->distance[k] < INFINITY || s->point[k].distance < INFINITY) continue;
+        lar_face_closest(s->x, corner, tie_of(contact, f), &point);
+        if (!(point.distance < far) ||
+            lar_looks_away(contact, state, group->node, corner, NULL) >= 0 ||
+            !lar_joint_of(contact, state, g, f, s->x, corner, &point, &beside))
+            continue;
+        s->beside = fmin(s->beside, beside + LAR_JOINT_STEP * contact->surface->face[f].size);
+    }
+}
+
 /* Who has come along in one body past a joint to the next one is as deep there as the joint is long
  * from its edge. Where it is deeper, or nothing is left, as where several bodies meet along a line,
  * it has not come along. */
-static bool is_in_joint(const lar_body_contact *contact, int32_t g, const lar_survey *s) {
-    const int32_t face = contact->list.face[contact->list.group[g].first];
-    return s->beyond || s->min <= s->beside + LAR_JOINT_STEP * contact->surface->face[face].size;
+static bool is_in_joint(const lar_survey *s) {
+    return s->beyond || s->min <= s->beside;
 }
 
 /* Whether the node of group g is beyond a plane of symmetry, where the body ends. Of its mirror
@@ -343,7 +375,8 @@ int32_t lar_survey_closest(lar_body_contact *contact, const lar_state *state, in
     /* Who was farther than a face that is not seen now may be the closest one. */
     if ((s->gap == -INFINITY || s->before < INFINITY) && s->next < INFINITY)
         survey_again(contact, state, g, s);
-    if (s->beside < INFINITY && !is_in_joint(contact, g, s)) {
+    if (s->beside < INFINITY) find_beside(contact, state, g, s);
+    if (s->beside < INFINITY && !is_in_joint(s)) {
         s->joints = false;
         survey_again(contact, state, g, s);
     }
@@ -363,7 +396,7 @@ int32_t lar_survey_closest(lar_body_contact *contact, const lar_state *state, in
     if (!(s->before < point->distance - tie_of(contact, contact->list.face[group->first + chosen])))
         s->before = INFINITY;
     if (s->over) point->height = -point->height;
-    contact->last[g] = chosen;
+    contact->last[g] = s->flush ? ~chosen : chosen;
     return contact->list.face[group->first + chosen];
 }
 
@@ -377,10 +410,20 @@ static int shared_edge(const lar_contact_face *f, const lar_contact_face *other)
     return -1;
 }
 
+/* How far nodes may move against each other [m] while the node of group g, on a sharp edge, sees
+ * face k of a survey, which it is before. */
+static double seen_until(const lar_body_contact *contact, const lar_state *state, int32_t g,
+                         const lar_survey *s, int32_t k) {
+    return s->touch ? lar_looks_on(contact, state, contact->list.group[g].node,
+                                   (const double(*)[3])s->corner[k])
+                    : INFINITY;
+}
+
 /* How far nodes may move against each other [m] while face k of a survey does not say where the
  * node is: for one that is beside it says so. */
-static double outdone(const lar_body_contact *contact, const int32_t *face, const lar_survey *s,
-                      int32_t k) {
+static double outdone(const lar_body_contact *contact, const lar_state *state, int32_t g,
+                      const lar_survey *s, int32_t k) {
+    const int32_t *face = contact->list.face + contact->list.group[g].first;
     const lar_contact_face *all = contact->surface->face, *f = &all[face[s->entry[k]]];
     double until = 0;
     for (int32_t m = 0; m < s->count; m++) {
@@ -391,7 +434,8 @@ static double outdone(const lar_body_contact *contact, const int32_t *face, cons
         if (!(before > until)) continue;
         double than = lar_face_outdone(s->x, (const double(*)[3])s->corner[k], edge,
                                        (const double(*)[3])s->corner[m]);
-        until = lar_greater(until, lar_lesser(before, than));
+        than = lar_lesser(lar_lesser(before, than), seen_until(contact, state, g, s, m));
+        until = lar_greater(until, than);
     }
     return until;
 }
@@ -399,9 +443,10 @@ static double outdone(const lar_body_contact *contact, const int32_t *face, cons
 /* Half of the way to where it touches the closest face, and no farther than it surely stays before
  * every face that may be the closest one then, or before another one that decides. Before the
  * closest one alone is not enough: a body that is crushed has faces whose back is as near. Of its
- * own body a node does not see all faces, and may come behind one from the side. */
-double lar_survey_clear(const lar_body_contact *contact, int32_t g, const lar_survey *s,
-                        const lar_face_point *point) {
+ * own body a node does not see all faces, and may come behind one from the side. Neither does one
+ * on a sharp edge of another body's, which turn away while they move. */
+double lar_survey_clear(const lar_body_contact *contact, const lar_state *state, int32_t g,
+                        const lar_survey *s, const lar_face_point *point) {
     static const double LASTING = 0.02; /* a quarter of what is usual beside an edge */
     const lar_contact_surface *surface = contact->surface;
     const lar_contact_group *group = &contact->list.group[g];
@@ -413,13 +458,17 @@ double lar_survey_clear(const lar_body_contact *contact, int32_t g, const lar_su
     double step = LAR_APPROACH * contact->way;
     if (!(clear > step)) return 0;
     bool lasts = LASTING * point->distance > step;
+    for (int32_t k = 0; k < s->count; k++)
+        if (s->entry[k] == contact->last[g])
+            clear = lar_lesser(clear, seen_until(contact, state, g, s, k));
     for (int32_t k = 0; k < s->count && clear > step; k++) {
         int32_t f = face[s->entry[k]];
         double farther = farther_by(s->distance[k], tie_of(contact, f), s);
         if (farther >= clear) continue;
         double before = lar_face_before(s->x, (const double(*)[3])s->corner[k]);
         farther = lar_greater(farther, before);
-        if (farther < clear && lasts) farther = lar_greater(farther, outdone(contact, face, s, k));
+        if (farther < clear && lasts)
+            farther = lar_greater(farther, outdone(contact, state, g, s, k));
         clear = lar_lesser(clear, farther);
     }
     return clear;
