@@ -183,7 +183,7 @@ static double full_of(const lar_body_contact *contact, int32_t node, int32_t fac
 
 /* The part of five forces that is no larger than `max`: of a face that is crushed slopes have no
  * bound. */
-static double within_force(double max, const double force[5][3]) {
+__attribute__((noinline)) static double within_force(double max, const double force[5][3]) {
     double largest = 0;
     for (int a = 0; a < 5; a++) {
         double square = 0;
@@ -308,7 +308,7 @@ static bool is_beside(const lar_face_point *closest) {
 }
 
 /* The point that pushes moves from an edge to below a node that is past it. */
-static bool shift(touching *t, int32_t face, const lar_rim *rim) {
+__attribute__((noinline, cold)) static bool shift(touching *t, int32_t face, const lar_rim *rim) {
     for (int32_t f = 0; f < t->count; f++) {
         if (t->face[f] != face) continue;
         for (int a = 0; a < 4; a++) t->weight[f][a] += rim->shift[a];
@@ -319,8 +319,9 @@ static bool shift(touching *t, int32_t face, const lar_rim *rim) {
 
 /* There is less of the force the farther the node is past the edge, and what it stores there it
  * gives back along the way. */
-static double slide_off(const lar_rim *rim, const lar_face_point *closest, int32_t face,
-                        double energy, double force, touching *t) {
+__attribute__((noinline, cold)) static double slide_off(const lar_rim *rim,
+                                                        const lar_face_point *closest, int32_t face,
+                                                        double energy, double force, touching *t) {
     t->border = face;
     return lar_flush_left(rim, closest, energy, t->pay) * force;
 }

@@ -259,8 +259,10 @@ static lar_inset inset_at(const lar_survey *s, int32_t k, double squarely, const
 /* Who comes past an edge must not be pushed all at once by the next face, as deep as he is behind
  * that: of the faces that he does not see the one counts that he is least far behind. False: he is
  * outside, before one that has nothing to do with the closest one that he sees. */
-static bool find_hidden(const lar_body_contact *contact, const lar_state *state, int32_t g,
-                        int32_t chosen, const lar_face_point *point, lar_survey *s) {
+__attribute__((noinline, cold)) static bool find_hidden(const lar_body_contact *contact,
+                                                        const lar_state *state, int32_t g,
+                                                        int32_t chosen, const lar_face_point *point,
+                                                        lar_survey *s) {
     const lar_contact_group *group = &contact->list.group[g];
     const int32_t *faces = contact->list.face + group->first;
     const double tie = tie_of(contact, faces[chosen]);
@@ -288,7 +290,8 @@ static bool find_hidden(const lar_body_contact *contact, const lar_state *state,
 
 /* Of all faces the closest one says on which side the node is, whether it is seen or not. Whether
  * it is behind one that it does not see, and those that it is before are farther. */
-static bool is_inside(const lar_body_contact *contact, int32_t g, const lar_survey *s) {
+__attribute__((noinline, cold)) static bool is_inside(const lar_body_contact *contact, int32_t g,
+                                                      const lar_survey *s) {
     const int32_t *face = contact->list.face + contact->list.group[g].first;
     double unseen = INFINITY, before = INFINITY;
     for (int32_t k = 0; k < s->count; k++) {
@@ -302,8 +305,8 @@ static bool is_inside(const lar_body_contact *contact, int32_t g, const lar_surv
 }
 
 /* Once more, all of them. */
-static void survey_again(lar_body_contact *contact, const lar_state *state, int32_t g,
-                         lar_survey *s) {
+__attribute__((noinline)) static void
+survey_again(lar_body_contact *contact, const lar_state *state, int32_t g, lar_survey *s) {
     const lar_contact_group *group = &contact->list.group[g];
     for (int32_t i = 0; i < group->count; i++) contact->away[group->first + i] = 0;
     survey_group(contact, state, g, s);
@@ -321,8 +324,8 @@ look_inside(lar_body_contact *contact, const lar_state *state, int32_t g, lar_su
 
 /* How far from an edge the joints are of a survey that has met some, and a little. Only of those no
  * farther than the closest face may be: of those farther away not all are looked at. */
-static void find_beside(const lar_body_contact *contact, const lar_state *state, int32_t g,
-                        lar_survey *s) {
+__attribute__((noinline, cold)) static void
+find_beside(const lar_body_contact *contact, const lar_state *state, int32_t g, lar_survey *s) {
     const lar_contact_group *group = &contact->list.group[g];
     const double far = lar_greater(s->min + s->fade, s->within);
     s->beside = INFINITY;
@@ -348,16 +351,21 @@ static bool is_in_joint(const lar_survey *s) {
     return s->beyond || s->min <= s->beside;
 }
 
+static const lar_contact_body *body_of(const lar_body_contact *contact, int32_t g) {
+    const int32_t face = contact->list.face[contact->list.group[g].first];
+    return &contact->surface->body[contact->surface->face[face].body];
+}
+
 /* Whether the node of group g is beyond a plane of symmetry, where the body ends. Of its mirror
  * image there are no faces: the last ones before the plane would push it across the plane, as deep
  * as it is beyond. */
-static bool is_beyond_end(const lar_body_contact *contact, const lar_state *state, int32_t g,
-                          lar_survey *s) {
+__attribute__((noinline, cold)) static bool
+is_beyond_end(const lar_body_contact *contact, const lar_state *state, int32_t g, lar_survey *s) {
     const lar_contact_group *group = &contact->list.group[g];
     const int32_t face = contact->list.face[group->first];
-    const lar_contact_body *body = &contact->surface->body[contact->surface->face[face].body];
+    const lar_contact_body *body = body_of(contact, g);
     bool beyond = false;
-    if (!body->cut || lar_same_body(contact, group->node, face)) return false;
+    if (lar_same_body(contact, group->node, face)) return false;
     lar_contact_place(contact, state, group->node, s->x, NULL);
     for (int i = 0; i < 3; i++) beyond = beyond || s->x[i] < body->from[i] || s->x[i] > body->to[i];
     return beyond;
@@ -369,7 +377,7 @@ int32_t lar_survey_closest(lar_body_contact *contact, const lar_state *state, in
     s->inside = s->flush = false;
     s->before = s->gap = INFINITY;
     contact->due[g] = 0;
-    if (is_beyond_end(contact, state, g, s)) return -1;
+    if (body_of(contact, g)->cut && is_beyond_end(contact, state, g, s)) return -1;
     s->joints = true;
     survey_group(contact, state, g, s);
     /* Who was farther than a face that is not seen now may be the closest one. */
