@@ -289,7 +289,8 @@ __attribute__((noinline, cold)) static bool find_hidden(const lar_body_contact *
 }
 
 /* Of all faces the closest one says on which side the node is, whether it is seen or not. Whether
- * it is behind one that it does not see, and those that it is before are farther. */
+ * it is behind one that it does not see, and those that it is before are farther: not those that
+ * share an edge with it, to which both are as far but for a tie each. */
 __attribute__((noinline, cold)) static bool is_inside(const lar_body_contact *contact, int32_t g,
                                                       const lar_survey *s) {
     const int32_t *face = contact->list.face + contact->list.group[g].first;
@@ -299,7 +300,7 @@ __attribute__((noinline, cold)) static bool is_inside(const lar_body_contact *co
             unseen = fmin(unseen, s->point[k].distance + tie_of(contact, face[s->entry[k]]));
         else if (s->distance[k] < INFINITY && s->distance[k] <= s->min + s->fade &&
                  !(s->point[k].height < 0))
-            before = fmin(before, s->distance[k]);
+            before = fmin(before, s->distance[k] - tie_of(contact, face[s->entry[k]]));
     }
     return before < INFINITY && unseen < before;
 }
@@ -403,6 +404,7 @@ int32_t lar_survey_closest(lar_body_contact *contact, const lar_state *state, in
     if (hides && !find_hidden(contact, state, g, chosen, point, s)) return -1;
     if (!(s->before < point->distance - tie_of(contact, contact->list.face[group->first + chosen])))
         s->before = INFINITY;
+    s->over = s->over && point->height < 0; /* it is before that already */
     if (s->over) point->height = -point->height;
     contact->last[g] = s->flush ? ~chosen : chosen;
     return contact->list.face[group->first + chosen];
