@@ -177,7 +177,7 @@ static void test_tools(void **state) {
     refused_and_destroyed(two, "tool entry 2: tool entry 1 is called \"jaws\" too");
     lar_model *many = good_model();
     for (int i = 0; i <= LAR_MODEL_TOOLS_MAX; i++) add_tool(many, (char[]){(char)('a' + i), 0});
-    refused_and_destroyed(many, "test.yaml: 13 tools; there can be 12");
+    refused_and_destroyed(many, "test.yaml: 33 tools; there can be 32");
 }
 
 static void test_empty_model(void **state) {
