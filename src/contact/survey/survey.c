@@ -453,8 +453,8 @@ static double outdone(const lar_body_contact *contact, const lar_state *state, i
 /* Half of the way to where it touches the closest face, and no farther than it surely stays before
  * every face that may be the closest one then, or before another one that decides. Before the
  * closest one alone is not enough: a body that is crushed has faces whose back is as near. Of its
- * own body a node does not see all faces, and may come behind one from the side. Neither does one
- * on a sharp edge of another body's, which turn away while they move. */
+ * own body a node does not see all faces, and may come behind one from the side. On a sharp edge it
+ * sees a face of another body only until that looks away, as both turn. */
 double lar_survey_clear(const lar_body_contact *contact, const lar_state *state, int32_t g,
                         const lar_survey *s, const lar_face_point *point) {
     static const double LASTING = 0.02; /* a quarter of what is usual beside an edge */
