@@ -943,7 +943,8 @@ LAR_API lar_status lar_simulation_tool_move(lar_simulation *simulation, int32_t 
  * says how many surface points it has got, 0 when there was nothing within its reach, and then it
  * is open. A grasper closes its jaws where it is within `steps` steps, as far as what is between
  * them lets it (the force of jaws is bounded, and less the more they strain), and takes that when
- * they begin; `point` counts for hands only, who need one. 0 steps: as many as the jaws need. */
+ * they begin; `point` counts for hands only, who need one. 0 steps: as many as the jaws' ends need
+ * at 1 m/s, or at half their radius in a step where that is less. */
 LAR_API lar_status lar_simulation_grasp(lar_simulation *simulation, int32_t tool,
                                         const double point[3], uint64_t steps, int32_t *held,
                                         lar_error *error);

@@ -173,12 +173,11 @@ PyMethodDef python_tool_methods[] = {
      "faster than half its radius in a step; up to a quarter tissue keeps it out."},
     {"grasp", FUNCTION(grasp), METH_VARARGS | METH_KEYWORDS,
      "grasp($self, tool, point=None, steps=0)\n--\n\nTakes hold: a hand at `point` [m], at once, "
-     "and returns how many surface points it has; a grasper closes its jaws within `steps`; 0: as "
-     "many as they need."},
+     "and returns how many surface points it has; a grasper closes its jaws within `steps`; 0: at "
+     "1 m/s."},
     {"release", FUNCTION(release), METH_VARARGS | METH_KEYWORDS,
      "release($self, tool, steps=0)\n--\n\nLets go: a hand at once, a grasper within `steps`; 0: "
-     "as many "
-     "as its jaws need."},
+     "at 1 m/s."},
     {"tool_pose", tool_pose, METH_O,
      "tool_pose($self, tool)\n--\n\ndict: position [m], orientation (w, x, y, z), opening; now."},
     {"tool_force", tool_force, METH_O,

@@ -39,20 +39,26 @@ typedef struct contact_point {
 typedef struct known_face {
     int32_t face;
     double x[4][3], v[4][3]; /* [m], [m/s] */
+    lar_corner_masses mass;
 } known_face;
+
+static void know_face(const lar_body_contact *contact, const lar_state *state, int32_t node,
+                      int32_t face, known_face *known) {
+    known->face = face;
+    lar_contact_corners(contact, state, face, known->x, known->v);
+    lar_corner_masses_of(contact->surface, node, face, contact->held, &known->mass);
+}
 
 /* The point of t->count faces with the weights of t that a node meets; one of them may be known. */
 static void point_of(const lar_body_contact *contact, const lar_state *state, const touching *t,
-                     const known_face *known, int32_t node, contact_point *point) {
-    const lar_contact_node *of_node = &contact->surface->node[node];
+                     const known_face *known, int32_t node, bool rigid, contact_point *point) {
     *point = (contact_point){0};
     for (int32_t f = 0; f < t->count; f++) {
-        const int32_t *corner = contact->surface->face[t->face[f]].corner;
         const known_face *of = known;
         known_face other;
         double at[3], velocity[3];
         if (t->face[f] != known->face) {
-            lar_contact_corners(contact, state, t->face[f], other.x, other.v);
+            know_face(contact, state, node, t->face[f], &other);
             of = &other;
         }
         lar_face_mean((const double(*)[3])of->x, t->weight[f], at);
@@ -61,14 +67,11 @@ static void point_of(const lar_body_contact *contact, const lar_state *state, co
             point->at[i] += at[i];
             point->velocity[i] += velocity[i];
         }
-        for (int a = 0; a < 4; a++)
-            lar_point_mass_add(&contact->surface->node[corner[a]], t->weight[f][a], of_node,
-                               contact->held, &point->mass);
+        (rigid ? lar_point_mass_ease : lar_point_mass_add)(&of->mass, t->weight[f], &point->mass);
     }
 }
 
-/* By how much others may be farther away than the closest triangle and still count; 0: it counts
- * alone [m]. */
+/* How much farther than the closest triangle others may be and count; 0: it counts alone [m]. */
 static double fade_at(const lar_face_point *closest, const lar_survey *s) {
     /* Beside an edge that is convex as seen from the node the closest point is on the edge, not
      * straight below, and goes its way smoothly. */
@@ -302,11 +305,6 @@ static double press_deep(lar_body_contact *contact, int32_t node, int32_t face, 
                lar_contact_deep_force(law, contact->time_step, mass, layer, depth, rate, energy);
 }
 
-static bool is_beside(const lar_face_point *closest) {
-    static const double STRAIGHT = 0.7; /* 45 degrees */
-    return closest->height < 0 && -closest->height < STRAIGHT * closest->distance;
-}
-
 /* The point that pushes moves from an edge to below a node that is past it. */
 __attribute__((noinline, cold)) static bool shift(touching *t, int32_t face, const lar_rim *rim) {
     for (int32_t f = 0; f < t->count; f++) {
@@ -322,8 +320,10 @@ __attribute__((noinline, cold)) static bool shift(touching *t, int32_t face, con
 __attribute__((noinline, cold)) static double slide_off(const lar_rim *rim,
                                                         const lar_face_point *closest, int32_t face,
                                                         double energy, double force, touching *t) {
+    const double left = lar_flush_left(rim, closest, energy, t->pay);
     t->border = face;
-    return lar_flush_left(rim, closest, energy, t->pay) * force;
+    for (int i = 0; i < 12; i++) t->fade[i / 3][i % 3] *= left;
+    return left * force;
 }
 
 /* Points deeper than that are not pushed any more (lar_offset_pushes), and store what they did
@@ -345,20 +345,21 @@ static bool push(lar_body_contact *contact, const lar_state *state, int32_t g, i
     int32_t node = contact->list.group[g].node;
     double x[3], v[3], way[3], rate = 0;
     contact_point point;
-    known_face known = {.face = face};
+    known_face known;
     lar_contact_place(contact, state, node, x, v);
-    lar_contact_corners(contact, state, face, known.x, known.v);
+    know_face(contact, state, node, face, &known);
     *t = (touching){.count = 1, .face = {face}, .fading = -1, .border = -1, .over = -1};
     memcpy(t->weight[0], closest->weight, sizeof closest->weight);
     bool before = !(closest->height < 0), own = lar_same_body(contact, node, face);
     if ((before || !own) && lar_contact_active(&surface->node[node], f))
         blend(contact, g, closest, s, t);
     const bool past = rim->part > 0 && shift(t, face, rim);
-    point_of(contact, state, t, &known, node, &point);
+    const lar_contact_node *own_node = &surface->node[node], *corner = &surface->node[f->corner[0]];
+    const bool rigid = !own && lar_contact_of_rigid(surface, own_node, f, contact->held);
+    point_of(contact, state, t, &known, node, rigid, &point);
     double depth = outward(x, &point, before ? -1 : 1, LAR_FACE_TIE * f->size,
                            (const double(*)[3])known.x, way);
-    /* Without a length there is no direction. */
-    if (isnan(depth)) return false;
+    if (isnan(depth)) return false; /* without a length there is no direction */
     double together = push_together(t, LAR_FACE_TIE * f->size, &depth);
     for (int i = 0; i < 3; i++) rate += together * (point.velocity[i] - v[i]) * way[i];
     const bool spent = is_spent(contact, node, s, depth);
@@ -366,16 +367,17 @@ static bool push(lar_body_contact *contact, const lar_state *state, int32_t g, i
     double offset = own ? lar_offset_follow(contact, state, node, face, depth, rate) : 0;
     if (!own && !lar_offset_pushes(contact, state, g, face, s, depth, rate)) return false;
     if (!lar_contact_active(&surface->node[node], f)) return false;
-    const lar_contact_node *own_node = &surface->node[node], *corner = &surface->node[f->corner[0]];
     double moved = lar_contact_moved_mass(own_node, corner, contact->held, &point.mass);
     spring two[2];
-    const double hard =
-        own || !lar_contact_of_rigid(surface, own_node, f, contact->held) ? 1 : contact->rigid;
+    const double hard = rigid ? contact->rigid : 1;
     springs_of(contact, node, face, moved, hard, depth, offset, two);
     const meeting m = {
         x, &known, closest, full_of(contact, node, face), rate, f->fades && !own && !s->flush};
     double energy = 0, force = press(contact, &m, two, &energy, t);
     if (!own) force = press_deep(contact, node, face, moved, depth, rate, force, &energy);
+    const lar_pair_press pressed = {x, (const double(*)[3])known.x, closest, energy, fabs(force)};
+    if (rigid && lar_pair_slope(own_node, &known.mass, &point.mass, moved, &pressed, t->fade))
+        t->fading = face;
     if (spent) memset(t->fade, 0, sizeof t->fade);
     if (spent) force = 0;
     if (s->border >= 0) force = come_in(contact, g, s, &m, two, &energy, together, force, t);
@@ -405,8 +407,7 @@ static bool push(lar_body_contact *contact, const lar_state *state, int32_t g, i
     return true;
 }
 
-/* Who does not see the sides of a body, and is past its edge (*rim; part 0: it is not), may be
- * beside it, and not in it. */
+/* Past the edge of a body whose sides it does not see (*rim; part 0: not) it may be beside it. */
 static bool touches(const lar_body_contact *contact, const lar_state *state, int32_t node,
                     int32_t face, const lar_survey *s, const lar_face_point *point, lar_rim *rim) {
     const lar_contact_surface *surface = contact->surface;
@@ -429,7 +430,7 @@ static bool touches(const lar_body_contact *contact, const lar_state *state, int
             away = fabs(point->height);
         } else {
             rim->part = 0;
-            if (is_beside(point)) return false;
+            if (lar_flush_is_beside(point)) return false;
         }
     }
     return point->height < 0 ||
@@ -568,7 +569,8 @@ static void look_ahead(lar_body_contact *contact) {
     contact->horizon = contact->travel + 0.5 * contact->list.skin / PARTS;
     contact->near_count = 0;
     for (int32_t g = 0; g < contact->list.group_count; g++)
-        if (!(contact->due[g] > contact->horizon)) contact->near[contact->near_count++] = g;
+        if (!(contact->due[g] > contact->horizon) || lar_offset_was_flush(contact, g))
+            contact->near[contact->near_count++] = g;
 }
 
 void lar_body_contact_add(lar_body_contact *contact, const lar_condition_context *context,
@@ -585,7 +587,9 @@ void lar_body_contact_add(lar_body_contact *contact, const lar_condition_context
     for (int32_t i = 0; i < contact->near_count; i++) {
         int32_t g = contact->near[i], node = contact->list.group[g].node;
         touching t;
-        if (contact->travel < contact->due[g] || !in_contact(contact, state, g, &t)) continue;
+        if (contact->travel < contact->due[g] && !lar_offset_flush_again(contact, state, g))
+            continue;
+        if (!in_contact(contact, state, g, &t)) continue;
         add_forces(contact, context, state, node, &t);
         /* Each node is counted once, by who adds its force. */
         if (node >= contact->surface->node_count) continue;

@@ -379,6 +379,21 @@ void lar_offset_out(lar_body_contact *contact, const lar_state *state, int32_t g
  * does not see all of its faces. */
 bool lar_offset_is_flush(const lar_body_contact *contact, const lar_state *state, int32_t g);
 
+/* Whether the node of group g was flush with somebody at rest. */
+static inline bool lar_offset_was_flush(const lar_body_contact *contact, int32_t g) {
+    const int32_t node = contact->list.group[g].node;
+    return contact->surface->flush_first[node] < contact->surface->flush_first[node + 1];
+}
+
+/* Whether it is flush again, and was not when it was looked at the last time: what it touches then
+ * is nearer than what it waits for. So it is where one of its ends has come straight before a body
+ * once more. */
+static inline bool lar_offset_flush_again(const lar_body_contact *contact, const lar_state *state,
+                                          int32_t g) {
+    return contact->last[g] >= 0 && lar_offset_was_flush(contact, g) &&
+           lar_offset_is_flush(contact, state, g);
+}
+
 /* The node of group g, which is flush, touches nothing of that body. It has parted when it is
  * beside it, or too far above. `face`: the closest one that it sees, or -1. */
 void lar_offset_stay_flush(lar_body_contact *contact, const lar_state *state, int32_t g,

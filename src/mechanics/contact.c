@@ -107,32 +107,58 @@ void lar_face_normal(const double x[4][3], double normal[3]) {
 
 /* From 0 to 1, without a slope at either end. */
 static double ease(double t, double *slope) {
+    t = fmin(fmax(t, 0), 1);
     *slope = 6 * t * (1 - t);
     return t * t * (3 - 2 * t);
 }
 
-/* Bilinear in coordinates that are eased, and a hill in the middle that ends on the sides without a
- * slope. */
-double lar_face_firmness(const double weight[4], const double blunt[4], double change[5]) {
-    const double at[2] = {weight[1] + weight[2], weight[2] + weight[3]};
-    double eased[2], steep[2], hill[2], rise[2];
-    for (int d = 0; d < 2; d++) {
-        bool over = at[d] > 0.5;
-        eased[d] = ease(at[d], &steep[d]);
-        hill[d] = ease(over ? 2 * (1 - at[d]) : 2 * at[d], &rise[d]);
-        rise[d] *= over ? -2 : 2;
-    }
-    double low = blunt[1] - blunt[0], high = blunt[2] - blunt[3];
-    double side = (blunt[3] - blunt[0]) + eased[0] * (high - low);
-    double base = blunt[0] + eased[0] * low + eased[1] * side, top = hill[0] * hill[1];
-    double slope[2] = {(1 - top) * steep[0] * (low + eased[1] * (high - low)) +
-                           (1 - base) * rise[0] * hill[1],
-                       (1 - top) * steep[1] * side + (1 - base) * hill[0] * rise[1]};
+/* A place in a face by its bilinear coordinates. */
+typedef struct face_place {
+    double at[2], eased[2], steep[2];
+} face_place;
+
+static face_place place_of(const double weight[4]) {
+    face_place p = {.at = {weight[1] + weight[2], weight[2] + weight[3]}};
+    for (int d = 0; d < 2; d++) p.eased[d] = ease(p.at[d], &p.steep[d]);
+    return p;
+}
+
+/* Bilinear in coordinates that are eased, and what it changes along these. */
+static double between_corners(const face_place *p, const double corner[4], double along[2]) {
+    double low = corner[1] - corner[0], high = corner[2] - corner[3];
+    along[1] = (corner[3] - corner[0]) + p->eased[0] * (high - low);
+    along[0] = low + p->eased[1] * (high - low);
+    return corner[0] + p->eased[0] * low + p->eased[1] * along[1];
+}
+
+static void change_along(const double slope[2], double change[5]) {
     change[0] = 0;
     change[1] = slope[0];
     change[2] = slope[0] + slope[1];
     change[3] = slope[1];
     change[4] = 0.5 * (slope[0] + slope[1]);
+}
+
+double lar_face_eased(const double weight[4], const double corner[4], double change[5]) {
+    const face_place p = place_of(weight);
+    double along[2], value = between_corners(&p, corner, along);
+    change_along((double[]){p.steep[0] * along[0], p.steep[1] * along[1]}, change);
+    return value;
+}
+
+/* And a hill in the middle that ends on the sides without a slope. */
+double lar_face_firmness(const double weight[4], const double blunt[4], double change[5]) {
+    const face_place p = place_of(weight);
+    double hill[2], rise[2], along[2], base = between_corners(&p, blunt, along);
+    for (int d = 0; d < 2; d++) {
+        bool over = p.at[d] > 0.5;
+        hill[d] = ease(over ? 2 * (1 - p.at[d]) : 2 * p.at[d], &rise[d]);
+        rise[d] *= over ? -2 : 2;
+    }
+    double top = hill[0] * hill[1];
+    double slope[2] = {(1 - top) * p.steep[0] * along[0] + (1 - base) * rise[0] * hill[1],
+                       (1 - top) * p.steep[1] * along[1] + (1 - base) * hill[0] * rise[1]};
+    change_along(slope, change);
     return base + (1 - base) * top;
 }
 

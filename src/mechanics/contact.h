@@ -124,12 +124,15 @@ static inline double lar_ease(double t) {
     return !(t > 0) ? 0 : t < 1 ? t * t * (3 - 2 * t) : 1;
 }
 
-/* What part of a spring there is at a point of a face, by its weights, from `blunt` at its corners
- * to 1 in its middle, and change[]: the numbers of the corners and, last, of the middle that,
- * linear in the triangles, have the same slope there. Along a side it depends on that side's ends
- * alone, and across the side it has no slope: where two faces meet a spring is not driven from one
- * to the other. Along the lines of bilinear coordinates, that is: of faces that are no
- * parallelograms a part of the kink is left. */
+/* A number at a point of a face, by the point's weights, from those at its corners, and change[]:
+ * numbers at the corners and, last, in the middle that, linear in the triangles, have the same
+ * slope there. Along a side it depends on that side's ends alone, and across the side it has no
+ * slope: where two faces meet a spring is not driven from one to the other. Along the lines of
+ * bilinear coordinates, that is: of faces that are no parallelograms a part of the kink is left. */
+double lar_face_eased(const double weight[4], const double corner[4], double change[5]);
+
+/* What part of a spring there is at a point of a face, from `blunt` at its corners to 1 in its
+ * middle; the rest as above. */
 double lar_face_firmness(const double weight[4], const double blunt[4], double change[5]);
 
 /* ---- tools -----------------------------------------------------------------------------------

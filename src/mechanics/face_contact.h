@@ -128,8 +128,9 @@ double lar_face_blend(const double x[3], const double corner[4][3], double min, 
 /* The slopes of a number that is `value` at the corners of a face and, last, in its middle, linear
  * in the triangles: with the places of the corners and, last, with x [1/m]. Forces and moments that
  * balance, as those of any potential of the five places. */
-void lar_face_slope(const double x[3], const double corner[4][3], const lar_face_point *point,
-                    const double value[5], double slope[5][3]);
+__attribute__((cold)) void lar_face_slope(const double x[3], const double corner[4][3],
+                                          const lar_face_point *point, const double value[5],
+                                          double slope[5][3]);
 
 /* Whether a decides before b, both being equally close. */
 static inline bool lar_face_point_before(const lar_face_point *a, const lar_face_point *b) {

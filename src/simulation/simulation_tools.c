@@ -121,15 +121,18 @@ static double way_of(const lar_tool *tool, const lar_tool_pose *now, const lar_t
     return lar_tool_way(from, to, body.count);
 }
 
-/* 0 steps: as many as its jaws need. */
+/* 0 steps: as many as its jaws need at the speed that tools have in sessions, too. What goes as far
+ * as it may in a step would crush what it meets. */
 static uint64_t steps_for(const lar_simulation *simulation, int32_t index,
                           const lar_tool_pose *pose, uint64_t steps) {
+    static const double SPEED = 1; /* [m/s] */
     const lar_tool *tool = &simulation->list.tool[index];
     lar_tool_pose now;
     if (steps > 0 || tool->shape == LAR_TOOL_HAND) return steps > 0 ? steps : 1;
     lar_tool_at(&simulation->tools.follower[index].hand, lar_simulation_steps(simulation),
                 simulation->domain.time_step, &now, NULL);
-    return 1 + (uint64_t)(2 * way_of(tool, &now, pose) / tool->radius);
+    return 1 + (uint64_t)(way_of(tool, &now, pose) /
+                          fmin(0.5 * tool->radius, SPEED * simulation->domain.time_step));
 }
 
 /* How much of a tool's radius it may go in a step, in words. */

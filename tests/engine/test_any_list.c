@@ -62,6 +62,16 @@ static lar_model *heap(uint32_t seed) {
 
 enum { LOOKS = 5, STEPS = 20 };
 
+/* Which nodes are not flush any more: the hash does not say that. */
+static uint64_t parted(lar_simulation *s) {
+    uint64_t all = 0;
+    assert_int_equal(lar_simulation_gather(s, NULL), LAR_OK);
+    for (int32_t n = 0; n < s->domain.layout.node_count; n++)
+        if (s->domain.layout.global[n] >= 0 && signbit(s->state.level[n]))
+            all += (uint64_t)(s->domain.layout.global[n] + 1) * 0x9e3779b97f4a7c15;
+    return all;
+}
+
 static void run(const lar_model *model, const char *grid, bool always, uint64_t hash[LOOKS]) {
     lar_options options = lar_options_default();
     options.grid = grid;
@@ -69,9 +79,26 @@ static void run(const lar_model *model, const char *grid, bool always, uint64_t 
     lar_simulation *s = start_with(model, options);
     for (int i = 0; i < LOOKS; i++) {
         advance(s, STEPS);
-        hash[i] = lar_simulation_hash(s);
+        hash[i] = 31 * lar_simulation_hash(s) + parted(s);
     }
     lar_simulation_destroy(s);
+}
+
+/* How many of the other lists end otherwise. */
+static int differ(const lar_model *model, uint32_t seed) {
+    uint64_t always[LOOKS], hash[LOOKS];
+    int wrong = 0;
+    run(model, NULL, true, always);
+    for (int kind = 0; kind < 2; kind++) {
+        run(model, kind ? "2x1x1" : NULL, false, hash);
+        int same = 0;
+        while (same < LOOKS && hash[same] == always[same]) same++;
+        if (same < LOOKS)
+            print_message("%d, %s: another one between steps %d and %d\n", (int)seed,
+                          kind ? "two processors" : "one", same * STEPS, (same + 1) * STEPS);
+        wrong += same < LOOKS;
+    }
+    return wrong;
 }
 
 static void it_makes_no_difference(void **unused) {
@@ -80,23 +107,39 @@ static void it_makes_no_difference(void **unused) {
     int wrong = 0;
     for (uint32_t seed = 0; seed < HEAPS; seed++) {
         lar_model *model = heap(seed);
-        uint64_t always[LOOKS], hash[LOOKS];
-        run(model, NULL, true, always);
-        for (int kind = 0; kind < 2; kind++) {
-            run(model, kind ? "2x1x1" : NULL, false, hash);
-            int same = 0;
-            while (same < LOOKS && hash[same] == always[same]) same++;
-            if (same < LOOKS)
-                print_message("heap %d, %s: another one between steps %d and %d\n", (int)seed,
-                              kind ? "two processors" : "one", same * STEPS, (same + 1) * STEPS);
-            wrong += same < LOOKS;
-        }
+        wrong += differ(model, seed);
+        lar_model_destroy(model);
+    }
+    assert_int_equal(wrong, 0);
+}
+
+/* A block that stands flush beside another one, of which there is only the upper half: it goes out
+ * beyond the plane of symmetry, as far as some lists know of it and others do not, and comes back.
+ */
+static void nor_beyond_a_plane_of_symmetry(void **unused) {
+    (void)unused;
+    static const double edge = 0.02;
+    int wrong = 0;
+    for (uint32_t seed = 0; seed < 12; seed++) {
+        const brick half = block(2, edge), other = block(1 + (int)seed % 2, edge);
+        lar_model *model = empty_model(&half);
+        add_brick(model, &half, (double[]){0, 0, 0});
+        fix_nodes(model, brick_side(&half, 2, 0), LAR_AXIS_Z);
+        const int32_t first = add_brick(model, &other, (double[]){edge, 0, 0});
+        throw_nodes(model, first, model->mesh.node_count,
+                    (double[]){0, 0, -0.7 - 0.05 * (double)seed});
+        touch_self(model);
+        model->gravity[2] = 40;
+        wrong += differ(model, seed);
         lar_model_destroy(model);
     }
     assert_int_equal(wrong, 0);
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(it_makes_no_difference)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(it_makes_no_difference),
+        cmocka_unit_test(nor_beyond_a_plane_of_symmetry),
+    };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

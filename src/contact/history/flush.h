@@ -61,6 +61,12 @@ static inline bool lar_flush_is_straight(const lar_face_point *closest) {
     return height * height >= STRAIGHT * (distance * distance);
 }
 
+/* Who is farther from the face's plane to the side than behind it. */
+static inline bool lar_flush_is_beside(const lar_face_point *closest) {
+    static const double STRAIGHT = 0.7; /* 45 degrees */
+    return closest->height < 0 && -closest->height < STRAIGHT * closest->distance;
+}
+
 /* The unit normal of a triangle of a face; 0 where that is crushed to a line. */
 void lar_rim_normal(const double corner[4][3], int triangle, double normal[3]);
 

@@ -375,7 +375,8 @@ is_beyond_end(const lar_body_contact *contact, const lar_state *state, int32_t g
 int32_t lar_survey_closest(lar_body_contact *contact, const lar_state *state, int32_t g,
                            lar_survey *s, lar_face_point *point) {
     const lar_contact_group *group = &contact->list.group[g];
-    s->inside = s->flush = false;
+    s->inside = false;
+    s->flush = lar_offset_is_flush(contact, state, g);
     s->before = s->gap = INFINITY;
     contact->due[g] = 0;
     if (body_of(contact, g)->cut && is_beyond_end(contact, state, g, s)) return -1;
