@@ -107,7 +107,6 @@ void lar_face_normal(const double x[4][3], double normal[3]) {
 
 /* From 0 to 1, without a slope at either end. */
 static double ease(double t, double *slope) {
-    t = fmin(fmax(t, 0), 1);
     *slope = 6 * t * (1 - t);
     return t * t * (3 - 2 * t);
 }
@@ -117,8 +116,8 @@ typedef struct face_place {
     double at[2], eased[2], steep[2];
 } face_place;
 
-static face_place place_of(const double weight[4]) {
-    face_place p = {.at = {weight[1] + weight[2], weight[2] + weight[3]}};
+static face_place place_of(double x, double y) {
+    face_place p = {.at = {x, y}};
     for (int d = 0; d < 2; d++) p.eased[d] = ease(p.at[d], &p.steep[d]);
     return p;
 }
@@ -140,7 +139,9 @@ static void change_along(const double slope[2], double change[5]) {
 }
 
 double lar_face_eased(const double weight[4], const double corner[4], double change[5]) {
-    const face_place p = place_of(weight);
+    /* Who slides off has a point past the side. */
+    const face_place p =
+        place_of(fmin(fmax(weight[1] + weight[2], 0), 1), fmin(fmax(weight[2] + weight[3], 0), 1));
     double along[2], value = between_corners(&p, corner, along);
     change_along((double[]){p.steep[0] * along[0], p.steep[1] * along[1]}, change);
     return value;
@@ -148,7 +149,7 @@ double lar_face_eased(const double weight[4], const double corner[4], double cha
 
 /* And a hill in the middle that ends on the sides without a slope. */
 double lar_face_firmness(const double weight[4], const double blunt[4], double change[5]) {
-    const face_place p = place_of(weight);
+    const face_place p = place_of(weight[1] + weight[2], weight[2] + weight[3]);
     double hill[2], rise[2], along[2], base = between_corners(&p, blunt, along);
     for (int d = 0; d < 2; d++) {
         bool over = p.at[d] > 0.5;

@@ -121,18 +121,24 @@ static double way_of(const lar_tool *tool, const lar_tool_pose *now, const lar_t
     return lar_tool_way(from, to, body.count);
 }
 
-/* 0 steps: as many as its jaws need at the speed that tools have in sessions, too. What goes as far
- * as it may in a step would crush what it meets. */
+/* The fewest steps to a pose, each with at most so much of a way [m]. */
+static uint64_t fewest_steps(const lar_simulation *simulation, int32_t index,
+                             const lar_tool_pose *pose, double way) {
+    lar_tool_pose now;
+    lar_tool_at(&simulation->tools.follower[index].hand, lar_simulation_steps(simulation),
+                simulation->domain.time_step, &now, NULL);
+    return 1 + (uint64_t)(way_of(&simulation->list.tool[index], &now, pose) / way);
+}
+
+/* 0 steps: as many as its jaws need at the speed that tools have in sessions. What goes as far as
+ * it may in a step would crush what it meets. */
 static uint64_t steps_for(const lar_simulation *simulation, int32_t index,
                           const lar_tool_pose *pose, uint64_t steps) {
     static const double SPEED = 1; /* [m/s] */
     const lar_tool *tool = &simulation->list.tool[index];
-    lar_tool_pose now;
     if (steps > 0 || tool->shape == LAR_TOOL_HAND) return steps > 0 ? steps : 1;
-    lar_tool_at(&simulation->tools.follower[index].hand, lar_simulation_steps(simulation),
-                simulation->domain.time_step, &now, NULL);
-    return 1 + (uint64_t)(way_of(tool, &now, pose) /
-                          fmin(0.5 * tool->radius, SPEED * simulation->domain.time_step));
+    const double way = fmin(0.5 * tool->radius, SPEED * simulation->domain.time_step);
+    return fewest_steps(simulation, index, pose, way);
 }
 
 /* How much of a tool's radius it may go in a step, in words. */
@@ -263,7 +269,8 @@ static lar_status follow_part(lar_simulation *simulation, int32_t index, const p
     lar_tool_pose pose = row[1].pose;
     if (part->end < step_of(row + 1, time_step))
         lar_tool_script_between(row, fmax(row->time, (double)part->end * time_step), &pose);
-    uint64_t steps = part->end - part->begin, least = steps_for(simulation, index, &pose, 0);
+    const double way = 0.5 * simulation->list.tool[index].radius;
+    uint64_t steps = part->end - part->begin, least = fewest_steps(simulation, index, &pose, way);
     return move_tool(simulation, index, &pose, steps > least ? steps : least, error);
 }
 
