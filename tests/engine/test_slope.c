@@ -40,8 +40,6 @@ static void what_slides_while_it_is_pushed_gains_nothing(void **unused) {
             lar_simulation_energy(simulation, &e);
             most = fmax(most, e.kinetic / began);
         }
-        lar_contact_info info;
-        lar_simulation_contact(simulation, &info);
         print_message("%g m/s: at most %.7f, at the end %.5f of the energy\n", slides[i][1], most,
                       e.kinetic / began);
         assert_below(most, 1 + 1e-6);

@@ -376,10 +376,12 @@ int32_t lar_survey_closest(lar_body_contact *contact, const lar_state *state, in
                            lar_survey *s, lar_face_point *point) {
     const lar_contact_group *group = &contact->list.group[g];
     s->inside = false;
-    s->flush = lar_offset_is_flush(contact, state, g);
     s->before = s->gap = INFINITY;
     contact->due[g] = 0;
-    if (body_of(contact, g)->cut && is_beyond_end(contact, state, g, s)) return -1;
+    if (body_of(contact, g)->cut && is_beyond_end(contact, state, g, s)) {
+        s->flush = lar_offset_is_flush(contact, state, g);
+        return -1;
+    }
     s->joints = true;
     survey_group(contact, state, g, s);
     /* Who was farther than a face that is not seen now may be the closest one. */
